@@ -202,7 +202,12 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
     with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=1.0)
-        yield lambda done: bar.update(task, completed=done)
+
+        def show(step: ProgressStep) -> None:
+            bar.update(task, description=f"{what}: {step}" if step.total else what)
+
+        with listening(Listener(show, every=0.5)):
+            yield lambda done: bar.update(task, completed=done)
 
 
 def _hands(executor: Executor | None) -> str:

@@ -27,6 +27,7 @@ from inerter.identification.intervals import ROBUST, BestFit, steps_of
 from inerter.identification.problem import FitProblem, apart
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
+from inerter.work.progress import counter
 
 Matrix = NDArray[np.float64]
 DRAWS = 12
@@ -59,7 +60,7 @@ def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRA
         experiments = source.drawn(random)
         start = optimum.point + optimum.errors * random.standard_normal(optimum.point.size)
         drawn.append((replace(problem, experiments=experiments), np.clip(start, lower, upper)))
-    found = apart(partial(_refitted, optimum.point, steps), drawn)
+    found = apart(partial(_refitted, optimum.point, steps), drawn, progress=counter("bootstrap", draws))
     points, costs, forces = zip(*found, strict=True)
     shares = [_shared(source.forces, force, problem.experiments) for force in forces]
     moved = np.array(points) - optimum.point

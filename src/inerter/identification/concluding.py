@@ -28,6 +28,7 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
+from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
@@ -47,6 +48,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     values = space.named(optimum.point)
     slopes = space.slopes(optimum.point)
     covariance = _covariance(solution)
+    report("where the misfit is", 0, len(comparisons))
     where = () if solution.misfit.sound else tuple(localisation_of(c, solution.options.seed) for c in comparisons)
     likely = explanations(problem, optimum, solution.judge, solution.misfit, where) if explain else []
     findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))

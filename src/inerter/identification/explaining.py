@@ -1,13 +1,15 @@
 """What may be wrong with a model or the sensors where a fit leaves more than sound sensors would.
 
 Each hypothesis is fitted from the best fit on, device and all, to the part that was fitted, and judged by how much of
-what was left on the check part it explains.
+what was left on the check part it explains. All are fitted by a few steps of which each takes one simulation; only
+those that come closest are fitted to the end (decision 0056).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,18 +18,21 @@ from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
-from inerter.identification.intervals import BestFit, best_fit_of, steps_of
+from inerter.identification.intervals import BestFit, best_fit_of, fit_by_secants, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
-from inerter.identification.problem import FitProblem
+from inerter.identification.problem import FitProblem, apart
 from inerter.identification.recording_faults import faulty_samples, recording_faults
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.records.lost import losses, restored
 from inerter.vehicle.rig import Rig
-from inerter.work.progress import report
+from inerter.work.progress import counter
+from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
+_ROUNDS, _ROUGH = 8, 1e-2  # steps of a rough fit, and the change of the cost at which it ends
+_FITTED = 5  # hypotheses that are fitted to the end
 _EVALUATIONS, _ACCURACY = 25, 1e-5
 _BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
@@ -35,13 +40,36 @@ _AS_GOOD = 0.02  # of a misfit: what two explanations may differ by and explain 
 _STEP = 0.02  # of what a hypothesis would be seen at, for differences
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """The best fit of a hypothesis."""
+@dataclass(eq=False)
+class Causes:
+    """Hypotheses on a misfit. Another process makes them anew: what they do to a motion or a force cannot be sent."""
 
-    hypothesis: Hypothesis
-    problem: FitProblem
-    optimum: BestFit
+    before: Misfit
+    places: Sequence[Localisation]
+    made: list[Hypothesis] | None = None
+
+    def of(self, problem: FitProblem) -> list[Hypothesis]:
+        """Without a misfit those that are known anyway."""
+        if self.made is None:
+            lost = lost_samples(problem.experiments)
+            known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
+            self.made = known if self.before.sound else [*known, *hypotheses(problem, self.places)]
+        return self.made
+
+    def __getstate__(self) -> dict[str, object]:
+        """Without what is made anew."""
+        return {**vars(self), "made": None}
+
+
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """A hypothesis by its number, a point from which to fit it, the steps there, and the cost that it came to."""
+
+    number: int
+    point: Matrix
+    steps: Matrix
+    cost: float
+    explanation: Explanation
 
 
 def explanations(
@@ -49,16 +77,20 @@ def explanations(
 ) -> list[Explanation]:
     """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway.
 
-    `places` is where the misfit is in each record. Of those that explain about as much, that with fewer unknowns is the
-    likelier one.
+    `places` is where the misfit is in each record. All hypotheses are fitted roughly, by secants, and those that
+    explain most are fitted to the end. Of those that explain about as much, that with fewer unknowns is the likelier.
     """
+    causes = Causes(before, places)
+    every = causes.of(problem)
+    known = replace(problem, whitenings=by.fitted, horizon=1.0)
+    slopes = known.jacobian(optimum.point, steps_of(optimum)) if every else np.zeros((0, 0))
+    rough = partial(_roughly_fitted, causes, by, optimum, slopes)
+    first = apart(rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every)))
+    first.sort(key=lambda attempt: attempt.cost)
+    best = first[:_FITTED]
+    last = apart(partial(_fitted, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best)))
     found: dict[Suspect, Explanation] = {}
-    lost = lost_samples(problem.experiments)
-    known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-    every = known if before.sound else [*known, *hypotheses(problem, places)]
-    for tried, hypothesis in enumerate(every):
-        report("possible causes", tried, len(every))
-        e = _explanation(_tried(problem, optimum, hypothesis, by), by, before)
+    for e in (*last, *(a.explanation for a in first[_FITTED:])):
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
     return sorted(found.values(), key=lambda e: (-round(e.explained / _AS_GOOD), len(e.values), -e.explained))
@@ -102,27 +134,59 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     return Hypothesis(Suspect.LOST_SAMPLES, moved=moved, read=read, details=lambda values: {"places": tuple(places)})
 
 
-def _tried(problem: FitProblem, optimum: BestFit, hypothesis: Hypothesis, by: Judge) -> Trial:
-    """A hypothesis after some steps from the best fit."""
+def _under(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
+    """The problem with one more hypothesis."""
     assumed = (*problem.assumed, hypothesis)
-    rig = problem.rig if hypothesis.device is None else Rig(hypothesis.device)
-    space = space_of(rig, assumed)
-    other = replace(problem, rig=rig, space=space, assumed=assumed, whitenings=by.fitted, horizon=1.0, systems={})
-    known = problem.space.named(optimum.point)
+    if hypothesis.device is None:
+        return replace(problem, space=space_of(problem.rig, assumed), assumed=assumed)
+    rig = Rig(hypothesis.device)
+    return replace(problem, rig=rig, space=space_of(rig, assumed), assumed=assumed, systems={})
+
+
+def _roughly_fitted(
+    causes: Causes, by: Judge, optimum: BestFit, slopes: Matrix, problem: FitProblem, number: int
+) -> Attempt:
+    """The best of a few steps from each start of a hypothesis.
+
+    Derivatives by what the model has too are taken to be those at the best fit, unless the device is another one.
+    """
+    hypothesis = causes.of(problem)[number]
+    other = _under(problem, hypothesis)
+    names, space = problem.space.names, other.space
+    shared = [n for n in space.names if n in names and hypothesis.device is None]
+    own = [i for i, n in enumerate(space.names) if n not in shared]
+    found = []
+    for point, steps in _starts(problem, optimum, other, hypothesis):
+        jacobian = np.zeros((slopes.shape[0], len(space.names)))
+        jacobian[:, [i for i, n in enumerate(space.names) if n in shared]] = slopes[:, [names.index(n) for n in shared]]
+        if own:
+            jacobian[:, own] = other.jacobian(point, steps, own)
+        found.append((fit_by_secants(other, point, jacobian, _ROUNDS, _ROUGH), steps))
+    fit, steps = min(found, key=lambda f: f[0].cost)
+    return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes.before))
+
+
+def _fitted(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Explanation:
+    hypothesis = causes.of(problem)[attempt.number]
+    other = _under(problem, hypothesis)
+    fit = best_fit_of(other, attempt.point, attempt.steps, _EVALUATIONS, _ACCURACY)
+    return _explanation(other, fit, hypothesis, by, causes.before)
+
+
+def _starts(
+    problem: FitProblem, optimum: BestFit, other: FitProblem, hypothesis: Hypothesis
+) -> Iterator[tuple[Matrix, Matrix]]:
+    """Points to begin a fit at, and the steps of differences there."""
+    space, known = other.space, problem.space.named(optimum.point)
     widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
     sizes = {u.name: u.size for u in hypothesis.unknowns}
     zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
-    trials = []
     begun = {other: known[name] for name, other in hypothesis.alike.items()}
+    alike = {other: widths[name] for name, other in hypothesis.alike.items()}
     for start in hypothesis.starts:
-        point = space.placed({**known, **zero, **begun, **start})
         seen = {**sizes, **start}
-        alike = {other: widths[name] for name, other in hypothesis.alike.items()}
-        steps = np.array(
-            [widths.get(n) or alike.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)]
-        )
-        trials.append(Trial(hypothesis, other, best_fit_of(other, point, steps, _EVALUATIONS, _ACCURACY)))
-    return min(trials, key=lambda t: t.optimum.cost)
+        steps = [widths.get(n) or alike.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)]
+        yield space.placed({**known, **zero, **begun, **start}), np.array(steps)
 
 
 def _step(space: Space, i: int, size: float) -> float:
@@ -130,12 +194,11 @@ def _step(space: Space, i: int, size: float) -> float:
     return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
 
 
-def _explanation(trial: Trial, by: Judge, before: Misfit) -> Explanation:
-    space, hypothesis = trial.problem.space, trial.hypothesis
-    point = trial.optimum.point
-    after = by.misfit(trial.problem, point, hypothesis.slow)
+def _explanation(problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: Misfit) -> Explanation:
+    space, point = problem.space, fit.point
+    after = by.misfit(problem, point, hypothesis.slow)
     values = space.named(point)
-    errors = trial.optimum.errors * space.slopes(point)
+    errors = fit.errors * space.slopes(point)
     own = {u.name for u in hypothesis.unknowns}
     parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
     return Explanation(

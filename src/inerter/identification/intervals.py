@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import lsq_linear
 from scipy.stats import t as student
 
 from inerter.identification.noise import OPTIMISM
 from inerter.identification.problem import FitProblem, apart
 from inerter.identification.search import improve
+from inerter.work.progress import counter
 from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
@@ -56,7 +59,10 @@ def best_fit_of(
     accuracy: float = 1e-9,
 ) -> BestFit:
     """The best fit near `start`, with differences as wide as the coordinates are uncertain."""
-    point, cost, residual, jacobian = improve(problem, start, evaluations, steps, ROBUST, accuracy)
+    return _best_fit(problem, *improve(problem, start, evaluations, steps, ROBUST, accuracy))
+
+
+def _best_fit(problem: FitProblem, point: Matrix, cost: float, residual: Matrix, jacobian: Matrix) -> BestFit:
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
     variance = OPTIMISM * 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian
@@ -64,6 +70,48 @@ def best_fit_of(
     return BestFit(
         point, cost, residual, jacobian, variance, covariance, _widening(jacobian, residual, variance), samples
     )
+
+
+def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds: int, accuracy: float) -> BestFit:
+    """The fit after some Gauss-Newton steps from `start`, near which the derivatives of the residuals are known.
+
+    Each step takes one simulation, which corrects the derivatives too (Broyden 1965); one that does not help is damped
+    (Levenberg 1944). It ends where a step changes the cost by less than `accuracy`.
+    """
+    lower, upper = problem.space.bounds
+    size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
+    point, slopes, damping = np.clip(start, lower, upper), jacobian / size, 1e-6
+    residual = problem.residual(point)
+    cost = robust_cost(residual)
+    for _ in range(rounds):
+        root = (1.0 + (residual / ROBUST) ** 2) ** -0.25
+        low, high = (lower - point) * size - 1e-12, (upper - point) * size + 1e-12
+        step = _damped_step(root[:, None] * slopes, root * residual, damping, (low, high))
+        other = np.clip(point + step / size, lower, upper)
+        step = (other - point) * size
+        length = float(step @ step)
+        if length == 0.0:
+            break
+        there = problem.residual(other)
+        rise = robust_cost(there) - cost
+        if rise < cost:  # else it says nothing of the derivatives here
+            slopes += np.outer((there - residual - slopes @ step) / length, step)
+        if rise >= 0.0:
+            damping = max(10.0 * damping, 1e-2)
+            continue
+        point, residual, cost, damping = other, there, cost + rise, 0.1 * damping
+        if -rise < accuracy * cost:
+            break
+    root = (1.0 + (residual / ROBUST) ** 2) ** -0.25
+    return _best_fit(problem, point, cost, residual, root[:, None] * slopes * size)
+
+
+def _damped_step(slopes: Matrix, residual: Matrix, damping: float, bounds: tuple[Matrix, Matrix]) -> Matrix:
+    """The step within bounds that leaves least, by linear least squares."""
+    triangle = np.linalg.qr(np.column_stack([slopes, residual]), mode="r")
+    count = slopes.shape[1]
+    rows = np.vstack([triangle[:count, :count], math.sqrt(damping) * np.eye(count)])
+    return np.asarray(lsq_linear(rows, -np.append(triangle[:count, count], np.zeros(count)), bounds).x)
 
 
 def steps_of(optimum: BestFit) -> Matrix:
@@ -111,7 +159,7 @@ def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None 
     """The profile of every coordinate, or of those `among` them."""
     coordinates = list(range(optimum.point.size)) if among is None else among
     tasks = [(problem, (i, sign)) for i in coordinates for sign in (-1, 1)]
-    found = apart(partial(_walk, optimum), tasks, over_threads)
+    found = apart(partial(_walk, optimum), tasks, over_threads, counter("sides of intervals", len(tasks)))
     result = []
     for n, i in enumerate(coordinates):
         (below, points, better), (above, more, other) = found[2 * n], found[2 * n + 1]

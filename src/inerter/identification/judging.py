@@ -7,8 +7,9 @@ sensors, not the residuals' own: a residual cannot excuse itself.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,38 +42,33 @@ class Judge:
 
         Infinite where it cannot be simulated.
         """
-        limits = self._limit(self.fitted), self._limit(self.checked)
+        limits = self._sound[0][1], self._sound[1][1]
         centred = []
         for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
             if force is None:
                 return Misfit(np.inf, np.inf, limits)
             centred.append(_centred(e.record.force - force, w) if problem.offset else e.record.force - force)
-        fitted, checked = (self._over_sound(centred, whitenings, slow) for whitenings in (self.fitted, self.checked))
+        fitted, checked = (
+            math.sqrt(
+                _mean_square(_without_slow(_compared(w, r), w, slow) for w, r in zip(ws, centred, strict=True)) / usual
+            )
+            for ws, (usual, _) in zip((self.fitted, self.checked), self._sound, strict=True)
+        )
         return Misfit(fitted, checked, limits)
 
-    def _over_sound(self, residuals: Sequence[Matrix], whitenings: Sequence[Whitening], slow: int | None) -> float:
-        parts = [_compared(w, r) for w, r in zip(whitenings, residuals, strict=True)]
-        if slow is not None:
-            parts = [_without_slow(part, w, slow) for part, w in zip(parts, whitenings, strict=True)]
-        ours = np.concatenate(parts)
-        return math.sqrt(mean_square(ours) / float(np.mean(self._sound(whitenings)))) if ours.size else math.nan
+    @cached_property
+    def _sound(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The mean square that the draws leave of each part, and what a misfit may be there."""
+        return self._usual(self.fitted), self._usual(self.checked)
 
-    def _sound(self, whitenings: Sequence[Whitening]) -> Matrix:
-        """The mean squares that each draw leaves."""
-        each = zip(*self.draws, strict=True)
-        return np.array(
-            [
-                mean_square(np.concatenate([_compared(w, draw) for w, draw in zip(whitenings, draws, strict=True)]))
-                for draws in each
-            ]
-        )
-
-    def _limit(self, whitenings: Sequence[Whitening]) -> float:
-        """What a misfit may be by chance, and because no record of the sensors is quite like another."""
+    def _usual(self, whitenings: Sequence[Whitening]) -> tuple[float, float]:
+        """A misfit may be more by chance, and because no record of the sensors is quite like another."""
         if not any(np.any(w.weight > 0.0) for w in whitenings):
-            return math.nan
-        sizes = np.sqrt(self._sound(whitenings))
-        return _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
+            return math.nan, math.nan
+        each = zip(*self.draws, strict=True)
+        squares = np.array([_mean_square(map(_compared, whitenings, draws)) for draws in each])
+        sizes = np.sqrt(squares)
+        return float(np.mean(squares)), _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
 
     def pattern(self, number: int, residual: Matrix) -> float:
         """The p-value of residuals of one record no more autocorrelated than those of sound sensors are."""
@@ -122,9 +118,15 @@ def _compared(whitening: Whitening, residual: Matrix) -> Matrix:
     return whitening(residual)[whitening.weight > 0.0]
 
 
-def _without_slow(white: Matrix, whitening: Whitening, degree: int) -> Matrix:
+def _mean_square(parts: Iterable[Matrix]) -> float:
+    """Of whitened residuals of all records; nan of none."""
+    white = np.concatenate(list(parts))
+    return mean_square(white) if white.size else math.nan
+
+
+def _without_slow(white: Matrix, whitening: Whitening, degree: int | None) -> Matrix:
     """Without what a polynomial over time makes of whitened residuals."""
-    if not white.size:
+    if degree is None or not white.size:
         return white
     time = np.linspace(-1.0, 1.0, whitening.weight.size)
     columns = whitening(np.asarray(np.polynomial.legendre.legvander(time, degree)))[whitening.weight > 0.0]

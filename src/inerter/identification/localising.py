@@ -1,9 +1,10 @@
 """Where in a record a fit leaves more than the sensors would: when, at which position, speed, force or frequency.
 
 Every pattern is measured by the share of the squared residual that a law of its kind would explain (of a Gaussian
-likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
-a period or so: residuals are autocorrelated within them, and hardly between them. Signs of whole blocks are flipped for
-a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of tests.
+likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time no shorter than
+a period of the motion: residuals are autocorrelated within them, and hardly between them. Signs of whole blocks are
+flipped for a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of
+tests, which is 29 and one more for each further channel.
 """
 
 from __future__ import annotations
@@ -28,9 +29,13 @@ _COEFFICIENTS = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.COEFFICIENT_TREND
 _TELLING = 0.15  # share by which a coefficient that changes goes before a size that does: it says of what
 _MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is no more than likely
 _DRAWS = 4999
-_FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60
+_FEWEST_BLOCKS, _MOST_BLOCKS = 2, 60
 _BINS, _PLACES = 8, 24
-_TESTS = 30  # that are made, about
+_QUANTITIES = ("displacement", "velocity", "acceleration", "force", "force rate")
+_SIGNALS = ("constant", "direction", *_QUANTITIES)  # whose coefficients may step or go steadily
+_MEANS = (*_QUANTITIES, TRAVEL, FRICTION)  # of which the mean may be a function
+_SCATTERED = ("velocity", "acceleration", "force", "force rate")  # with whose size the scatter may grow
+_TESTS = 2 + 2 * len(_SIGNALS) + len(_MEANS) + len(_SCATTERED) + 2  # level, coefficients, means, scatter; places, line
 _CLIP = 8.0  # r.m.s. residuals (of most samples) beyond which one counts no more in a dependence
 _RARE = 0.01  # of the samples: those that may be single instants
 _AS_GOOD = 0.9  # of the best share: quantities that cannot be told apart
@@ -49,6 +54,11 @@ class LocalisedSamples:
     motion: Mapping[str, Matrix]
     block: NDArray[np.int64]
     further: Mapping[str, Matrix] = field(default_factory=dict)
+
+    @property
+    def tests(self) -> int:
+        """How many p-values there are, of which the smallest may be chance."""
+        return _TESTS + len(self.further)
 
     @property
     def blocks(self) -> int:
@@ -70,11 +80,11 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
         *_channels(bounded, random),
         *_spectral(s, c),
     ]
-    chosen = [f for f in found if _chance(f) * _TESTS < SURE and f.numbers["share"] > NOTICED]
+    chosen = [f for f in found if _chance(f) * s.tests < SURE and f.numbers["share"] > NOTICED]
     if not chosen:  # the largest, said to be uncertain
         chosen = [f for f in found if _chance(f) < _MAYBE and f.numbers["share"] > _MUCH]
     chosen.sort(key=lambda f: -f.numbers["share"] - _TELLING * (f.kind in _COEFFICIENTS))
-    return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f)) for f in chosen))
+    return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f, s.tests)) for f in chosen))
 
 
 def _chance(f: Finding) -> float:
@@ -82,8 +92,8 @@ def _chance(f: Finding) -> float:
     return float(f.numbers.get("p", 0.0))
 
 
-def _corrected(f: Finding) -> dict[str, object]:
-    return {**f.numbers, "p": min(_chance(f) * _TESTS, 1.0)} if "p" in f.numbers else dict(f.numbers)
+def _corrected(f: Finding, tests: int) -> dict[str, object]:
+    return {**f.numbers, "p": min(_chance(f) * tests, 1.0)} if "p" in f.numbers else dict(f.numbers)
 
 
 def _samples(c: RecordFit) -> LocalisedSamples:
@@ -102,16 +112,17 @@ def _samples(c: RecordFit) -> LocalisedSamples:
         "force rate": np.gradient(force, interval),
         TRAVEL: since,
     }
-    count = int(used.sum())
-    blocks = int(np.clip(turned.size // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
+    time = c.record.time[used]
+    blocks = int(np.clip(np.diff(np.sign(velocity[used])).astype(bool).sum() // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
+    number = np.floor((time - time[0]) / (time[-1] - time[0]) * (blocks - 1e-9))
     level = np.sqrt(np.mean(c.draws**2, axis=0))
     level = np.sqrt(np.convolve(level**2, np.ones(5) / 5.0, "same")) + 1e-12
     return LocalisedSamples(
-        c.record.time[used],
+        time,
         c.residual[used],
         np.maximum(level, 0.3 * float(np.median(level)))[used],
         {name: values[used] for name, values in signals.items()},
-        np.arange(count) * blocks // count,
+        np.unique(number, return_inverse=True)[1],  # none is empty
         {name: values[used] for name, values in c.record.further.items()},
     )
 
@@ -208,7 +219,7 @@ def _p(found: Matrix, drawn: Matrix) -> float:
 def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """Coefficients of the residual on a signal that step or go steadily over time."""
     signals = {"constant": np.ones(s.time.size), "direction": np.sign(s.motion["velocity"])}
-    signals |= {name: s.motion[name] for name in ("displacement", "velocity", "acceleration", "force", "force rate")}
+    signals |= {name: s.motion[name] for name in _QUANTITIES}
     order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
     square = float(s.residual @ s.residual)
     for name, q in signals.items():
@@ -252,7 +263,7 @@ def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[F
     """The quantity of which the residual is a function, and that with which the scatter of the rest grows."""
     best, fitted = _mean(s, random)
     yield best
-    explains = _chance(best) * _TESTS < SURE and best.numbers["share"] > NOTICED
+    explains = _chance(best) * s.tests < SURE and best.numbers["share"] > NOTICED
     rest = replace(s, residual=s.residual - fitted) if explains else s
     remaining = float(rest.residual @ rest.residual) / max(float(s.residual @ s.residual), 1e-300)
     for found in _spreads(rest, random):
@@ -311,11 +322,12 @@ def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Findi
     square, sizes = scaled**2, np.bincount(s.block)
     within = scaled - (np.bincount(s.block, scaled) / sizes)[s.block]
     found = []
-    for name in ("velocity", "acceleration", "force", "force rate"):
+    for name in _SCATTERED:
         bins, _ = _bins(np.abs(s.motion[name]), _BINS)
         _, _, p = _flipped(within, bins, s.block, signs)
-        means = np.array([float(square[bins == i].mean()) for i in range(int(bins.max()) + 1)])
-        share = _log_share(means, np.bincount(bins))
+        count = np.bincount(bins)
+        means, count = (np.bincount(bins, square) / np.maximum(count, 1))[count > 0], count[count > 0]
+        share = _log_share(means, count)
         numbers = {"share": share, "p": p, "low": math.sqrt(means[0]), "high": math.sqrt(means[-1])}
         found.append(Finding(MisfitPattern.SPREAD, "info", name, numbers))
     found.sort(key=lambda f: -f.numbers["share"])
@@ -368,26 +380,34 @@ def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Find
 
 def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     """A line that stands alone in the spectrum of the residual, or a band that holds most of it."""
-    n = s.residual.size
-    window = get_window("hann", n)
+    at = np.flatnonzero(c.fitted | c.checked)
+    at -= at[0]  # where samples are left out in between there is nothing, and those beside stay apart in time
+    n = int(at[-1]) + 1
+    window = get_window("hann", n)[at]
     scale = 2.0 / float(window.sum())
-    amplitude = scale * np.abs(np.fft.rfft(window * (s.residual - s.residual.mean())))
-    moved = np.abs(np.fft.rfft(window * (s.motion["displacement"] - s.motion["displacement"].mean())))
-    sound = scale * np.sqrt(np.mean(np.abs(np.fft.rfft(window * c.draws[:, c.fitted | c.checked])) ** 2, axis=0))
+
+    def transformed(rows: Matrix) -> Matrix:
+        spread = np.zeros((*rows.shape[:-1], n))
+        spread[..., at] = window * rows
+        return np.abs(np.fft.rfft(spread))
+
+    amplitude = scale * transformed(s.residual - s.residual.mean())
+    moved = transformed(s.motion["displacement"] - s.motion["displacement"].mean())
+    sound = scale * np.sqrt(np.mean(transformed(c.draws[:, c.fitted | c.checked]) ** 2, axis=0))
     frequency = np.asarray(np.fft.rfftfreq(n, c.record.interval), dtype=float)
     excess = np.asarray(np.maximum(amplitude**2 - sound**2, 0.0), dtype=float)
     excess[:2] = 0.0
     total = float(np.sum(amplitude[2:] ** 2))
-    at = int(np.argmax(excess))
-    main = slice(max(at - 3, 0), at + 4)
-    beside = np.r_[max(int(at / 1.4), 2) : max(at - 4, 2), at + 5 : min(int(1.4 * at) + 8, amplitude.size)]
+    peak = int(np.argmax(excess))
+    main = slice(max(peak - 3, 0), peak + 4)
+    beside = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
-    if beside.size > 8 and amplitude[at] > _CLEAR_LINE * float(np.median(amplitude[beside])):
-        foreign = bool(moved[at] < _CLEAR_LINE * float(np.median(moved[beside])))
-        above = float(amplitude[at]) / max(float(np.median(amplitude[beside])), 1e-300)
+    if beside.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[beside])):
+        foreign = bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
+        above = float(amplitude[peak]) / max(float(np.median(amplitude[beside])), 1e-300)
         chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
         numbers = {
-            "frequency": float(frequency[at]), "amplitude": float(amplitude[at]), "foreign": foreign,
+            "frequency": float(frequency[peak]), "amplitude": float(amplitude[peak]), "foreign": foreign,
             "share": share if foreign else 0.5 * share, "p": chance,
         }  # fmt: skip
         yield Finding(MisfitPattern.LINE, "info", numbers=numbers)

@@ -26,6 +26,7 @@ from inerter.identification.solving import SolvedFit
 from inerter.records.finding import Finding
 from inerter.records.smoothing import resolution
 from inerter.signals.signal import Signal
+from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 _TARGET = 0.4  # of the present width, so that half of it is met by nearly all records
@@ -100,8 +101,9 @@ def _planned(solution: SolvedFit) -> Iterator[PlannedMotion]:
     problem, optimum = solution.problem, solution.optimum
     steps = steps_of(optimum)
     largest = max(float(np.abs(e.record.force).max()) for e in problem.experiments)
-    for faster in _SPEEDS:
-        for larger in _AMPLITUDES:
+    for row, faster in enumerate(_SPEEDS):
+        for column, larger in enumerate(_AMPLITUDES):
+            report("next experiment", row * len(_AMPLITUDES) + column, len(_SPEEDS) * len(_AMPLITUDES))
             experiments = [_moved(e, larger, faster) for e in problem.experiments]
             present = larger == faster == 1.0
             if any(e is None for e in experiments):

@@ -112,18 +112,18 @@ class FitProblem:
 
     def residuals(self, points: Sequence[Matrix]) -> list[Matrix]:
         """The residuals at several points, over the cores."""
-        return over_threads(self.residual, points)
+        return list(over_threads(self.residual, points))
 
-    def jacobian(self, coordinates: Matrix, steps: Matrix) -> Matrix:
-        """Central differences of the residuals over these steps, one-sided at a bound.
+    def jacobian(self, coordinates: Matrix, steps: Matrix, among: Sequence[int] | None = None) -> Matrix:
+        """Central differences of the residuals over these steps, one-sided at a bound: by all coordinates, or `among`.
 
         Steps are as wide as the coordinates are uncertain: friction and backlash leave corners in the residuals, on
         which a tiny step would stumble.
         """
         lower, upper = self.space.bounds
         points, widths = [], []
-        for i, step in enumerate(steps):
-            ends = np.clip(coordinates[i] + np.array([-step, step]), lower[i], upper[i])
+        for i in range(coordinates.size) if among is None else among:
+            ends = np.clip(coordinates[i] + np.array([-steps[i], steps[i]]), lower[i], upper[i])
             widths.append(float(ends[1] - ends[0]))
             for end in ends:
                 point = coordinates.copy()
@@ -149,13 +149,15 @@ def apart(
     work: Callable[[FitProblem, Item], Result],
     calls: Sequence[tuple[FitProblem, Item]],
     otherwise: Callable[..., Iterable[tuple[Result, list[int]]]] = map,
+    progress: Callable[[float], None] | None = None,
 ) -> list[Result]:
     """Results of `work` on each problem and item, on what was said to work on, else by `otherwise`.
 
     Wherever they are made, the simulations count for the problem's records.
     """
     found = []
-    for (problem, _), (result, counts) in zip(calls, mapped(partial(_apart, work), calls, otherwise), strict=True):
+    answers = mapped(partial(_apart, work), calls, otherwise, progress)
+    for (problem, _), (result, counts) in zip(calls, answers, strict=True):
         for experiment, count in zip(problem.experiments, counts, strict=True):
             experiment.tally.add(count)
         found.append(result)

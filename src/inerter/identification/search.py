@@ -17,6 +17,7 @@ from scipy.stats import qmc
 
 from inerter.identification.options import POINTS
 from inerter.identification.problem import FitProblem, apart
+from inerter.work.progress import counter, report
 
 Matrix = NDArray[np.float64]
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
@@ -43,13 +44,16 @@ def search(
     """
     candidates = starts(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
+    report("starting points", 0, len(candidates))
     costs = [soft(r) for r in first.residuals(candidates)]
     halfway: list[float] = []
     for stage, (horizon, kept, evaluations) in enumerate(stages):
         part = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = _distinct(candidates, costs)[:kept]
-        found = apart(partial(_improved, evaluations, accuracy), [(part, candidate) for candidate in candidates])
+        what = f"search on {'all' if horizon == 1.0 else f'{100.0 * horizon:.3g} %'} of the information"
+        tasks = [(part, candidate) for candidate in candidates]
+        found = apart(partial(_improved, evaluations, accuracy), tasks, progress=counter(what, len(tasks)))
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
         if progress is not None:
@@ -108,6 +112,7 @@ def basin_hopping(problem: FitProblem, start: Matrix, seed: int) -> Matrix:
     point, cost, _, jacobian = improve(problem, start, _EVALUATIONS)
     failures = 0
     for hop in range(_HOPS):
+        report("basin hopping", hop, _HOPS)
         _, size, axes = np.linalg.svd(jacobian, full_matrices=False)
         reach = _REACH[hop % len(_REACH)] * np.sqrt(2.0 * cost / point.size)
         move = axes.T @ (reach / np.maximum(size, 1e-6 * size[0] + 1e-300) * random.standard_normal(point.size))

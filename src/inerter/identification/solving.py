@@ -28,6 +28,7 @@ from inerter.identification.sticking import Adhesion, adhering, profiles_at_rest
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
+from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 Progress = Callable[[float], None]
@@ -66,7 +67,8 @@ def solve(
     """
     chain = chain_of(rig.device)
     whole, findings = [], []
-    for record in records:
+    for number, record in enumerate(records):
+        report("smoothing of records", number, len(records))
         turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
         whole.append(turned)
         findings += found_of_sign
@@ -74,14 +76,17 @@ def solve(
     problem.whitenings = [
         plain(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
     ]
+    report("first guess", 0, 1)
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _searched(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
+    report("start of records", 0, len(records))
     problem.experiments, leads = _leads(problem, point, asked.lead)
     optimum, adhesion = adhering(problem, _refined(problem, point, asked.seed))
     drawn = bootstrap(problem, optimum, asked.seed)
     if progress is not None:
         progress(0.7)
     optimum, found = _profiled(problem, drawn.optimum, adhesion)
+    report("errors of the sensors", 0, 1)
     optimum, found = _unbiased(problem, optimum, found, drawn.bias)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = judge_of(problem, optimum.point, checked, asked.seed)
@@ -158,7 +163,8 @@ def _leads(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list
 def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
     """The best fit with the weights that the errors of the sensors ask for, and the steps that it asks for itself."""
     point, steps, optimum = start, None, None
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
+        report("refinement", number, _ROUNDS)
         forces, left = problem.forces(point), sound(problem, point, (seed, 1))
         if left is None or any(force is None for force in forces):
             raise _lost(problem)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import cont2discrete, lfilter, lfilter_zi
+from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
@@ -22,6 +22,7 @@ Matrix = NDArray[np.float64]
 GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg
 _FINEST = 1e-4  # [s] between the knots of the table's motion, at most
 _TABLE_DAMPING = 0.7
+_SEEN, _SMALL = 3.0, 1e-4  # r.m.s. over the error of the encoder, and over the motion, from which on motion counts
 
 
 @dataclass(frozen=True)
@@ -116,7 +117,8 @@ class VirtualRig:
         """What the sensors read from `start` to `start` + `duration` [s] while the table is moved as commanded.
 
         The rig is at rest at t = 0 where the command begins. The record's time begins at zero. The same rig reads the
-        same noise for the same number of samples.
+        same noise for the same number of samples. A note says so where the table moves faster than half the sampling
+        rate shows.
 
         Raises `IdentificationError` for a command or times that cannot be, and as `simulate` does.
         """
@@ -135,7 +137,15 @@ class VirtualRig:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
         at = times.sampled
         delayed = np.interp(step * at - self.force_delay, table.time, run[rig.reading])
-        return self._read(position[at], delayed, interval, command)
+        record = self._read(position[at], delayed, interval, command)
+        error = math.hypot(self.encoder_noise, self.encoder_resolution / math.sqrt(12.0))
+        highest = highest_frequency(position[at[0] :], step, _SEEN * error)
+        if highest <= 0.5 * self.sampling:
+            return record
+        return record.noted(
+            f"The table moves at up to {highest:.3g} Hz, but {self.sampling:g} samples a second show no more than "
+            f"{0.5 * self.sampling:g} Hz: faster motion appears as a slower one. Sample at {2.5 * highest:.3g} Hz or more."
+        )
 
     def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
         """Position and velocity of the table, which begins at rest."""
@@ -158,6 +168,18 @@ class VirtualRig:
             force_bandwidth=self.force_bandwidth,
             period=command.period,
         )
+
+
+def highest_frequency(motion: Matrix, step: float, least: float) -> float:
+    """The frequency [Hz] above which less than `least` (r.m.s.) of a motion lies, or 1e-4 of it; 0 of none.
+
+    `motion` has a value every `step` [s].
+    """
+    window = get_window("hann", motion.size)
+    square = np.abs(np.fft.rfft(window * detrend(motion))) ** 2 * 2.0 / (motion.size * float(window @ window))
+    above = np.sqrt(np.cumsum(square[::-1])[::-1])
+    seen = np.flatnonzero(above > max(least, _SMALL * float(above[0])))
+    return float(seen[-1]) / (motion.size * step) if seen.size else 0.0
 
 
 def _rounded(values: Matrix, resolution: float) -> Matrix:

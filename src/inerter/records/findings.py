@@ -23,6 +23,7 @@ from inerter.records.spectral_lines import lonely_line
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
 FLAT = 3  # samples in a row at the extreme value that look like a limit
+_FOLDED = 0.8  # of half the sampling rate: motion up to there may go on beyond
 HUM = (50.0, 60.0)  # Hz of the mains
 PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more often a wrong unit than a large rig
 
@@ -46,6 +47,7 @@ def findings(record: Record) -> list[Finding]:
 def _of_motion(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
+        *_undersampled(record, motion),
         *_swapped(record),
         *(_hum(record, motion) or _line(record, motion)),
         *_clock(record, motion),
@@ -53,6 +55,14 @@ def _of_motion(record: Record, motion: Motion) -> list[Finding]:
         *signs.delay(record, motion),
         Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
     ]
+
+
+def _undersampled(record: Record, motion: Motion) -> list[Finding]:
+    """Motion close to half the sampling rate, beyond which there may be more that is folded back."""
+    limit = 0.5 / record.interval
+    if motion.highest < _FOLDED * limit:
+        return []
+    return [Finding(RecordFinding.UNDERSAMPLED, "warning", "displacement", {"highest": motion.highest, "limit": limit})]
 
 
 def _count(record: Record) -> list[Finding]:

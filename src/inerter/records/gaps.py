@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
@@ -15,6 +17,7 @@ from inerter.records.remedy import Action, Remedy
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 LONGEST = 10  # samples in a row that gaps="fill" fills
+SCATTER, _WHOLE = 0.1, 0.25  # of an interval: what an even clock strays, and what whole intervals do
 HOLE = 3.0  # intervals without a sample that count as a hole in a raster
 
 
@@ -55,6 +58,27 @@ def _without_blank_end(channels: dict[str, Samples]) -> tuple[dict[str, Samples]
         return channels, []
     cut = {role: Samples(samples.values[:kept]) for role, samples in channels.items()}
     return cut, [f"Samples at the end that no channel has, cut off: {size - kept}."]
+
+
+@dataclass(frozen=True, eq=False)
+class MissingRows:
+    """After which samples an even clock leaves rows out, and how many there."""
+
+    after: NDArray[np.int64]
+    counts: NDArray[np.int64]
+
+
+def missing_rows(time: Vector) -> MissingRows | None:
+    """Rows that a clock leaves out which is even otherwise; None if there are none, or it is not even.
+
+    It is even if its other intervals scatter by less than a tenth, and those are whole intervals to a quarter of one.
+    """
+    steps = np.diff(time)
+    ratio = steps / float(np.median(steps))
+    holes = ratio > 1.5
+    if not holes.any() or np.std(ratio[~holes]) > SCATTER or np.abs(ratio - np.round(ratio))[holes].max() > _WHOLE:
+        return None
+    return MissingRows(np.flatnonzero(holes), np.rint(ratio[holes]).astype(np.int64) - 1)
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

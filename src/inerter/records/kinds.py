@@ -51,6 +51,7 @@ class RecordFinding(StrEnum):
     FORCE_REVERSED = "force-reversed"
     DELAY = "delay"
     BANDWIDTH = "bandwidth"
+    UNDERSAMPLED = "undersampled"
 
     def text(self, finding: Finding) -> Text:
         """The parts of the sentence of such a finding."""
@@ -289,6 +290,14 @@ def _bandwidth(f: Finding) -> Text:
     )
 
 
+def _undersampled(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement moves at up to {n['highest']:.3g} Hz, close to the {n['limit']:.4g} Hz that its samples show "
+        f"at most: what is faster appears as a slower motion. Sample at five times the highest frequency of the motion.",
+    )
+
+
 _TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
     RecordFinding.FEW_SAMPLES: _few,
     RecordFinding.SAMPLING: _sampling,
@@ -318,4 +327,5 @@ _TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
     RecordFinding.FORCE_REVERSED: _reversed,
     RecordFinding.DELAY: _delay,
     RecordFinding.BANDWIDTH: _bandwidth,
+    RecordFinding.UNDERSAMPLED: _undersampled,
 }

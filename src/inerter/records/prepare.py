@@ -13,13 +13,12 @@ from scipy.signal import detrend as without_line
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, low_pass
-from inerter.records.gaps import LONGEST, fill
+from inerter.records.gaps import LONGEST, SCATTER, fill, missing_rows
 from inerter.records.record import CHANNELS, Record
 from inerter.records.remedy import Action, Remedy
 
 Vector = NDArray[np.float64]
 BOTH = ("displacement", "force")
-_SCATTER, _WHOLE = 0.1, 0.25  # of an interval: what an even clock strays, and what whole intervals do
 MOST = 10**8  # samples of one channel
 
 
@@ -143,29 +142,26 @@ def fill_gaps(record: Record, longest: float) -> Record:
 def with_missing_times(record: Record, gaps: str | float) -> Record:
     """The record as `read_record(..., gaps=gaps)` gives it: with the samples that an even clock leaves out, or without.
 
-    "longest" keeps the longest stretch that leaves none out, and "refuse" the record as it is. A clock is even if its
-    other intervals scatter by less than a tenth, and what is left out are whole intervals to a quarter of one.
+    "longest" keeps the longest stretch that leaves none out, and "refuse" the record as it is.
 
     Raises `RecordError` where more samples are left out at one place than `gaps` allows to put in.
     """
     if gaps == "refuse" or record.uniform:
         return record
-    steps = np.diff(record.time)
-    usual = float(np.median(steps))
-    ratio = steps / usual
-    holes = ratio > 1.5
-    if not holes.any() or np.std(ratio[~holes]) > _SCATTER or np.abs(ratio - np.round(ratio))[holes].max() > _WHOLE:
+    missing = missing_rows(record.time)
+    if missing is None:
         return record
     if gaps == "longest":
-        cuts = [0, *(np.flatnonzero(holes) + 1).tolist(), record.time.size]
+        cuts = [0, *(missing.after + 1).tolist(), record.time.size]
         start, stop = max(pairwise(cuts), key=lambda part: part[1] - part[0])
         said = f"Samples {start} to {stop - 1} were kept: the longest stretch in which the times leave none out."
         return record.samples(slice(start, stop), said)
-    limit = (LONGEST + 1) * usual if isinstance(gaps, str) else float(gaps)
+    steps = np.diff(record.time)
+    limit = (LONGEST + 1) * float(np.median(steps)) if isinstance(gaps, str) else float(gaps)
     most = int(np.argmax(steps))
-    if steps[most] > limit * (1.0 + _SCATTER):
+    if steps[most] > limit * (1.0 + SCATTER):
         raise RecordError(
-            f"{record.source}: the times leave out {round(ratio[most]) - 1} samples after {record.time[most]:g} s, too "
+            f"{record.source}: the times leave out {missing.counts.max()} samples after {record.time[most]:g} s, too "
             f"many to put in ({limit:g} s at most). Use ",
             *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
         )

@@ -19,6 +19,7 @@ from scipy.signal import detrend, periodogram, welch
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, gain, low_pass
+from inerter.records.gaps import LONGEST, missing_rows
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
 
@@ -73,10 +74,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     Raises `RecordError` if the samples are not evenly spaced, or the bandwidth is not between 0 and half the rate.
     """
     if not record.uniform:
-        raise RecordError(
-            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use ",
-            *(Remedy(Action.RESAMPLE), " first."),
-        )
+        raise _uneven(record)
     if bandwidth is not None and (not is_number(bandwidth) or bandwidth <= 0.0):
         raise RecordError(f"A bandwidth must be a positive number of Hz, got {bandwidth!r}.")
     interval = record.interval
@@ -98,6 +96,23 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
         velocity_noise=noises[0],
         acceleration_noise=noises[1],
         asked=bandwidth is not None,
+    )
+
+
+def _uneven(record: Record) -> RecordError:
+    missing = missing_rows(record.time)
+    if missing is None:
+        return RecordError(
+            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use ",
+            *(Remedy(Action.RESAMPLE), " first."),
+        )
+    places = "one place" if missing.after.size == 1 else f"{missing.after.size} places"
+    most = int(missing.counts.max())
+    remedy = Remedy(Action.FILL_GAPS) if most <= LONGEST else Remedy(Action.GAPS, "longest")
+    return RecordError(
+        f"{record.source}: {missing.counts.sum()} rows are missing at {places}, the first after "
+        f"{record.time[missing.after[0]]:.6g} s, up to {most} in a row. Use ",
+        *(remedy, " first."),
     )
 
 

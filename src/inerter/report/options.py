@@ -43,7 +43,7 @@ _OPTIONS: Mapping[Action, Callable[[Any], str]] = {
     Action.GAPS: _gaps,
     Action.TRIM: lambda value: "--trim",
     Action.RESAMPLE: lambda value: '--resample, such as --resample "1 ms"',
-    Action.FILL_GAPS: lambda value: "--resample",
+    Action.FILL_GAPS: lambda value: "--gaps fill",
     Action.REPAIR: lambda value: f"repair = true in [record] {_CONFIG}",
     Action.DETREND: lambda value: f"detrend = true in [record] {_CONFIG}",
     Action.REMOVE_OFFSET: lambda value: f"detrend = true in [record] {_CONFIG}",

@@ -14,7 +14,7 @@ from inerter.report.text import WIDTH
 
 
 def rig_text(request: RigRequest, record: Record) -> str:
-    """The title, the signal, the samples, the largest displacement and force, and whether the load cell saturated."""
+    """The title, the signal, the samples, what has to be known of them, the largest displacement and force, and whether the load cell saturated."""
     text = "\n".join(line for part in _lines(request, record) for line in wrap(part, WIDTH, subsequent_indent="  "))
     return text.encode("ascii", "replace").decode()
 
@@ -24,6 +24,7 @@ def _lines(request: RigRequest, record: Record) -> Iterator[str]:
     yield request.title
     yield f"{record.source}"
     yield f"{record.time.size} samples over {record.duration:.6g} s, at {1.0 / record.interval:.6g} Hz"
+    yield from record.notes
     yield f"displacement up to {with_unit(float(np.abs(record.displacement).max()), 'm')}"
     full = float(np.mean(np.abs(record.force) >= 0.999 * limit))
     state = f"saturated in {100.0 * full:.2g} % of the samples" if full else "not saturated"

@@ -201,6 +201,12 @@ def report(what: str, done: int = 0, total: int = 0, *, best: float | None = Non
         listener.tell(ProgressStep(what, done, total, best, within=_WITHIN.get(), share=part))
 
 
+def counter(what: str, total: int) -> Callable[[float], None]:
+    """A function that reports which part of so many is done; that none is, at once."""
+    report(what, 0, total)
+    return lambda part: report(what, round(part * total), total)
+
+
 def evaluated() -> None:
     """Tell that a search has valued one more design."""
     listener = _LISTENER.get()

@@ -56,12 +56,16 @@ def mapped(
 ) -> list[Result]:
     """Results of `work` on each of `items`, in their order, on what was said to work on; else by `otherwise`.
 
-    Where something was said, `work` and `items` can be pickled, and `progress` is told the part that is done.
+    Where something was said, `work` and `items` can be pickled. `progress` is told the part that is done.
     """
     pool = pool_here()
-    if pool is None or len(items) < 2:
-        return list(otherwise(work, items))
     found: dict[int, Result] = {}
+    if pool is None or len(items) < 2:
+        for number, result in enumerate(otherwise(work, items)):
+            found[number] = result
+            if progress is not None:
+                progress(len(found) / len(items))
+        return list(found.values())
     for number, result in pool.spread(_Numbered(work), list(enumerate(items))):
         found[number] = result
         if progress is not None:
@@ -82,12 +86,15 @@ class _Numbered(Generic[Item, Result]):
         return number, self.work(item)
 
 
-def over_threads(work: Callable[[Item], Result], items: Sequence[Item]) -> list[Result]:
-    """Results of `work` on each of `items`, in their order, over the threads of this process."""
+def over_threads(work: Callable[[Item], Result], items: Sequence[Item]) -> Iterator[Result]:
+    """Results of `work` on each of `items`, in their order, over the threads of this process.
+
+    What comes apart within such work once more is done by its thread alone.
+    """
     count = threads_here()
-    return list(map(work, items) if count == 1 else _threads(count).map(work, items))
+    return map(work, items) if count == 1 else _threads(count).map(work, items)
 
 
 @lru_cache(maxsize=4)
 def _threads(count: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(count)
+    return ThreadPoolExecutor(count, initializer=THREADS.set, initargs=(1,))

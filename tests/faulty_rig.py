@@ -1,8 +1,8 @@
 """Rigs with faults that `troubled_rig` lacks, stepped by code of their own: laws of devices, faults of recorders.
 
 The device is a shaft, a gap and an inertance with friction, stepped explicitly at 10 us (Moreau 1988 for friction). A
-law adds one term: presliding after Dahl, a damping that grows with the square of the speed, a shaft that stiffens, or a
-second gap, behind which another spring takes part. Faults of recorders are made of the samples.
+law adds one term: presliding after Dahl, a damping that grows with the square of the speed, a shaft that stiffens, a
+second gap, behind which another spring takes part, or a friction that varies along the position. Faults of recorders are made of the samples.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import inerter as it
 Matrix = NDArray[np.float64]
 STEP = 1e-5  # [s]
 RATE = 1000.0  # [Hz]
-LAWS = {"": 0, "presliding": 1, "quadratic": 2, "second gap": 3, "stiffening": 4}
+LAWS = {"": 0, "presliding": 1, "quadratic": 2, "second gap": 3, "stiffening": 4, "ripple": 5}
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,8 @@ def _stepped(z, v, dt, ks, cs, gap, b, f, law, p, q):  # type: ignore[no-untyped
             w += dt * (pull - p * bristle) / b
         else:
             w += dt * (pull - (p * w * abs(w) if law == 2 else 0.0)) / b
-            w = max(w - dt * f / b, 0.0) if w > 0.0 else min(w + dt * f / b, 0.0)
+            level = f * (1.0 + p * math.cos(2.0 * math.pi * y / q)) if law == 5 else f
+            w = max(w - dt * level / b, 0.0) if w > 0.0 else min(w + dt * level / b, 0.0)
         y += dt * w
     return force
 
@@ -138,8 +139,6 @@ def record_of(rig: Rig, fault: str = "", seed: int = 0) -> it.Record:
     elif fault == "swapped":
         other = force_of(replace(rig, b=0.8 * rig.b, f=1.5 * rig.f), z, v)
         force = np.where(time < 0.45 * rig.duration, force, other)
-    elif fault == "ripple":
-        force = force + 0.5 * rig.f * np.sign(v) * np.cos(2.0 * math.pi * z / (0.4 * float(np.ptp(z))))
     if fault == "jitter":
         late = np.clip(time[::100] + 3e-4 * random.standard_normal(time[::100].size), 0.0, time[-1])
         read = _through(force, rig.cell)
@@ -180,9 +179,10 @@ def laws() -> dict[str, dict[str, Any]]:
         "quadratic": {"law": "quadratic", "numbers": (2e4, 0.0)},
         "second gap": {"law": "second gap", "numbers": (6e-5, 8e5), "ks": 4e5},
         "stiffening": {"law": "stiffening", "numbers": (1e13, 0.0), "ks": 4e5},
+        "ripple": {"law": "ripple", "numbers": (0.5, 2.2e-3)},
     }
 
 
 FAULTS = (
-    "cross-talk", "frame", "hum", "saturation", "swapped", "jitter", "clock", "spikes", "held", "glued", "ripple",
+    "cross-talk", "frame", "hum", "saturation", "swapped", "jitter", "clock", "spikes", "held", "glued",
 )  # fmt: skip

@@ -21,6 +21,7 @@ CHANGES = {
     "quadratic": {"square": laws()["quadratic"]["numbers"][0]},
     "second gap": dict(zip(("slack", "beyond"), laws()["second gap"]["numbers"], strict=True)),
     "stiffening": {"cubic": laws()["stiffening"]["numbers"][0]},
+    "ripple": {"cosine": RIG.f * laws()["ripple"]["numbers"][0], "pitch": laws()["ripple"]["numbers"][1]},
 }
 CAUSES = {
     "presliding": Suspect.PRESLIDING,

@@ -7,6 +7,7 @@ those that come closest are fitted to the end (decision 0056).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -25,6 +26,7 @@ from inerter.identification.problem import FitProblem, apart
 from inerter.identification.recording_faults import faulty_samples, recording_faults
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
+from inerter.networks.elements import Free
 from inerter.records.lost import losses, restored
 from inerter.vehicle.rig import Rig
 from inerter.work.progress import counter
@@ -34,6 +36,8 @@ Matrix = NDArray[np.float64]
 _ROUNDS, _ROUGH = 8, 1e-2  # steps of a rough fit, and the change of the cost at which it ends
 _FITTED = 5  # hypotheses that are fitted to the end
 _EVALUATIONS, _ACCURACY = 25, 1e-5
+_FAR = 2.0  # excess of a fit that may be far from the best one
+_DAMPED = 3e-3  # [s] damping of a shaft over its stiffness, where nothing is known
 _BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
 _AS_GOOD = 0.02  # of a misfit: what two explanations may differ by and explain as much
@@ -170,7 +174,30 @@ def _fitted(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) ->
     hypothesis = causes.of(problem)[attempt.number]
     other = _under(problem, hypothesis)
     fit = best_fit_of(other, attempt.point, attempt.steps, _EVALUATIONS, _ACCURACY)
-    return _explanation(other, fit, hypothesis, by, causes.before)
+    found = _explanation(other, fit, hypothesis, by, causes.before)
+    stiff = _with_stiff_shaft(other, fit.point) if found.misfit.excess > _FAR else None
+    if stiff is None:
+        return found
+    again = best_fit_of(other, stiff, attempt.steps, _EVALUATIONS, _ACCURACY)
+    return found if fit.cost <= again.cost else _explanation(other, again, hypothesis, by, causes.before)
+
+
+def _with_stiff_shaft(problem: FitProblem, point: Matrix) -> Matrix | None:
+    """The point with a shaft half-way to the stiffest one, in logarithms; None of a device without a free shaft.
+
+    A wrong model may have ended up with a shaft far too soft, between which and the right one the cost has other
+    valleys; from a stiff one it slopes down.
+    """
+    chain = chain_of(problem.rig.device)
+    spring, damper = (None, None) if chain is None else (chain.spring, chain.damper)
+    if spring is None or not isinstance(spring.value, Free):
+        return None
+    values = problem.space.named(point)
+    stiffness = math.sqrt(values[str(spring.value.name)] * spring.value.upper)
+    values[str(spring.value.name)] = stiffness
+    if damper is not None and isinstance(damper.value, Free):
+        values[str(damper.value.name)] = _DAMPED * stiffness
+    return problem.space.placed(values)
 
 
 def _starts(

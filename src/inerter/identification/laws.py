@@ -160,7 +160,7 @@ def _ripple(chain: Chain, stroke: float) -> Hypothesis:
         return {"size": math.hypot(values[cosine.name], values[sine.name]), "pitch": values[pitch.name]}
 
     unknowns = {"cosine": cosine, "sine": sine, "pitch": pitch}
-    starts = tuple({pitch.name: share * stroke} for share in (0.3, 0.5, 0.8, 1.3))
+    starts = tuple({pitch.name: share * stroke} for share in (0.25, 0.33, 0.45, 0.6, 0.9, 1.3))
     return _changed(chain, Suspect.RIPPLE, unknowns, details, starts)
 
 

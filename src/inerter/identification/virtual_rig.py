@@ -144,7 +144,7 @@ class VirtualRig:
             return record
         return record.noted(
             f"The table moves at up to {highest:.3g} Hz, but {self.sampling:g} samples a second show no more than "
-            f"{0.5 * self.sampling:g} Hz: faster motion appears as a slower one. Sample at {2.5 * highest:.3g} Hz or more."
+            f"{0.5 * self.sampling:g} Hz: faster motion appears as slower. Sample at {2.5 * highest:.3g} Hz or more."
         )
 
     def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:

@@ -293,8 +293,8 @@ def _bandwidth(f: Finding) -> Text:
 def _undersampled(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The displacement moves at up to {n['highest']:.3g} Hz, close to the {n['limit']:.4g} Hz that its samples show "
-        f"at most: what is faster appears as a slower motion. Sample at five times the highest frequency of the motion.",
+        f"The displacement moves at up to {n['highest']:.3g} Hz, and its samples show no more than {n['limit']:.4g} "
+        f"Hz: what is faster appears as slower. Sample at five times the highest frequency of the motion.",
     )
 
 

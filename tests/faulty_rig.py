@@ -2,7 +2,8 @@
 
 The device is a shaft, a gap and an inertance with friction, stepped explicitly at 10 us (Moreau 1988 for friction). A
 law adds one term: presliding after Dahl, a damping that grows with the square of the speed, a shaft that stiffens, a
-second gap, behind which another spring takes part, or a friction that varies along the position. Faults of recorders are made of the samples.
+second gap, behind which another spring takes part, or a friction that varies along the position. Faults of recorders
+are made of the samples.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import inerter as it
 Matrix = NDArray[np.float64]
 STEP = 1e-5  # [s]
 RATE = 1000.0  # [Hz]
+TONES = ((2e-3, 1.3), (8e-4, 3.1), (3e-4, 5.7))
 LAWS = {"": 0, "presliding": 1, "quadratic": 2, "second gap": 3, "stiffening": 4, "ripple": 5}
 
 
@@ -35,7 +37,7 @@ class Rig:
     gap: float = 0.0
     law: str = ""
     numbers: tuple[float, float] = (0.0, 0.0)
-    tones: tuple[tuple[float, float], ...] = ((2e-3, 1.3), (8e-4, 3.1), (3e-4, 5.7))
+    tones: tuple[tuple[float, float], ...] = TONES
     cell: float = 300.0  # [Hz]
     duration: float = 4.0
     slip: float = 0.0  # relative rate of a clock of the force that runs late
@@ -181,6 +183,26 @@ def laws() -> dict[str, dict[str, Any]]:
         "stiffening": {"law": "stiffening", "numbers": (1e13, 0.0), "ks": 4e5},
         "ripple": {"law": "ripple", "numbers": (0.5, 2.2e-3)},
     }
+
+
+def random_rig(law: str, seed: int) -> Rig:
+    """A rig with a law that is felt: a random device, and a number of the law over a range of about four."""
+    random = np.random.default_rng([seed, sorted(LAWS).index(law), 4])
+    b, f = math.exp(random.uniform(math.log(40.0), math.log(160.0))), random.uniform(8.0, 25.0)
+    ks = math.exp(random.uniform(math.log(3e5), math.log(1.2e6)))
+    tones = tuple((size * random.uniform(0.7, 1.3), frequency * random.uniform(0.8, 1.2)) for size, frequency in TONES)
+    rig = Rig(b, f, ks, 2.5e-3 * ks, law=law, tones=tones, duration=4.0)
+    z, v, _ = motion(replace(rig, law=""), seed)
+    fastest, peak = float(np.abs(v).max()), float(np.abs(force_of(replace(rig, law=""), z, v)).max())
+    share = random.uniform(0.25, 1.0)
+    numbers = {
+        "presliding": (f / (share * 0.1 * float(np.ptp(z))), 0.0),
+        "quadratic": (share * peak / fastest**2, 0.0),
+        "second gap": (random.uniform(0.1, 0.4) * peak / ks, 2.0 * share * ks),
+        "stiffening": (2.0 * share * ks**3 / peak**2, 0.0),
+        "ripple": (0.7 * share, random.uniform(0.3, 0.6) * float(np.ptp(z))),
+    }
+    return replace(rig, numbers=numbers[law])
 
 
 FAULTS = (

@@ -108,7 +108,7 @@ def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds:
 
 def _damped_step(slopes: Matrix, residual: Matrix, damping: float, bounds: tuple[Matrix, Matrix]) -> Matrix:
     """The step within bounds that leaves least, by linear least squares."""
-    triangle = np.linalg.qr(np.column_stack([slopes, residual]), mode="r")
+    triangle = np.asarray(np.linalg.qr(np.column_stack([slopes, residual]), mode="r"))
     count = slopes.shape[1]
     rows = np.vstack([triangle[:count, :count], math.sqrt(damping) * np.eye(count)])
     return np.asarray(lsq_linear(rows, -np.append(triangle[:count, count], np.zeros(count)), bounds).x)

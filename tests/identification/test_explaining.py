@@ -9,13 +9,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from campaigns import sampled
-from faulty_rig import Rig, laws, model, random_rig, record_of
+from faulty_rig import model, record_of
 from numpy.typing import NDArray
 from quick_fits import explained, quick_fit
 from scipy.optimize import least_squares
-from test_further_causes import CAUSES, RIG, rig_under
+from test_further_causes import CAUSES, rig_under
 
-import inerter as it
 from inerter.identification.explaining import Causes, hypotheses
 from inerter.identification.fit import Misfit
 from inerter.identification.intervals import fit_by_secants, robust_cost
@@ -95,7 +94,7 @@ def test_causes_are_made_anew_in_another_process() -> None:
 
 @pytest.mark.campaign
 def test_trying_all_causes_takes_few_simulations() -> None:
-    """Of some thirty causes with fifty starts, ten simulations each on average and no more than as many for the best."""
+    """Some thirty causes with fifty starts, of which the best five are fitted to the end."""
     rig, fault = rig_under("stiffening")
     solution = quick_fit(record_of(rig, fault, 0), model(rig), {"b": rig.b, "f": rig.f, "ks": rig.ks, "cs": rig.cs})
     (experiment,) = solution.problem.experiments

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from scipy.stats import binom
 
 from inerter.figures.misfit import misfit_figure
 from inerter.identification.fit import Localisation
-from inerter.identification.localising import SURE, localisation_of
+from inerter.identification.localising import SURE, _samples, localisation_of
 from inerter.identification.misfit_patterns import FRICTION, MisfitPattern
 from inerter.records.record import Record
 from inerter.report.identification_figures import residual_samples
@@ -119,6 +120,42 @@ def test_chance_is_no_pattern_of_the_motion_or_of_time(count: int) -> None:
         found = localisation_of(rigid_fit(coloured(seed)))
         by_chance += any(p.numbers.get("p", 1.0) < SURE for p in found.patterns)
     assert by_chance <= binom.ppf(0.999, count, SURE)
+
+
+@pytest.mark.parametrize("frequency", [0.6, 1.1, 2.3])
+def test_blocks_are_no_shorter_than_a_stroke(frequency: float) -> None:
+    """Within which residuals are autocorrelated; those of slow motions are few."""
+    record, _ = rigid_record(0, duration=8.0, tones=((2e-3, frequency),))
+    samples = _samples(rigid_fit(record))
+    lengths = [float(np.ptp(samples.time[samples.block == n])) + 1e-3 for n in range(samples.blocks)]
+    assert min(lengths) > 0.4 / frequency
+    assert max(lengths) < 1.2 / frequency
+
+
+def test_a_line_is_found_at_its_frequency_across_samples_that_are_left_out() -> None:
+    """Such as those of a saturated load cell: joined, the stretches on both sides would be out of phase."""
+    _, motion = rigid_record(1, duration=6.0)
+    fit = rigid_fit(read(motion, motion["force"] + 3.0 * np.sin(2.0 * np.pi * 83.0 * motion["time"]), 1))
+    left_out = np.zeros(fit.fitted.size, dtype=bool)
+    for start in range(500, 5500, 450):
+        left_out[start : start + 137] = True
+    holed = replace(fit, fitted=fit.fitted & ~left_out, checked=fit.checked & ~left_out)
+    line = next(p for p in localisation_of(holed).patterns if p.kind is MisfitPattern.LINE)
+    assert line.numbers["frequency"] == pytest.approx(83.0, abs=0.2)
+    assert line.numbers["amplitude"] == pytest.approx(3.0, rel=0.1)
+
+
+def test_p_values_are_multiplied_by_the_number_of_tests(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which are counted where they are made: every p-value of one record, with two further channels."""
+    made = []
+    monkeypatch.setattr("inerter.identification.localising._p", lambda found, drawn: (made.append(1), 0.5)[1])
+    _, motion = rigid_record(0)
+    trouble = motion["force"] + 30.0 * np.where(motion["time"] > 2.0, motion["a"], 0.0) + 8.0 * _noise(motion, 0)
+    one = rigid_fit(read(motion, trouble, 0, temperature=_temperature(motion), humidity=_temperature(motion)))
+    localisation_of(one)
+    tests = _samples(one).tests
+    assert tests == 31
+    assert len(made) <= tests - 1  # but for that of a line; coefficients that hardly change are not tested
 
 
 def test_the_figure_has_labels_with_units_and_marks_changes() -> None:

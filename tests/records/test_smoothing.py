@@ -9,6 +9,7 @@ from inerter.errors import RecordError
 from inerter.records.filtering import gain, low_pass
 from inerter.records.record import Record
 from inerter.records.smoothing import noise_of, resolution, smooth_displacement
+from inerter.report.options import as_options
 
 
 def motion(rows, rate, duration, step=0.0, noise=0.0, phase=1.0, seed=0):
@@ -126,3 +127,20 @@ def test_what_cannot_be_smoothed():
         smooth_displacement(record, bandwidth=60.0)
     with pytest.raises(RecordError, match="positive number of Hz, got -1"):
         smooth_displacement(record, bandwidth=-1)
+
+
+@pytest.mark.parametrize(("left_out", "counts"), [([200], (1, 1, 1)), ([50, 51, 52, 300], (4, 2, 3))])
+def test_missing_rows_are_named_with_their_places_and_what_fills_them(left_out, counts):
+    """Instead of a word on filters, which would resample over the holes."""
+    record, _ = motion([(3.0, 1e-3)], 100.0, 5.0)
+    kept = np.delete(np.arange(record.time.size), left_out)
+    holed = Record(record.time[kept], record.displacement[kept], record.force[kept])
+    rows, places, most = counts
+    with pytest.raises(RecordError) as error:
+        smooth_displacement(holed)
+    place = "one place" if places == 1 else f"{places} places"
+    first = record.time[left_out[0] - 1]
+    assert f"{rows} rows are missing at {place}, the first after {first:.6g} s" in str(error.value)
+    assert f"up to {most} in a row" in str(error.value)
+    assert "--gaps fill" in "".join(map(str, as_options(error.value.args)))
+    assert "resample" not in str(error.value)

@@ -19,10 +19,11 @@ from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, Misfit
 from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
-from inerter.identification.intervals import BestFit, best_fit_of, fit_by_secants, steps_of
+from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import FitProblem, apart
+from inerter.identification.search import improve
 from inerter.identification.recording_faults import faulty_samples, recording_faults
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
@@ -33,10 +34,12 @@ from inerter.work.progress import counter
 from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
-_ROUNDS, _ROUGH = 8, 1e-2  # steps of a rough fit, and the change of the cost at which it ends
+_ROUNDS, _MORE_ROUNDS = 6, 10  # steps of a rough fit from each start, and from where the best of them ended
+_ROUGH = 1e-3  # change of the cost at which a rough fit ends
 _FITTED = 5  # hypotheses that are fitted to the end
 _EVALUATIONS, _ACCURACY = 25, 1e-5
-_FAR = 2.0  # excess of a fit that may be far from the best one
+_FAR = 2.0  # excess of fits that may be far from the best ones, of which so many are begun once more ...
+_RESTARTED, _FIRST, _FIRST_EVALUATIONS = 3, 1 / 8, 12  # ... over the first part of the information
 _DAMPED = 3e-3  # [s] damping of a shaft over its stiffness, where nothing is known
 _BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
 _LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
@@ -93,8 +96,13 @@ def explanations(
     first.sort(key=lambda attempt: attempt.cost)
     best = first[:_FITTED]
     last = apart(partial(_fitted, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best)))
+    last.sort(key=lambda attempt: attempt.cost)
+    if last and not before.sound and all(a.explanation.misfit.excess > _FAR for a in last):
+        restart = partial(_fitted_from_a_stiff_shaft, causes, by)
+        again = apart(restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED))
+        last[:_RESTARTED] = again
     found: dict[Suspect, Explanation] = {}
-    for e in (*last, *(a.explanation for a in first[_FITTED:])):
+    for e in (a.explanation for a in (*last, *first[_FITTED:])):
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
     return sorted(found.values(), key=lambda e: (-round(e.explained / _AS_GOOD), len(e.values), -e.explained))
@@ -150,9 +158,9 @@ def _under(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
 def _roughly_fitted(
     causes: Causes, by: Judge, optimum: BestFit, slopes: Matrix, problem: FitProblem, number: int
 ) -> Attempt:
-    """The best of a few steps from each start of a hypothesis.
+    """The best of a few steps from each start of a hypothesis, and some more with derivatives of where it ended.
 
-    Derivatives by what the model has too are taken to be those at the best fit, unless the device is another one.
+    At the starts derivatives by what the model has too are those at its best fit, unless the device is another one.
     """
     hypothesis = causes.of(problem)[number]
     other = _under(problem, hypothesis)
@@ -167,19 +175,33 @@ def _roughly_fitted(
             jacobian[:, own] = other.jacobian(point, steps, own)
         found.append((fit_by_secants(other, point, jacobian, _ROUNDS, _ROUGH), steps))
     fit, steps = min(found, key=lambda f: f[0].cost)
+    if own:
+        again = fit_by_secants(other, fit.point, other.jacobian(fit.point, steps), _MORE_ROUNDS, _ROUGH)
+        fit = min(fit, again, key=lambda f: f.cost)
     return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes.before))
 
 
-def _fitted(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Explanation:
+def _fitted(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+    """The attempt fitted to the end."""
     hypothesis = causes.of(problem)[attempt.number]
     other = _under(problem, hypothesis)
     fit = best_fit_of(other, attempt.point, attempt.steps, _EVALUATIONS, _ACCURACY)
-    found = _explanation(other, fit, hypothesis, by, causes.before)
-    stiff = _with_stiff_shaft(other, fit.point) if found.misfit.excess > _FAR else None
-    if stiff is None:
-        return found
-    again = best_fit_of(other, stiff, attempt.steps, _EVALUATIONS, _ACCURACY)
-    return found if fit.cost <= again.cost else _explanation(other, again, hypothesis, by, causes.before)
+    return replace(
+        attempt, point=fit.point, cost=fit.cost, explanation=_explanation(other, fit, hypothesis, by, causes.before)
+    )
+
+
+def _fitted_from_a_stiff_shaft(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+    """What an attempt comes to from a stiff shaft on, over the first part of the records at first; or itself."""
+    other = _under(problem, causes.of(problem)[attempt.number])
+    start = _with_stiff_shaft(other, attempt.point)
+    if start is None:
+        return attempt
+    first = replace(other, horizon=_FIRST)
+    point, _, _, _ = improve(first, start, _FIRST_EVALUATIONS, attempt.steps, ROBUST, _ROUGH)
+    if robust_cost(other.residual(point)) >= attempt.cost:
+        return attempt
+    return min(attempt, _fitted(causes, by, problem, replace(attempt, point=point)), key=lambda a: a.cost)
 
 
 def _with_stiff_shaft(problem: FitProblem, point: Matrix) -> Matrix | None:

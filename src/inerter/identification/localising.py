@@ -1,8 +1,8 @@
 """Where in a record a fit leaves more than the sensors would: when, at which position, speed, force or frequency.
 
 Every pattern is measured by the share of the squared residual that a law of its kind would explain (of a Gaussian
-likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time no shorter than
-a period of the motion: residuals are autocorrelated within them, and hardly between them. Signs of whole blocks are
+likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
+a period or so, and no shorter than a stroke: residuals are autocorrelated within them, and hardly between. Signs of whole blocks are
 flipped for a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of
 tests, which is 29 and one more for each further channel.
 """
@@ -29,7 +29,7 @@ _COEFFICIENTS = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.COEFFICIENT_TREND
 _TELLING = 0.15  # share by which a coefficient that changes goes before a size that does: it says of what
 _MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is no more than likely
 _DRAWS = 4999
-_FEWEST_BLOCKS, _MOST_BLOCKS = 2, 60
+_FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60  # unless there are fewer strokes
 _BINS, _PLACES = 8, 24
 _QUANTITIES = ("displacement", "velocity", "acceleration", "force", "force rate")
 _SIGNALS = ("constant", "direction", *_QUANTITIES)  # whose coefficients may step or go steadily
@@ -113,7 +113,8 @@ def _samples(c: RecordFit) -> LocalisedSamples:
         TRAVEL: since,
     }
     time = c.record.time[used]
-    blocks = int(np.clip(np.diff(np.sign(velocity[used])).astype(bool).sum() // 2, _FEWEST_BLOCKS, _MOST_BLOCKS))
+    strokes = int(np.count_nonzero(np.diff(np.sign(velocity[used])))) + 1
+    blocks = int(np.clip(strokes // 2, min(_FEWEST_BLOCKS, strokes), _MOST_BLOCKS))
     number = np.floor((time - time[0]) / (time[-1] - time[0]) * (blocks - 1e-9))
     level = np.sqrt(np.mean(c.draws**2, axis=0))
     level = np.sqrt(np.convolve(level**2, np.ones(5) / 5.0, "same")) + 1e-12

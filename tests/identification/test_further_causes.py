@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from campaigns import sampled
-from faulty_rig import Rig, force_of, laws, model, motion, record_of
+from faulty_rig import Rig, force_of, laws, model, motion, random_rig, record_of
 from quick_fits import explained, quick_fit
 
 import inerter as it
@@ -69,3 +69,24 @@ def test_a_cause_is_named_first_or_explains_as_well_as_the_first(name: str, seed
     assert not solution.misfit.sound
     found, _ = explained(solution)
     assert CAUSES[name] in [e.name for e in found[:2]], [(e.name, e.explained) for e in found[:4]]
+
+
+WHOLE = ("presliding", "quadratic", "second gap", "stiffening", "ripple")
+
+
+@pytest.mark.timeout(1800)
+@pytest.mark.parametrize(("kinds", "members"), sampled([(("quadratic", "ripple"), 1), (WHOLE, 3)], kept=1))
+def test_whole_fits_name_laws_of_random_devices(kinds: tuple[str, ...], members: int) -> None:
+    """The law is first or second in three quarters of the fits, which begin with a search.
+
+    By chance it would be among the first two of about 25 causes in one of twelve. A quarter may hide: a random law may
+    do little on a random device, and several laws do much the same where it does (a second gap stiffens a shaft).
+    """
+    said = []
+    for kind in kinds:
+        for seed in range(members):
+            rig = replace(random_rig(kind, seed), duration=2.0 if members == 1 else 4.0)
+            fit = it.identify(record_of(rig, "", seed), model(rig), starts=8)
+            said.append((kind, seed, [e.name for e in fit.explanations[:2]]))
+    named = sum(CAUSES[kind] in names for kind, _, names in said)
+    assert named >= 0.75 * len(said), said

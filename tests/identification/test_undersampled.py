@@ -18,7 +18,7 @@ DEVICE = it.Inerter(50.0) | it.Friction(5.0)
 @settings(max_examples=20, deadline=None)
 @given(st.floats(1.0, 300.0), st.floats(1e-4, 1e-2), st.integers(0, 100))
 def test_the_highest_frequency_of_tones(frequency: float, size: float, seed: int) -> None:
-    """To the width of the lines of 4 s that a large one has, beside a larger and slower tone, and of noise that is as small as said."""
+    """To the width that lines have in 4 s, beside a larger and slower tone, and of noise that is as small as said."""
     time = np.arange(8000) / 2000.0
     noise = 1e-6 * np.random.default_rng(seed).standard_normal(time.size)
     motion = 0.02 * np.sin(4.0 * time) + size * np.sin(2.0 * np.pi * frequency * time + 1.0) + noise

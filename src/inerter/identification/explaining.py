@@ -23,8 +23,8 @@ from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_b
 from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
 from inerter.identification.problem import FitProblem, apart
-from inerter.identification.search import improve
 from inerter.identification.recording_faults import faulty_samples, recording_faults
+from inerter.identification.search import improve
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.networks.elements import Free

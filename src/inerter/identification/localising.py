@@ -2,9 +2,9 @@
 
 Every pattern is measured by the share of the squared residual that a law of its kind would explain (of a Gaussian
 likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
-a period or so, and no shorter than a stroke: residuals are autocorrelated within them, and hardly between. Signs of whole blocks are
-flipped for a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by the number of
-tests, which is 29 and one more for each further channel.
+a period or so, and no shorter than a stroke: residuals are autocorrelated within them, and hardly between. Signs of
+whole blocks are flipped for a dependence on the motion, and blocks permuted for one on time; p-values are multiplied by
+the number of tests, which is 29 and one more for each further channel.
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ from quick_fits import explained, quick_fit
 from scipy.optimize import least_squares
 from test_further_causes import CAUSES, rig_under
 
+import inerter as it
 from inerter.identification.explaining import Causes, hypotheses
 from inerter.identification.fit import Misfit
 from inerter.identification.intervals import fit_by_secants, robust_cost
@@ -79,6 +80,23 @@ def test_work_within_work_over_threads_comes_to_an_end() -> None:
 
 
 @pytest.mark.campaign
+def test_steps_say_what_an_identification_does() -> None:
+    """From the first moment on, and in order; what is prepared has a name too."""
+    record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0)).run(it.cosine(2e-3, 3.0), duration=0.6)
+    seen: list[it.ProgressStep] = []
+    with it.progress(seen.append):
+        it.identify(record, "friction", starts=8)
+    names = list(dict.fromkeys(step.what for step in seen))
+    wanted = [
+        *("smoothing of records", "first guess", "starting points", "search on 6.25 % of the information"),
+        *("search on all of the information", "refinement", "bootstrap", "sides of intervals", "next experiment"),
+    ]
+    assert [name for name in names if name in wanted] == wanted
+    assert all(step.total for step in seen if step.what in wanted)
+    assert sum(step.what == "preparing" for step in seen) <= 1
+
+
+@pytest.mark.campaign
 def test_causes_are_made_anew_in_another_process() -> None:
     """What a hypothesis does to a force cannot be sent; what it is about can."""
     rig, fault = rig_under("quadratic")
@@ -92,7 +110,7 @@ def test_causes_are_made_anew_in_another_process() -> None:
     assert apart(lambda p, n: there.of(p)[n].name, [(other, n) for n in range(len(here))]) == here
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_trying_all_causes_takes_few_simulations() -> None:
     """Some thirty causes with fifty starts, of which the best five are fitted to the end."""
     rig, fault = rig_under("stiffening")

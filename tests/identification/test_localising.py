@@ -142,7 +142,7 @@ def test_a_line_is_found_at_its_frequency_across_samples_that_are_left_out() -> 
     holed = replace(fit, fitted=fit.fitted & ~left_out, checked=fit.checked & ~left_out)
     line = next(p for p in localisation_of(holed).patterns if p.kind is MisfitPattern.LINE)
     assert line.numbers["frequency"] == pytest.approx(83.0, abs=0.2)
-    assert line.numbers["amplitude"] == pytest.approx(3.0, rel=0.1)
+    assert 0.84 * 3.0 < line.numbers["amplitude"] < 1.05 * 3.0  # between two lines a Hann window takes up to 15 %
 
 
 def test_p_values_are_multiplied_by_the_number_of_tests(monkeypatch: pytest.MonkeyPatch) -> None:

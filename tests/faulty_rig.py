@@ -197,7 +197,7 @@ def random_rig(law: str, seed: int) -> Rig:
     share = random.uniform(0.25, 1.0)
     numbers = {
         "presliding": (f / (share * 0.1 * float(np.ptp(z))), 0.0),
-        "quadratic": (share * peak / fastest**2, 0.0),
+        "quadratic": (0.4 * share * peak / fastest**2, 0.0),
         "second gap": (random.uniform(0.1, 0.4) * peak / ks, 2.0 * share * ks),
         "stiffening": (2.0 * share * ks**3 / peak**2, 0.0),
         "ripple": (0.7 * share, random.uniform(0.3, 0.6) * float(np.ptp(z))),

@@ -65,7 +65,8 @@ def mistaken_kinds(tables: Mapping[str, Any], keys: Iterable[str]) -> tuple[File
     """The kind of file that `tables` are and the one whose keys are given, where they plainly differ; else None."""
     found, known = kind_of(tables), set(keys)
     wanted = next((kind for kind in kinds() if known.issuperset(kind.sections)), found)
-    return (found, wanted) if _share(found, tables) > _share(wanted, tables) else None
+    is_plain = _share(found, tables) == 1.0 or known.isdisjoint(tables)
+    return (found, wanted) if is_plain and _share(found, tables) > _share(wanted, tables) else None
 
 
 def _share(kind: FileKind, tables: Mapping[str, Any]) -> float:

@@ -24,6 +24,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and find nothing new
+_ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
 
@@ -232,6 +233,9 @@ def _table(motion: Motion, parts: int = 1) -> InputTable:
 
 def _signal(motion: Motion) -> Signal:
     time = motion.time - motion.time[0]
+    even = np.linspace(0.0, time[-1], time.size)
+    if np.max(np.abs(time - even)) > _ROUNDED * even[1]:  # times that a file rounds, in even steps all the same
+        time = even
     height = motion.displacement - motion.displacement[0]  # where the table stands at the start does not matter
     return Signal.sampled(time, height, derivative=motion.velocity, label="measured displacement")
 

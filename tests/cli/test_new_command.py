@@ -11,7 +11,7 @@ from inerter.fields import fields_of
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.schema import study_schema
-from inerter.files.study.shape import judged_models
+from inerter.files.study.sections import judged_models
 from inerter.files.study.starting import starting_text
 from inerter.vehicle.registry import VEHICLES
 

@@ -177,7 +177,7 @@ def test_a_start_is_made_of_the_vehicle_and_the_indices(session: Session, tmp_pa
     assert "ok." in session.command("check", "seated-car.toml", cwd=tmp_path)[0]
     assert "Of the cushion." in session.command("explain", "vehicle.seat_damping", cwd=tmp_path)[0]
     told = json.loads(session.command("schema", cwd=tmp_path)[0])
-    assert "middle" in told["$defs"]["Method_quadrature"]["properties"]
+    assert "middle" in told["properties"]["methods"]["properties"]["quadrature"]["properties"]
 
 
 def test_a_run_in_two_processes_values_every_index_by_every_method(results: Path) -> None:

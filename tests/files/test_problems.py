@@ -15,12 +15,11 @@ from inerter.files.common.entries import one_of, positive_number, some_names
 from inerter.files.common.kinds import kind_of, kind_with, kinds
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.toml import check_measurements, read_shape
+from inerter.files.common.toml import check_measurements
 from inerter.files.identification.loading import load_identification
 from inerter.files.rig.loading import load_rig
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
-from inerter.files.study.shape import shapes
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 WORDS = st.text("abcdefgh", min_size=3, max_size=8)
@@ -47,7 +46,11 @@ def test_an_entry_that_is_refused_keeps_its_parts(got: str, expected: str) -> No
 
 
 def test_every_check_of_an_entry_says_what_arrived_and_what_was_expected() -> None:
-    for check, value in ((positive_number, -1), (one_of("a word", ("one", "two")), "thre"), (some_names("k").func, [])):
+    for check, value in (
+        (positive_number, -1),
+        (one_of("a word", ("one", "two")), "thre"),
+        (some_names("k").check, []),
+    ):
         with pytest.raises(EntryError) as refused:
             check(value)
         problem = refused.value.problem
@@ -60,10 +63,10 @@ def test_the_words_of_a_problem_decide_nothing(monkeypatch: pytest.MonkeyPatch, 
     file = tmp_path / "wrong.toml"
     file.write_text('[vehicle]\nmodel = "quarter-car"\nsprung = "1 kg"\n[rood]\n[study]\nindices = []\n')
     with pytest.raises(StudyError) as said:
-        read_shape(file, "a study file", *shapes())
+        load_study(file)
     monkeypatch.setattr(Problem, "__str__", lambda problem: f"{'.'.join(problem.place)}: token")
     with pytest.raises(StudyError) as token:
-        read_shape(file, "a study file", *shapes())
+        load_study(file)
     places = [[line.split(": ")[1] for line in str(error.value).splitlines()] for error in (said, token)]
     assert places[0] == places[1]
     assert len(places[0]) > 4

@@ -13,7 +13,8 @@ from inerter.errors import InerterError
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.places import place_of, places, with_numbers
+from inerter.files.study.place import place_of
+from inerter.files.study.places import places, with_numbers
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved

@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from inerter.errors import StudyError
+from inerter.files.common.codec import REQUIRED, keys_in
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.common.signal_kinds import NEEDED, SIGNALS, UNITS
+from inerter.files.common.signal_kinds import SIGNALS, UNITS
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import SimulationRequest, write_simulation
-from inerter.files.simulation.shape import INITIAL, SimulationSettings
+from inerter.files.simulation.sections import INITIAL, SimulationSettings
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
@@ -136,8 +137,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
         path=tmp_path / "motion.toml",
         model="quarter-car",
         vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
-        speed=25.0,
-        roughness=5e-7,
+        road={"speed": 25.0, "roughness": 5e-7, "coherence": None},
         elements={"k": Spring(60e3, "k"), "c": Damper(3e3, "c"), "b": Inerter(300.0, "b"), "f": Friction(10.0, "f")},
         layouts={"S1": StrutLayout({"strut": "k | c"}), "S2": StrutLayout({"strut": "k | c | (b | f)"})},
         signal=SignalRequest("multisine", "road", {"seed": 3, "lowest": 0.1, "highest": 1000.0}),
@@ -196,7 +196,7 @@ def test_every_kind_of_signal_is_made_of_its_own_examples(load, tmp_path, kind, 
     (tmp_path / "given.csv").write_text(f"time [s],value [{unit}]\n0,1\n1,2\n2,1\n")
     (tmp_path / "road.csv").write_text("distance [m],height [mm]\n0,0\n10,5\n100,0\n")
     keys = {name: key.of(unit) for name, key in SIGNALS[kind].keys.items()}
-    lines = KIND_KEYS.get(kind) or "\n".join(key.example for key in keys.values() if key.default is NEEDED)
+    lines = KIND_KEYS.get(kind) or "\n".join(key.example for key in keys.values() if key.default is REQUIRED)
     moved = {"m": "road", "N": "sprung_force", "N m": "pitch_moment"}[unit]
     old = 'kind = "multisine"\nseed = 3'
     request = load(HALF, (old, f'kind = "{kind}"\ninput = "{moved}"\n{lines}'), ('"0.5 s"', '"2 ms"'))
@@ -258,7 +258,7 @@ def test_every_key_is_in_the_documentation():
     words = {
         *SIGNALS,
         *(key for kind in SIGNALS.values() for key in kind.keys),
-        *SimulationSettings.model_fields,
+        *(one.name for one in keys_in(SimulationSettings)),
         *INITIAL,
     }
     assert [word for word in words if f"`{word}`" not in text and f'"{word}"' not in text] == []

@@ -20,10 +20,10 @@ from hypothesis import strategies as st
 from inerter.errors import NetworkError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.common.vehicle_shapes import MECHANISM
+from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of
-from inerter.files.study.places import place_of
-from inerter.files.study.study import Study, Sweep
+from inerter.files.study.place import Sweep, place_of
+from inerter.files.study.study import Study
 from inerter.files.study.written import write_resolved
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
@@ -448,8 +448,8 @@ BAD = {
     "deep": ([('"k | c | b"', f'"{"(" * 90}k{")" * 90}"')], "layouts.S2", ["90 brackets", "fewer"]),
     "no layouts": ([('S2 = "k | c | b"\nS1 = "k | c"', "")], "layouts", ["none given", 'S1 = "k | c"']),
     "two struts": ([('"k | c | b"', '{ front = "k", rear = "c" }')], "layouts.S2", ["a table", "one strut"]),
-    "one axle": ([('"k | c | b"', '{ front = "k" }')], "layouts.S2.rear", ["missing", 'rear = "k | c"']),
-    "axle name": ([('"k | c | b"', '{ fornt = "k", rear = "k" }')], "layouts.S2.fornt", ["unknown key", '"front"']),
+    "one axle": ([('"k | c | b"', '{ front = "k" }')], "layouts.S2", ["a table", "one strut"]),
+    "axle name": ([('"k | c | b"', '{ fornt = "k", rear = "k" }')], "layouts.S2", ["a table", "one strut"]),
     # keys and sections
     "top key": ([("title", "titel")], "titel", ["unknown key", 'Did you mean "title"?']),
     "section": ([("[road]", "[raod]")], "raod", ["unknown key", 'Did you mean "road"?']),
@@ -663,6 +663,23 @@ BAD = {
         ["from zero", '"linear"'],
     ),
 }
+
+
+@pytest.mark.parametrize(
+    ("entry", "said"),
+    [
+        ('{ front = "k" }', 'layouts.alike.rear: missing; expected rear = "k | c".'),
+        (
+            '{ fornt = "k", front = "k", rear = "k" }',
+            'layouts.alike.fornt: unknown key; expected one of front, rear. Did you mean "front"?',
+        ),
+        ('{ front = "k", rear = 3 }', 'layouts.alike.rear: got 3; expected a network in quotes, such as "k | c - b".'),
+    ],
+)
+def test_a_layout_fills_the_mounts_of_the_vehicle(load, entry, said):
+    with pytest.raises(StudyError) as caught:
+        load(HALF, ('alike = "k | c"', f"alike = {entry}"))
+    assert str(caught.value) == f"study.toml: {said}"
 
 
 @pytest.mark.parametrize(("changes", "place", "words"), BAD.values(), ids=BAD)

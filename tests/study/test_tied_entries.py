@@ -13,7 +13,8 @@ import inerter as it
 from inerter.errors import StudyError
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.places import place_of, with_numbers
+from inerter.files.study.place import place_of
+from inerter.files.study.places import with_numbers
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.written import write_resolved

@@ -13,9 +13,9 @@ import inerter
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.fields import Field, fields_of, mounts_of
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
-from inerter.files.identification.shape import CHOOSE
+from inerter.files.identification.sections import CHOOSE
 from inerter.files.study import KIND
 from inerter.identification.models import MODELS
 from inerter.indices.registry import INDICES
@@ -45,7 +45,7 @@ def about() -> dict[str, Any]:
             }
             for key, kind in VEHICLES.items()
         ],
-        "road": _fields(ROAD),
+        "road": _fields(ROAD_QUANTITIES),
         "signals": [_signal(key) for key in SIGNALS],
         "conventions": list(CONVENTIONS),
         "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],

@@ -17,7 +17,7 @@ from inerter.app.warm import is_compiled
 from inerter.app.wire import encoded
 from inerter.errors import OK, DesignError, Status, StatusKind, StudyError, worst_of
 from inerter.fields import fields_of
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
@@ -47,7 +47,7 @@ def first() -> None:
     elements: dict[str, Any] = {element.symbol: element.example for element in (Spring, Damper)}
     study: dict[str, dict[str, Any]] = {
         "vehicle": {"model": model, **{field.key: field.example for field in fields_of(kind)}},
-        "road": {field.key: field.example for field in ROAD},
+        "road": {field.key: field.example for field in ROAD_QUANTITIES},
         "elements": elements,
         "layouts": {"first": f"{Spring.symbol} | {Damper.symbol}"},
         "study": {"indices": [next(iter(INDICES))]},

@@ -8,7 +8,8 @@ from inerter.app.documents import problems_of, study_from
 from inerter.errors import InerterError
 from inerter.files.common.problem import EntryError
 from inerter.files.study.checking import check_study, study_notes
-from inerter.files.study.places import place_of, places
+from inerter.files.study.place import place_of
+from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import number_of
 from inerter.units import format_quantity

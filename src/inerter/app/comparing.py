@@ -14,8 +14,10 @@ from inerter.app.kinds import Tell
 from inerter.app.valued import limits_at, valued
 from inerter.errors import DesignError
 from inerter.figures.labels import decimals_of
+from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.cases import FAILURES
-from inerter.files.study.places import element_at, place_of, places
+from inerter.files.study.place import element_at, place_of
+from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate
@@ -103,7 +105,7 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
         "designs": [
             {
                 **one[0].design.told(),
-                "network": one[0].design.study.layouts[one[0].design.layout].entry(),
+                "network": LayoutCodec().dump(one[0].design.study.layouts[one[0].design.layout]),
                 "numbers": _numbers(one[0].design),
                 "results": [
                     {**_told(each, base), "best": i in least}

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from inerter.figures.curves import thinned
-from inerter.files.identification.loading import RecordRequest
 from inerter.files.identification.running import read
+from inerter.files.identification.sections import RecordRequest
 from inerter.records.record import CHANNELS
 
 _SHOWN = 2000  # samples of a channel

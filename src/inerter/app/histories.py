@@ -10,6 +10,7 @@ import numpy as np
 from inerter.app.designs import Design
 from inerter.errors import StudyError
 from inerter.figures.curves import thinned
+from inerter.files.common.roads import road_values
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.study.study import Study
@@ -64,15 +65,13 @@ def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> Simulati
         path=study.path,
         model=study.model,
         vehicle=study.vehicle,
-        speed=study.road.speed,
-        roughness=study.road.roughness,
+        road=road_values(study.road, study.coherence),
         elements=design.fixed.elements,
         layouts=study.layouts,
         signal=SignalRequest("multisine", "road", {"seed": int(body.get("seed") or 0)}),
         layout=design.layout,
         duration=duration,
         step=step,
-        coherence=study.coherence,
     )
 
 

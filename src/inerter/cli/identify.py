@@ -16,9 +16,9 @@ from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, Intent, claimed
 from inerter.files.common.toml import check_measurements
-from inerter.files.identification.loading import IdentificationRequest, RecordRequest, load_identification
+from inerter.files.identification.loading import IdentificationRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
-from inerter.files.identification.shape import channel_units, gap_treatment
+from inerter.files.identification.sections import RecordRequest, channel_units, gap_treatment
 from inerter.records.uncertain import Uncertain, parse_uncertain
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from inerter.errors import StudyError
-from inerter.files.study.shape import judged_models
+from inerter.files.study.sections import judged_models
 from inerter.files.study.starting import starting_text
 from inerter.writing import write_text
 

@@ -16,9 +16,10 @@ from inerter.figures.labels import capital, printed, swept_places, together, typ
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.budgets import BudgetOutcome
+from inerter.files.study.place import Sweep
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import RESOLVED
-from inerter.files.study.study import Study, Sweep
+from inerter.files.study.study import Study
 from inerter.files.study.tolerances import ToleranceOutcome
 from inerter.files.study.written import write_resolved
 from inerter.report.answers import answers

@@ -12,9 +12,9 @@ import xarray as xr
 from inerter.fields import Field, fields_of
 from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
 from inerter.files.common.vehicles import vehicle_words
-from inerter.files.study.conditions import OVER
 from inerter.files.study.limits import StudyLimit, each_of
 from inerter.files.study.places import places
+from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.ways import ways
 from inerter.files.study.written import as_written
@@ -81,8 +81,8 @@ def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
     for key, form, value in study.own_indices[name].formed if name in study.own_indices else ():
         for words, text in form.told(value):
             yield f"{words} of {name}", text
-        for part in form.numbers(value):
-            place = ".".join(filter(None, ("indices", name, key, part)))
+        for part, _ in form.codec.numbers(value, ""):
+            place = ".".join(("indices", name, key, *part))
             yield capital(known[place].words), _told(study, place)
 
 

@@ -8,6 +8,7 @@ from typing import Self
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
+from inerter.fields import quantity
 from inerter.signals.coherence import Coherence
 
 _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cycle/m
@@ -81,8 +82,8 @@ class Road:
     Raises `PerformanceIndexError` unless both are positive and finite.
     """
 
-    roughness: float  # kappa [m^3/cycle]
-    speed: float  # V [m/s]
+    roughness: float = field(metadata=quantity("m^3/cycle", "kappa = Gd(n0) n0^2 / 2 of ISO 8608.", "5e-7 m^3/cycle"))
+    speed: float = field(metadata=quantity("m/s", "V of the vehicle.", "25 m/s"))
     coherence: Coherence | None = None  # of left and right track; None: they are alike
     shape: RoadShape | None = field(default=None, compare=False, repr=False)  # of a road that was measured
 

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from pydantic import PlainValidator, ValidationInfo
-
-from inerter.files.common.kind_entry import KindEntry, kind_entry, names_kind
+from inerter.fields import Field, TextChoice
+from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import checked, list_schema, or_range_schema, quantity_schema, words_schema
+from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.units import format_quantity, parse_quantity, shown, unit_in
 
+LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
 _WIDEST = 1e24  # ratio of the bounds of a free value
@@ -27,7 +29,7 @@ EXPRESSION_SCHEMA: dict[str, Any] = {
     "minLength": 1,
     "maxLength": _LONGEST_EXPRESSION,
     "description": "A network: | puts parts side by side, - end to end and binds tighter.",
-    "examples": ['S3 = "k | c - b"'],
+    "examples": ["k | c - b"],
 }
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
 
@@ -39,19 +41,93 @@ class Amount(NamedTuple):
     value: float
 
 
-def positive(unit: str) -> PlainValidator:
+@dataclass(frozen=True)
+class QuantityCodec(Codec):
+    """A number of `unit`; one that may be `free` may be a table with the two ends of a range.
+
+    One that is a place `if_given` has none where the file leaves it out.
+    """
+
+    unit: str  # SI
+    least: str = "positive"  # or "not negative", or empty for either sign
+    free: bool = False
+    if_given: bool = False
+
+    def load(self, raw: Any, context: LoadContext) -> float | Free:
+        """The value in its unit, or the free value, which has the name of its key."""
+        if self.free and isinstance(raw, dict):
+            return self._range(raw, context.place[-1])
+        match self.least:
+            case "positive":
+                return positive_in(raw, self.unit)
+            case "not negative":
+                return not_negative_in(raw, self.unit)
+            case _:
+                return parse_quantity(raw, self.unit)
+
+    def _range(self, entry: Mapping[str, Any], name: str) -> Free:
+        if set(entry) != {LOWER, UPPER}:
+            listed = ", ".join(map(shown, entry)) or "nothing"
+            expected = f'one value, or {{ from = "1 {self.unit}", to = "2 {self.unit}" }}'
+            raise EntryError(got=f"a table with {listed}", expected=expected)
+        lower, upper = (Amount(self.unit, positive_in(entry[end], self.unit)) for end in (LOWER, UPPER))
+        check_order(lower, upper)
+        return Free(lower.value, upper.value, name)
+
+    def dump(self, value: float | Free) -> Any:
+        """The text, or a table of two."""
+        return text_of(value, self.unit)
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the text."""
+        one = quantity_schema(self.unit, least=self.least)
+        return or_range_schema(one) if self.free else one
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """It, and its bounds if it is free."""
+        if value is not None or not self.if_given:
+            yield from with_bounds(Number(self.unit, words, value, self.least == "not negative"))
+
+    def put(self, value: Any, keys: Sequence[str], number: float) -> float | Free:
+        """The number, or the free value with another bound."""
+        return other_bound(value, keys[0], number) if keys else number
+
+
+def text_of(value: float | Free, unit: str) -> str | dict[str, str]:
+    """How a file says a value in its SI unit, to the last bit; a table of two for one that is free."""
+    if isinstance(value, Free):
+        return {LOWER: f"{value.lower!r} {unit}", UPPER: f"{value.upper!r} {unit}"}
+    return f"{value!r} {unit}"
+
+
+def with_bounds(number: Number) -> Iterator[tuple[KeyPath, Number]]:
+    """A number, with its bounds if it is free, by the keys to them."""
+    yield (), number
+    if isinstance(value := number.value, Free):
+        for key, end, bound in ((LOWER, "lower", value.lower), (UPPER, "upper", value.upper)):
+            words = f"{end} bound of {number.words}" if number.words else f"{end} bound"
+            yield (key,), Number(number.unit, words, bound)
+
+
+def other_bound(value: Free, key: str, number: float) -> Free:
+    """The free value with another bound."""
+    lower, upper = (number, value.upper) if key == LOWER else (value.lower, number)
+    return Free(lower, upper, value.name)
+
+
+def positive(unit: str) -> QuantityCodec:
     """A quantity of `unit` that is greater than zero."""
-    return checked(lambda text: positive_in(text, unit), lambda: quantity_schema(unit, least="positive"))
+    return QuantityCodec(unit)
 
 
-def any_quantity(unit: str) -> PlainValidator:
+def any_quantity(unit: str) -> QuantityCodec:
     """A quantity of `unit` of either sign."""
-    return checked(lambda text: parse_quantity(text, unit), lambda: quantity_schema(unit))
+    return QuantityCodec(unit, "")
 
 
-def not_negative(unit: str) -> PlainValidator:
+def not_negative(unit: str) -> QuantityCodec:
     """A quantity of `unit` that may be zero."""
-    return checked(lambda text: not_negative_in(text, unit), lambda: quantity_schema(unit, least="not negative"))
+    return QuantityCodec(unit, "not negative")
 
 
 def not_negative_in(text: Any, unit: str) -> float:
@@ -62,32 +138,27 @@ def not_negative_in(text: Any, unit: str) -> float:
     return value
 
 
-def or_free(unit: str, name: str, *, may_vanish: bool) -> PlainValidator:
-    """A quantity of `unit`, or a table with the two ends of a free value, which has this name."""
-    ends = ("from", "to")
-
-    def check(entry: Any) -> float | Free:
-        if not isinstance(entry, dict):
-            return not_negative_in(entry, unit) if may_vanish else positive_in(entry, unit)
-        if set(entry) != set(ends):
-            given = ", ".join(map(shown, entry)) or "nothing"
-            expected = f'one value, or {{ from = "1 {unit}", to = "2 {unit}" }}'
-            raise EntryError(got=f"a table with {given}", expected=expected)
-        lower, upper = (Amount(unit, positive_in(entry[end], unit)) for end in ends)
-        check_order(lower, upper)
-        return Free(lower.value, upper.value, name)
-
-    return checked(
-        check, lambda: or_range_schema(quantity_schema(unit, least="not negative" if may_vanish else "positive"))
-    )
-
-
 def positive_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is greater than zero."""
     value = check_size(parse_quantity(text, unit), text, unit)
     if value <= 0.0:
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
     return value
+
+
+def stated(one: Field | TextChoice, *, optional: bool = False, free: bool = False) -> Declaration:
+    """The key of what a dataclass states of a field of its own; one that may be free may be a range here if `free`.
+
+    Those without a default must be given, unless all are `optional` here, and those whose default is zero may be zero.
+    """
+    example = f'{one.key} = "{one.example}"'
+    if isinstance(one, TextChoice):
+        codec: Codec = word(f"a {one.key.replace('_', ' ')}", one.options) if one.options else TEXT
+        return Declaration(codec, one.sentence, example, REQUIRED if one.needed else None, one.key, one.key)
+    least = "not negative" if one.default == 0.0 and not optional else "positive"
+    default = None if optional else REQUIRED if one.default is None else one.default
+    codec = QuantityCodec(one.unit, least, free and one.may_be_free)
+    return Declaration(codec, one.sentence, example, default, one.key, one.key, one.in_words)
 
 
 def positive_number(value: Any) -> float:
@@ -97,21 +168,14 @@ def positive_number(value: Any) -> float:
     return float(value)
 
 
+POSITIVE = Scalar(positive_number, lambda: {"type": "number", "exclusiveMinimum": 0})
+
+
 def yes_or_no(value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):
         raise EntryError(got=shown(value), expected="true or false, without quotes")
     return value
-
-
-def fixed_amount(text: Any) -> Amount | KindEntry:
-    """An element where there is nothing to optimise."""
-    if names_kind(text):
-        return kind_entry(text, free=False)
-    if isinstance(text, dict):
-        hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
-        raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
-    return amount(text)
 
 
 def amount(text: Any) -> Amount:
@@ -125,15 +189,15 @@ def quantity_text(text: Any) -> str:
     return str(text)
 
 
-AMOUNT = checked(
+AMOUNT = Scalar(
     amount,
     lambda: {
         **quantity_schema(*kinds_by_unit(), least="not negative"),
         "description": "An element, which the unit tells, with its value; or a table with the ends of a free value.",
-        "examples": [f'{kind.symbol} = "{kind.example}"' for kind in kinds_by_unit().values()],
+        "examples": [kind.example for kind in kinds_by_unit().values()],
     },
 )
-SWEPT = checked(quantity_text, quantity_schema)
+SWEPT = Scalar(quantity_text, quantity_schema)
 
 
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
@@ -145,6 +209,9 @@ def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     return Amount(unit, value)
 
 
+YES_OR_NO = Scalar(yes_or_no, lambda: {"type": "boolean"})
+
+
 def text(value: Any) -> str:
     """A title or a name."""
     if not isinstance(value, str) or not value.strip() or len(value) > 200:
@@ -152,7 +219,7 @@ def text(value: Any) -> str:
     return value
 
 
-TEXT = checked(text, lambda: TEXT_SCHEMA)
+TEXT = Scalar(text, lambda: TEXT_SCHEMA)
 
 
 def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
@@ -167,35 +234,49 @@ def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
     return check
 
 
-def word(what: str, known: Collection[str]) -> PlainValidator:
+def word(what: str, known: Collection[str]) -> Codec:
     """An entry that is `one_of` some words."""
-    return checked(one_of(what, known), lambda: words_schema(known))
+    return Scalar(one_of(what, known), lambda: words_schema(known))
 
 
-def some_of(what: str, known: Collection[str]) -> PlainValidator:
+def some_of(what: str, known: Collection[str]) -> Codec:
     """A list of at least one of `known`, none of them twice."""
     return _list_of(one_of(what, known), lambda: next(iter(known)), lambda: words_schema(known))
 
 
-def some_of_file(what: str, known: Callable[[Mapping[str, Any]], Collection[str]]) -> PlainValidator:
+@dataclass(frozen=True)
+class SomeOfFile(Codec):
     """A list of at least one of the words that are `known` in a file, none of them twice."""
 
-    def check(values: Any, info: ValidationInfo) -> tuple[str, ...]:
-        words = known(info.context or {})
-        return _check_list(values, one_of(what, words), lambda: next(iter(words)))
+    what: str
+    known: Callable[[Mapping[str, Any]], Collection[str]]
 
-    return checked(check, lambda: list_schema({"anyOf": [words_schema(known({})), TEXT_SCHEMA]}))
+    def load(self, raw: Any, context: LoadContext) -> tuple[str, ...]:
+        """The words."""
+        words = self.known(context.tables)
+        return _check_list(raw, one_of(self.what, words), lambda: next(iter(words)))
+
+    def dump(self, value: tuple[str, ...]) -> list[str] | None:
+        """The list; None for an empty one."""
+        return list_or_none(value)
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the list, which takes names of the file's own too."""
+        return list_schema({"anyOf": [words_schema(self.known({})), TEXT_SCHEMA]})
 
 
-def some_names(example: str) -> PlainValidator:
+def some_names(example: str) -> Codec:
     """A list of at least one name, none of them twice; whether they are known is seen later."""
     return _list_of(text, lambda: example, lambda: TEXT_SCHEMA)
 
 
-def _list_of(
-    one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]
-) -> PlainValidator:
-    return checked(lambda values: _check_list(values, one, example), lambda: list_schema(schema()))
+def _list_of(one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]) -> Codec:
+    return Scalar(lambda values: _check_list(values, one, example), lambda: list_schema(schema()), list_or_none)
+
+
+def list_or_none(values: Collection[Any]) -> list[Any] | None:
+    """The values as a list; None if there are none."""
+    return list(values) or None
 
 
 def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], str]) -> tuple[str, ...]:
@@ -209,7 +290,7 @@ def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], st
     return listed
 
 
-def whole(lower: int, upper: int) -> PlainValidator:
+def whole(lower: int, upper: int) -> Codec:
     """A whole number between two others."""
 
     def check(value: Any) -> int:
@@ -217,7 +298,7 @@ def whole(lower: int, upper: int) -> PlainValidator:
             raise EntryError(got=shown(value), expected=f"a whole number from {lower} to {upper}, without quotes")
         return value
 
-    return checked(check, lambda: {"type": "integer", "minimum": lower, "maximum": upper})
+    return Scalar(check, lambda: {"type": "integer", "minimum": lower, "maximum": upper})
 
 
 def share(value: Any) -> float:
@@ -227,7 +308,7 @@ def share(value: Any) -> float:
     return value
 
 
-SHARE = checked(share, lambda: SHARE_SCHEMA)
+SHARE = Scalar(share, lambda: SHARE_SCHEMA)
 
 
 def expression(value: Any) -> str:
@@ -243,7 +324,7 @@ def expression(value: Any) -> str:
     return value
 
 
-EXPRESSION = checked(expression, lambda: EXPRESSION_SCHEMA)
+EXPRESSION = Scalar(expression, lambda: EXPRESSION_SCHEMA)
 _TAKEN = frozenset(
     (
         "layout index method other parameter point omega value standard_error improvement other_value parameter_value "
@@ -301,12 +382,12 @@ def quantity_list(values: Any) -> tuple[str, ...]:
     return tuple(map(quantity_text, values))
 
 
-SWEEP_LIST = checked(
+SWEEP_LIST = Scalar(
     quantity_list,
     lambda: {
         **list_schema(quantity_schema()),
         "description": "Its values, one by one, or from one end to the other.",
-        "examples": ['k = ["60 kN/m", "120 kN/m", "240 kN/m"]'],
+        "examples": [["60 kN/m", "120 kN/m", "240 kN/m"]],
         "minItems": 2,
         "maxItems": MOST_POINTS,
     },

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from inerter.files.common.schema import UNIT, USUAL
@@ -39,7 +39,7 @@ class Key:
 
 def keys_of(schema: Mapping[str, Any]) -> list[Key]:
     """All keys below a JSON Schema of a file that it has a sentence for, sections before what they hold."""
-    return [key for key in _Walk(schema.get("$defs", {})).below(schema, "") if key.sentence]
+    return [key for key in _below(schema, "") if key.sentence]
 
 
 def below(keys: Iterable[Key], section: Key) -> list[Key]:
@@ -72,52 +72,44 @@ def _ends(key: Key, parts: list[str]) -> bool:
     return len(own) == len(parts) and named and all(a in (ANY_NAME, b) for a, b in zip(own, parts, strict=True))
 
 
-@dataclass(frozen=True)
-class _Walk:
-    shapes: Mapping[str, Any] = field(repr=False)
+def _below(schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]:
+    """The keys that a table has."""
+    for one in _alternatives(schema):
+        own, needed = _decided(one) or of, one.get("required", ())
+        for name, key in one.get("properties", {}).items():
+            yield from _key(key, f"{place}.{name}" if place else name, name in needed, own)
+        if isinstance(more := one.get("additionalProperties"), dict):
+            yield from _key(more, f"{place}.{ANY_NAME}", False, own)
 
-    def below(self, schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]:
-        """The keys that a table has."""
-        for one in self.alternatives(schema):
-            own = _decided(one) or of
-            needed = one.get("required", ())
-            for name, key in one.get("properties", {}).items():
-                yield from self.key(key, f"{place}.{name}" if place else name, name in needed, own)
-            if isinstance(more := one.get("additionalProperties"), dict):
-                yield from self.key(more, f"{place}.{ANY_NAME}", False, own)
 
-    def key(self, schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterator[Key]:
-        """A key, and those that it holds."""
-        every = list(self.alternatives(schema))
-        said = {**next((one for one in every if "properties" not in one), {}), **schema}
-        held = list(self.below(schema, place, of))
-        words = said.get("enum") or said.get("items", {}).get("enum") or ([said["const"]] if "const" in said else [])
-        yield Key(
-            place=place,
-            sentence=said.get("description", ""),
-            unit=said.get(UNIT, ""),
-            words=tuple(words),
-            example=next(iter(said.get("examples", ())), None),
-            default=said.get("default"),
-            needed=needed,
-            section=bool(held),
-            of=of,
-        )
-        yield from held
+def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterator[Key]:
+    """A key, and those that it holds."""
+    said = {**next((one for one in _alternatives(schema) if "properties" not in one), {}), **schema}
+    held = list(_below(schema, place, of))
+    words = said.get("enum") or said.get("items", {}).get("enum") or ([said["const"]] if "const" in said else [])
+    yield Key(
+        place=place,
+        sentence=said.get("description", ""),
+        unit=said.get(UNIT, ""),
+        words=tuple(words),
+        example=next(iter(said.get("examples", ())), None),
+        default=said.get("default"),
+        needed=needed,
+        section=bool(held),
+        of=of,
+    )
+    yield from held
 
-    def alternatives(self, schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-        """What an entry may be: the schema itself, or each of several."""
-        if "$ref" in schema:
-            schema = {**self.shapes[schema["$ref"].rpartition("/")[2]], **schema}
-            del schema["$ref"]
-        several = [*schema.get("oneOf", ()), *schema.get("anyOf", ())]
-        if not several:
-            yield schema
-        for one in several:
-            yield from self.alternatives(one)
+
+def _alternatives(schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+    """What an entry may be: the schema itself, or each of several."""
+    if "anyOf" not in schema:
+        yield schema
+    for one in schema.get("anyOf", ()):
+        yield from _alternatives(one)
 
 
 def _decided(schema: Mapping[str, Any]) -> str:
-    """The model or kind that alone has this shape."""
+    """The model or kind that alone has this table."""
     decided = (schema.get("properties", {}).get(key, {}).get("const", "") for key in _DECIDES)
     return next(filter(None, decided), "")

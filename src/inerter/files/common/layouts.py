@@ -1,24 +1,25 @@
-"""Elements and layouts of files: what entries of them stand for, how they are written, what can be wrong with them."""
+"""Layouts of files: the networks that they put in the mounts of a vehicle, and what can be wrong with them."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import NetworkError
-from inerter.files.common.entries import Amount
-from inerter.files.common.kind_entry import KindEntry
+from inerter.fields import mounts_of
+from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, given, section
+from inerter.files.common.codecs import NamesCodec, any_of
+from inerter.files.common.entries import EXPRESSION, layout_name
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.shape import Range
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.tables import Shape
-from inerter.files.common.ties import TieEntry, tied_element, with_known_values
-from inerter.files.common.vehicles import MountEntry, made, mounts
-from inerter.networks.elements import Element, Free
-from inerter.networks.elements.registry import kinds_by_unit
+from inerter.files.common.ties import with_known_values
+from inerter.files.common.vehicle_tables import SEAT
+from inerter.files.common.vehicles import MountEntry, made, mounts, parts_of
+from inerter.networks.elements import Element
 from inerter.networks.parser import names, network
 from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
 
@@ -33,76 +34,85 @@ class StrutLayout:
         known = with_known_values(elements)
         return made(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
 
-    def entry(self) -> str | dict[str, str]:
-        """How a file says it."""
-        return dict(self.struts) if len(self.struts) > 1 else next(iter(self.struts.values()))
 
-
-def struts_of(model: str, vehicle: Mapping[str, Any], entry: Shape | dict[str, str] | str) -> dict[str, str]:
-    """The network of every mount: as the layout gives it, else as the vehicle does.
-
-    One text is that of all mounts that need one.
+@dataclass(frozen=True)
+class LayoutCodec(Codec):
+    """A text for all mounts that need a network, or a table with a text for each; `model` is that of all files, or else
+    the vehicle of the file tells.
     """
-    known = mounts(model, vehicle)
-    own = {name: mount.network for name, mount in known.items() if mount.network is not None}
-    if isinstance(entry, str):
-        return {**dict.fromkeys([n for n, mount in known.items() if mount.needed] or known, entry), **own}
-    given = entry.model_dump(exclude_none=True) if isinstance(entry, Shape) else entry
-    struts = {**own, **given}
-    return {name: struts[name] for name in dict.fromkeys((*known, *struts)) if name in struts}
+
+    model: str = ""
+
+    def load(self, raw: Any, context: LoadContext) -> StrutLayout:
+        """The networks by mount: those of the layout, or else of the vehicle."""
+        model, known = self._mounts(context)
+        if not isinstance(raw, dict):
+            text = EXPRESSION.load(raw, context)
+            struts = dict.fromkeys([name for name, mount in known.items() if mount.needed] or known, text)
+            return StrutLayout(struts | {n: mount.network for n, mount in known.items() if mount.network is not None})
+        unknown = [name for name in raw if name not in known]
+        if unknown and len(known) == 1:
+            (only,), text = known, shown(next(iter(raw.values())))
+            fault = f"a {model.replace('-', ' ')} has one {only}"
+            raise EntryError(got="a table", fault=fault, expected=f"its network in quotes, such as {text}")
+        found = (_mounts_table(known) if known else NamesCodec(EXPRESSION)).load(raw, context)
+        return INVALID if found is INVALID else StrutLayout(found)
+
+    def _mounts(self, context: LoadContext) -> tuple[str, dict[str, MountEntry]]:
+        """The model of the vehicle and its mounts; none where they cannot be known."""
+        if self.model:
+            return self.model, mounts(self.model, {})
+        vehicle, raw = context.loaded.get("vehicle", INVALID), context.tables.get("vehicle")
+        if vehicle is not INVALID:
+            model, values = parts_of(vehicle)
+            return model, mounts(model, values)
+        model = str(raw.get("model")) if isinstance(raw, Mapping) else ""
+        seat = {SEAT: MountEntry(needed=False)} if model in VEHICLES and SEAT in (raw or ()) else {}
+        return model, {**mounts(model, {}), **seat} if model in VEHICLES else {}
+
+    def dump(self, value: StrutLayout) -> str | dict[str, str]:
+        """The text, or a table for several mounts."""
+        return dict(value.struts) if len(value.struts) > 1 else next(iter(value.struts.values()))
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of a text, of the mounts of each model, and of mounts of the author's own."""
+        each = {}
+        for model, kind in VEHICLES.items():
+            if len(names := mounts_of(kind)) > 1:
+                each[names] = _mounts_table(mounts(model, {})).schema()
+        own = {"type": "object", "additionalProperties": EXPRESSION.schema()}
+        return any_of([*each.values(), EXPRESSION.schema(), own])
 
 
-def elements_of(entries: Mapping[str, Any]) -> tuple[dict[str, Element], list[Problem]]:
-    """The elements that the entries of a section tell, in their order, and what is wrong with those that are tied."""
-    own = {name: element_of(name, entry) for name, entry in entries.items() if not isinstance(entry, TieEntry)}
-    found, problems = {}, []
-    for name, entry in entries.items():
-        try:
-            found[name] = tied_element(name, entry, own) if isinstance(entry, TieEntry) else own[name]
-        except EntryError as error:
-            problems.append(replace(error.problem, place=("elements", name)))
-    return found, problems
+def layouts_codec(model: str = "") -> NamesCodec:
+    """The section [layouts], for vehicles of one model, or of that which the file says."""
+    return NamesCodec(LayoutCodec(model), layout_name, 1)
 
 
-def element_of(name: str, entry: Range | Amount | KindEntry) -> Element:
-    """The element that its entry, or else the unit of its value, tells."""
-    if isinstance(entry, KindEntry):
-        return entry.element(name)
-    if isinstance(entry, Range):
-        return kinds_by_unit()[entry.lower.unit].of(Free(entry.lower.value, entry.upper.value, name), name)
-    return kinds_by_unit()[entry.unit].of(entry.value, name)
+def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
+    """A text for each mount; those that may be left out have the network of the vehicle, if any."""
+    return TableCodec(
+        tuple(
+            section(
+                name,
+                EXPRESSION,
+                f"The network at {name}.",
+                f'{name} = "k | c"',
+                REQUIRED if mount.needed else mount.network,
+            )
+            for name, mount in known.items()
+        ),
+        given,
+    )
 
 
-def layout_problems(
-    model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]
-) -> Iterator[Problem]:
-    """What is wrong with layouts: networks that cannot be, mounts and elements that are not there."""
-    known = mounts(model, vehicle)
+def layout_problems(elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[Problem]:
+    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
     for name, layout in layouts.items():
-        wrong = list(_mount_problems(name, model, known, layout))
-        if wrong:
-            yield from wrong
-            continue
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
             place = ("layouts", name) if alike else ("layouts", name, mount)
             yield from network_problems(place, expression, elements)
-
-
-def _mount_problems(name: str, model: str, known: Mapping[str, MountEntry], layout: StrutLayout) -> Iterator[Problem]:
-    """Mounts that are not there, or not filled."""
-    unknown = [mount for mount in layout.struts if mount not in known]
-    if unknown and len(known) == 1:
-        (only,), text = known, shown(next(iter(layout.struts.values())))
-        fault = f"a {model.replace('-', ' ')} has one {only}"
-        yield at(("layouts", name), got="a table", fault=fault, expected=f"its network in quotes, such as {text}")
-        return
-    for mount in unknown:
-        hint = nearest(mount, known)
-        yield at(("layouts", name, mount), fault="unknown key", expected=f"one of {some(known)}", hint=hint)
-    for mount in known:
-        if known[mount].needed and mount not in layout.struts:
-            yield at(("layouts", name, mount), fault="missing", expected=f'{mount} = "k | c"')
 
 
 def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:

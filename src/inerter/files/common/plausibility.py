@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from inerter.fields import Field, fields_of
-from inerter.files.common.vehicle_shapes import SEAT
+from inerter.files.common.vehicle_tables import SEAT
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
 from inerter.signals.road import ROAD_CLASSES, Road

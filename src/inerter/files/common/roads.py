@@ -1,4 +1,4 @@
-"""The section [road] of a file: its shape, and what stands for a measured profile and for two tracks that differ."""
+"""The section [road] of a file: its keys, and what stands for a measured profile and for two tracks that differ."""
 
 from __future__ import annotations
 
@@ -7,30 +7,23 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from textwrap import wrap
-from typing import Annotated, Any
-
-from pydantic import ConfigDict, Field, model_validator
+from typing import Any
 
 from inerter.checks import is_number
 from inerter.errors import RecordError
-from inerter.fields import Field as Quantity
+from inerter.fields import fields_of
 from inerter.files.common import profiles
-from inerter.files.common.entries import TEXT, positive, word
+from inerter.files.common.codec import REQUIRED, Scalar, TableCodec, declared, given, key, keys_in, section, table_of
+from inerter.files.common.entries import TEXT, QuantityCodec, stated, word
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.schema import checked
 from inerter.files.common.suggest import some
-from inerter.files.common.tables import Shape
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
 from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import TRACKS
 
-_TRACK = Quantity("track", "m", "From track to track, of a surface as rough in every direction.", "1.5 m", "track")
-_CORNER = Quantity(
-    "wavenumber", "cycle/m", "Of first order: where it is half of its level.", "0.2 cycle/m", "wavenumber"
-)
-COHERENCE = (_TRACK, _CORNER)  # what has a unit
+ROAD_QUANTITIES = sorted(fields_of(Road), key=lambda f: f.name != "speed")  # which comes first
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'
 _ROUGH = ("roughness", "class", "profile")  # keys that say how rough a road is
@@ -48,91 +41,131 @@ def _from_minus_one(value: Any) -> float:
     return float(value)
 
 
-class CoherenceTable(Shape):
+_LEVELS = Scalar(_from_minus_one, lambda: {"type": "number", "minimum": -1, "maximum": 1})
+
+
+@declared
+class CoherenceTable:
     """How alike left and right track are: as on an isotropic surface, everywhere alike, or of first order."""
 
-    track: Annotated[float | None, positive("m")] = Field(
-        default=None, description=_TRACK.sentence, examples=[f'track = "{_TRACK.example}"']
-    )
-    level: Annotated[
-        float | None, checked(_from_minus_one, lambda: {"type": "number", "minimum": -1, "maximum": 1})
-    ] = Field(default=None, description="At all wavenumbers, or in long waves.", examples=["level = 0.6"])
-    wavenumber: Annotated[float | None, positive("cycle/m")] = Field(
-        default=None, description=_CORNER.sentence, examples=[f'wavenumber = "{_CORNER.example}"']
-    )
-
-    @model_validator(mode="after")
-    def _of_one_form(self) -> CoherenceTable:
-        given = list(self.model_dump(exclude_none=True))
-        if not given:
-            raise EntryError(got="an empty table", expected=_FORMS)
-        if self.track is not None and len(given) > 1:
-            raise EntryError(got=f"both {given[0]} and {given[1]}", expected="track alone, or level and wavenumber")
-        return self
-
-
-class RoadTable(Shape):
-    """A table [road] may say the class of a road, or a measured profile of it, in place of its roughness."""
-
-    model_config = ConfigDict(json_schema_extra=lambda schema: schema["required"].remove("roughness"))
-    letter: Annotated[str | None, word("a class of ISO 8608", ROAD_CLASSES)] = Field(
-        default=None, alias="class", description="Of ISO 8608, in place of a roughness.", examples=['class = "C"']
-    )
-    profile: Annotated[str | None, TEXT] = Field(
+    track: float | None = key(
+        QuantityCodec("m", if_given=True),
+        "From track to track, of a surface as rough in every direction.",
+        'track = "1.5 m"',
         default=None,
-        description="A file of measured heights, in place of a roughness: the road is the line of waviness 2 through "
+        words="track of the coherence",
+    )
+    level: float | None = key(_LEVELS, "At all wavenumbers, or in long waves.", "level = 0.6", default=None)
+    wavenumber: float | None = key(
+        QuantityCodec("cycle/m", if_given=True),
+        "Of first order: where it is half of its level.",
+        'wavenumber = "0.2 cycle/m"',
+        default=None,
+        words="wavenumber of the coherence",
+    )
+
+
+def _of_one_form(values: dict[str, float]) -> dict[str, float]:
+    """What is given, with what is left out of a form that has a default."""
+    names = list(values)
+    if not names:
+        raise EntryError(got="an empty table", expected=_FORMS)
+    if "track" in values and len(names) > 1:
+        raise EntryError(got=f"both {names[0]} and {names[1]}", expected="track alone, or level and wavenumber")
+    return {_LEVEL: 1.0, **values} if "wavenumber" in values else values
+
+
+COHERENCE = table_of(CoherenceTable, make=given, check=_of_one_form, about=CoherenceTable.__doc__)
+
+
+@declared
+class RoadSource:
+    """Where the roughness of a road is from, if the file does not say it: a class, or a measured profile."""
+
+    letter: str | None = key(
+        word("a class of ISO 8608", ROAD_CLASSES),
+        "Of ISO 8608, in place of a roughness.",
+        'class = "C"',
+        default=None,
+        name="class",
+    )
+    profile: str | None = key(
+        TEXT,
+        "A file of measured heights, in place of a roughness: the road is the line of waviness 2 through "
         "their spectrum.",
-        examples=['profile = "road.csv"'],
-    )
-    track: Annotated[str | None, word("a track", _SIDES)] = Field(
+        'profile = "road.csv"',
         default=None,
-        description="Of a profile of two tracks: the one that is taken; their mean if left out.",
-        examples=['track = "left"'],
     )
-    columns: Annotated[dict[str, str | int] | None, checked(profiles.columns, lambda: profiles.COLUMNS_SCHEMA)] = Field(
+    track: str | None = key(
+        word("a track", _SIDES),
+        "Of a profile of two tracks: the one that is taken; their mean if left out.",
+        'track = "left"',
         default=None,
-        description="Of a profile: which column is which, by name or number from 0, where that is not obvious.",
-        examples=[profiles.COLUMNS_EXAMPLE],
     )
-    units: Annotated[dict[str, str] | None, checked(profiles.units, lambda: profiles.UNITS_SCHEMA)] = Field(
-        default=None, description="Of a profile whose table has none.", examples=[profiles.UNITS_EXAMPLE]
-    )
-    interval: Annotated[float | None, positive("m")] = Field(
+    columns: dict[str, str | int] | None = key(
+        Scalar(profiles.columns, lambda: profiles.COLUMNS_SCHEMA),
+        "Of a profile: which column is which, by name or number from 0, where that is not obvious.",
+        profiles.COLUMNS_EXAMPLE,
         default=None,
-        description="Of a profile without distances: from row to row.",
-        examples=[profiles.SPACING_EXAMPLE],
     )
-    sampling: Annotated[str | None, word("a sampling", SAMPLING)] = Field(
+    units: dict[str, str] | None = key(
+        Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA),
+        "Of a profile whose table has none.",
+        profiles.UNITS_EXAMPLE,
         default=None,
-        description="Of a profile: its heights are those of points (if left out), averages over an interval, or were "
-        "filtered before.",
-        examples=['sampling = "filtered"'],
     )
-    coherence: CoherenceTable | None = Field(
+    interval: float | None = key(
+        QuantityCodec("m", if_given=True),
+        "Of a profile without distances: from row to row.",
+        profiles.SPACING_EXAMPLE,
         default=None,
-        description="How alike left and right track are, for vehicles on two tracks; the same road if left out.",
-        examples=['coherence = { track = "1.5 m" }'],
+    )
+    sampling: str | None = key(
+        word("a sampling", SAMPLING),
+        "Of a profile: its heights are those of points (if left out), averages over an interval, or were filtered "
+        "before.",
+        'sampling = "filtered"',
+        default=None,
     )
 
-    @model_validator(mode="before")
-    @classmethod
-    def _rough_in_one_way(cls, table: Any) -> Any:
-        if not isinstance(table, dict):
-            return table
-        given = [key for key in _ROUGH if key in table]
-        if len(given) > 1:
-            *others, last = given
-            both, of = ("both ", "two") if len(given) == 2 else ("", "three")
-            raise EntryError(got=f"{both}{', '.join(others)} and {last}", expected=f"one of the {of}")
-        for key in _OF_PROFILES:
-            if key in table and "profile" not in table:
-                fault = f"there is no profile that {'they are' if key in ('columns', 'units') else 'it is'} of"
-                article = {"track": "a ", "interval": "an ", "sampling": "a "}.get(key, "")
-                raise EntryError(got=article + key, fault=fault, expected=f"profile, or no {key}")
-        if given in (["class"], ["profile"]):
-            known = ROAD_CLASSES.get(str(table.get("class")), ROAD_CLASSES["A"])  # of another, or until it is read
-            return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
-        return table
+
+def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The table with the roughness that a class says, or a stand-in until a profile is read."""
+    names = [name for name in _ROUGH if name in table]
+    if len(names) > 1:
+        *others, last = names
+        both, of = ("both ", "two") if len(names) == 2 else ("", "three")
+        raise EntryError(got=f"{both}{', '.join(others)} and {last}", expected=f"one of the {of}")
+    for name in _OF_PROFILES:
+        if name in table and "profile" not in table:
+            fault = f"there is no profile that {'they are' if name in ('columns', 'units') else 'it is'} of"
+            article = {"track": "a ", "interval": "an ", "sampling": "a "}.get(name, "")
+            raise EntryError(got=article + name, fault=fault, expected=f"profile, or no {name}")
+    if names in (["class"], ["profile"]):
+        known = ROAD_CLASSES.get(str(table.get("class")), ROAD_CLASSES["A"])
+        return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}
+    return table
+
+
+def road_codec(*, rough: bool = True) -> TableCodec:
+    """The section [road], as a dictionary of its values; not all that drive on one need its roughness (`rough`)."""
+    speed, roughness, *others = map(stated, ROAD_QUANTITIES)
+    roughness = replace(roughness, implied=True, default=REQUIRED if rough else None)
+    return TableCodec(
+        (
+            *(speed, roughness, *others),
+            *keys_in(RoadSource),
+            section(
+                "coherence",
+                COHERENCE,
+                "How alike left and right track are, for vehicles on two tracks; the same road if left out.",
+                'coherence = { track = "1.5 m" }',
+                None,
+            ),
+        ),
+        before=_rough_in_one_way,
+        about="What the vehicle drives on, and how fast.",
+    )
 
 
 @dataclass(frozen=True)
@@ -205,21 +238,21 @@ class MeasuredLine:
         return float(N0 * (0.5 * self.unevenness * N0**2 / self.roughness) ** (1.0 / (self.waviness - 2.0)))
 
 
-def line_through(table: RoadTable | None, beside: Path) -> tuple[MeasuredLine | None, list[Problem]]:
+def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[MeasuredLine | None, list[Problem]]:
     """What stands for the measured profile of a road, if there is one, and what is wrong with it.
 
     The file is looked for beside that at `beside`.
     """
-    if table is None or table.profile is None:
+    if road is None or road["profile"] is None:
         return None, []
-    path, track = (beside.parent / table.profile).absolute(), table.track or ""
+    name, track, sampling = road["profile"], road["track"] or "", road["sampling"] or POINTS
+    path = (beside.parent / name).absolute()
     try:
         if not path.is_file():
-            place = "beside this file" if Path(table.profile).name == table.profile else "as seen from this file"
-            raise EntryError(got=shown(table.profile), fault=f"there is no such file {place}", expected=_PROFILE)
+            place = "beside this file" if Path(name).name == name else "as seen from this file"
+            raise EntryError(got=shown(name), fault=f"there is no such file {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        measured = profiles.read(path, table.columns, table.units, table.interval)
-        sampling = table.sampling or POINTS
+        measured = profiles.read(path, road["columns"], road["units"], road["interval"])
         spectrum = road_spectrum(measured, track=track, sampling=sampling)
     except EntryError as error:
         problem = error.problem
@@ -259,16 +292,25 @@ def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: 
     )
 
 
-def coherence_values(table: RoadTable | None) -> dict[str, float]:
-    """What a road says of its coherence, by key, with what is left out of one that has a default."""
-    if table is None or table.coherence is None:
-        return {}
-    given: dict[str, float] = table.coherence.model_dump(exclude_none=True)
-    return {_LEVEL: 1.0, **given} if "wavenumber" in given else given
+def without_source(values: Mapping[str, Any], line: MeasuredLine | None) -> dict[str, Any]:
+    """The values of a section [road] in a resolved file: the roughness of a measured `line`, if there is one."""
+    own = {field.key: values[field.key] for field in ROAD_QUANTITIES}
+    measured = {} if line is None else {"roughness": line.roughness}
+    return {**own, **measured, "coherence": values["coherence"]}
 
 
-def coherence_of(values: Mapping[str, float]) -> Coherence | None:
-    """The coherence that such values say; None for none."""
+def road_of(values: Mapping[str, Any], shape: RoadShape | None = None) -> Road:
+    """The road of the values of a section [road]; one that was measured has a `shape`."""
+    own = {field.name: values[field.key] for field in ROAD_QUANTITIES}
+    return Road(**own, coherence=_coherence_of(values["coherence"]), shape=shape)
+
+
+def road_values(road: Road, coherence: Mapping[str, float]) -> dict[str, Any]:
+    """The values of a section [road] that says this road, whose coherence has these values."""
+    return {**{field.key: getattr(road, field.name) for field in ROAD_QUANTITIES}, "coherence": coherence or None}
+
+
+def _coherence_of(values: Mapping[str, float] | None) -> Coherence | None:
     if not values:
         return None
     if "track" in values:
@@ -276,12 +318,6 @@ def coherence_of(values: Mapping[str, float]) -> Coherence | None:
     if "wavenumber" in values:
         return Coherence.first_order(values["wavenumber"], values[_LEVEL])
     return Coherence.constant(values[_LEVEL])
-
-
-def coherence_entry(values: Mapping[str, float]) -> dict[str, str | float]:
-    """How a file says it, in SI units."""
-    units = {field.key: field.unit for field in COHERENCE}
-    return {key: f"{value!r} {units[key]}" if key in units else value for key, value in values.items()}
 
 
 def track_problems(place: tuple[str, ...], tracks: Mapping[str, str] | None) -> Iterator[Problem]:

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from pydantic import PlainValidator
-
 from inerter.errors import RecordError, RowError, SignalError
 from inerter.files.common import profiles
-from inerter.files.common.entries import any_quantity, one_of, positive, text, whole, yes_or_no
+from inerter.files.common.codec import REQUIRED, Codec, Scalar
+from inerter.files.common.entries import TEXT, YES_OR_NO, any_quantity, positive, whole, word
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
 from inerter.signals.records import held_noise, recorded
@@ -21,7 +20,6 @@ from inerter.signals.transients import bump, chirp, step
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
 
-NEEDED: Any = ...
 BOTH = "both"  # tracks of a profile, each under its own wheels
 UNITS = ("m", "N", "N m")  # of what a signal can be
 _SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2"}
@@ -33,8 +31,8 @@ class SignalKey(NamedTuple):
 
     unit: str  # empty for what has none
     example: str
-    default: Any = NEEDED
-    check: Callable[[str], PlainValidator] = positive  # given the unit: what a value may be
+    default: Any = REQUIRED
+    codec: Callable[[str], Codec] = positive  # given the unit: what a value may be
 
     def of(self, unit: str) -> SignalKey:
         """The same key of a signal in `unit`."""
@@ -42,15 +40,15 @@ class SignalKey(NamedTuple):
         return self._replace(unit=self.unit.format(**words), example=self.example.format(**words))
 
 
-def _plain(check: Callable[[Any], Any]) -> Callable[[str], PlainValidator]:
-    return lambda unit: PlainValidator(check)
+def _plain(codec: Codec) -> Callable[[str], Codec]:
+    return lambda unit: codec
 
 
 def _size(name: str) -> SignalKey:
-    return SignalKey("{unit}", f'{name} = "{{size}}"', check=any_quantity)
+    return SignalKey("{unit}", f'{name} = "{{size}}"', codec=any_quantity)
 
 
-def _frequency(name: str, value: str, default: Any = NEEDED) -> SignalKey:
+def _frequency(name: str, value: str, default: Any = REQUIRED) -> SignalKey:
     return SignalKey("Hz", f'{name} = "{value} Hz"', default)
 
 
@@ -60,11 +58,11 @@ def _braced(example: str) -> str:
 
 
 _SEED = SignalKey("", "seed = 0", 0, lambda unit: whole(0, 2**63 - 1))
-_FILE = SignalKey("", 'file = "road.csv"', check=_plain(text))
+_FILE = SignalKey("", 'file = "road.csv"', codec=_plain(TEXT))
 _WAVE = {
     "amplitude": _size("amplitude"),
     "frequency": _frequency("frequency", "3"),
-    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, check=any_quantity),
+    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, codec=any_quantity),
 }
 
 
@@ -130,7 +128,7 @@ _OWN = (
         },
     ),
     SignalKind(
-        "step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, check=any_quantity)}
+        "step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, codec=any_quantity)}
     ),
     SignalKind(
         "bump",
@@ -138,7 +136,7 @@ _OWN = (
         {
             "height": _size("height"),
             "length": SignalKey("m", 'length = "1 m"'),
-            "start": SignalKey("s", 'start = "0.5 s"', 0.0, check=any_quantity),
+            "start": SignalKey("s", 'start = "0.5 s"', 0.0, codec=any_quantity),
         },
         needs=("speed",),
         of_roads=True,
@@ -158,8 +156,8 @@ _OWN = (
         lambda file, **others: recorded(path=file, **others),
         {
             "file": _FILE,
-            "hold": SignalKey("", 'hold = "cubic"', "cubic", _plain(one_of("a hold", HOLDS))),
-            "periodic": SignalKey("", "periodic = true", False, _plain(yes_or_no)),
+            "hold": SignalKey("", 'hold = "cubic"', "cubic", _plain(word("a hold", HOLDS))),
+            "periodic": SignalKey("", "periodic = true", False, _plain(YES_OR_NO)),
         },
         given=("speed", "unit"),
     ),
@@ -168,9 +166,16 @@ _OWN = (
         _measured,
         {
             "file": _FILE,
-            "track": SignalKey("", 'track = "left"', "", _plain(one_of("a track", (*TRACKS, BOTH)))),
-            "columns": SignalKey("", _braced(profiles.COLUMNS_EXAMPLE), None, _plain(profiles.columns)),
-            "units": SignalKey("", _braced(profiles.UNITS_EXAMPLE), None, _plain(profiles.units)),
+            "track": SignalKey("", 'track = "left"', "", _plain(word("a track", (*TRACKS, BOTH)))),
+            "columns": SignalKey(
+                "",
+                _braced(profiles.COLUMNS_EXAMPLE),
+                None,
+                _plain(Scalar(profiles.columns, lambda: profiles.COLUMNS_SCHEMA)),
+            ),
+            "units": SignalKey(
+                "", _braced(profiles.UNITS_EXAMPLE), None, _plain(Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA))
+            ),
             "interval": SignalKey("m", profiles.SPACING_EXAMPLE, None),
         },
         needs=("speed",),

@@ -1,22 +1,18 @@
-"""The section [signal] of a file: its shape for every kind of signal, and the signal that it asks for."""
+"""The section [signal] of a file: its keys for every kind of signal, and the signal that it asks for."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any
 
-from pydantic import ConfigDict, Field, PlainValidator, create_model
-
-from inerter.files.common.entries import one_of, text
-from inerter.files.common.shape import ANY, one_of_shapes
-from inerter.files.common.signal_kinds import BOTH, NEEDED, SIGNALS, UNITS, unit_of
-from inerter.files.common.tables import Shape, Shapes
-from inerter.files.common.vehicle_shapes import Driving
-from inerter.rows import made_of_rows
-from inerter.signals.coherence import Coherence
-from inerter.signals.road import Road
+from inerter.files.common.codec import Codec, Declaration, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codecs import TaggedCodec, any_of
+from inerter.files.common.entries import TEXT, one_of
+from inerter.files.common.roads import road_of
+from inerter.files.common.signal_kinds import BOTH, SIGNALS, UNITS, unit_of
+from inerter.files.common.vehicle_tables import units_of_inputs
 from inerter.signals.signal import Signal
 
 
@@ -37,7 +33,7 @@ class SignalRequest:
     @property
     def units(self) -> dict[str, str]:
         """Of the values; empty for what has none."""
-        return {name: key.of(self.unit).unit for name, key in SIGNALS[self.kind].keys.items()}
+        return {name: one.of(self.unit).unit for name, one in SIGNALS[self.kind].keys.items()}
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -53,26 +49,16 @@ class SignalRequest:
         """The signal of what has no road; raises as `tracks` does."""
         return self.tracks()[""]
 
-    def tracks(
-        self, speed: float | None = None, roughness: float | None = None, coherence: Coherence | None = None
-    ) -> dict[str, Signal]:
-        """The signal of each track, "left" and "right"; of a single one by the name "".
+    def tracks(self, values: Mapping[str, Any] | None = None) -> dict[str, Signal]:
+        """The signal of each track, "left" and "right"; of a single one by the name "". `values` are of [road], by key.
 
         Raises `SignalError` if its values do not go together, or its file cannot be read.
         """
-        kind = SIGNALS[self.kind]
-        road = None if speed is None or roughness is None else Road(roughness, speed, coherence)
-        known = {"road": road, "speed": speed, "unit": self.unit}
+        kind, given = SIGNALS[self.kind], values or {}
+        road = None if given.get("roughness") is None else road_of(given)
+        known = {"road": road, "speed": given.get("speed"), "unit": self.unit}
         found = kind.make(**self.values, **{name: known[name] for name in kind.given})
         return {"": found} if isinstance(found, Signal) else dict(found)
-
-    def resolved(self) -> dict[str, Any]:
-        """How a file says it, in SI units."""
-        units = self.units
-        values = {
-            name: f"{v!r} {units[name]}" if units[name] else v for name, v in self.values.items() if v is not None
-        }
-        return {"kind": self.kind, "input": self.input, **values}
 
 
 def signal_of(path: Path, inputs: Mapping[str, str], entry: dict[str, Any]) -> SignalRequest:
@@ -88,36 +74,50 @@ def signal_of(path: Path, inputs: Mapping[str, str], entry: dict[str, Any]) -> S
     return SignalRequest(kind, moved, values, None if unit == unit_of(moved) else unit)
 
 
-class AnySignal(Shape):
-    """A signal whose kind is missing or unknown: nothing more can be said about its keys."""
+@dataclass(frozen=True)
+class SignalCodec(Codec):
+    """The section [signal]: its kind decides which keys there are, and what it moves their units."""
 
-    model_config = ConfigDict(extra="ignore")
-    kind: Annotated[str, PlainValidator(one_of("a kind of signal", SIGNALS))] = Field(examples=['kind = "multisine"'])
+    in_unit: Mapping[str, TaggedCodec]  # by the unit of what is moved
+
+    def load(self, raw: Any, context: LoadContext) -> dict[str, Any]:
+        """The kind, what is moved, and the values of the kind's keys."""
+        moved = raw.get("input") if isinstance(raw, Mapping) else None
+        known = units_of_inputs(context.tables.get("vehicle"))
+        own = known.get(moved) if isinstance(moved, str | None) else None
+        return self.in_unit[own or unit_of(moved)].load(raw, context)  # type: ignore[no-any-return]
+
+    def dump(self, value: SignalRequest) -> dict[str, Any]:
+        """The section, in SI units."""
+        return self.in_unit[value.unit].dump({"kind": value.kind, "input": value.input, **value.values})
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of any kind in any unit."""
+        return any_of([codec.schema() for codec in self.in_unit.values()])
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """Those of all kinds in all units."""
+        for codec in self.in_unit.values():
+            yield from codec.tables(place)
 
 
-@made_of_rows
-def signal_shapes() -> tuple[Any, Shapes]:
-    """The section [signal] of any kind in any unit, and its shapes by place."""
-    made = {f"<{kind} in {unit}>": _signal_shape(kind, unit) for kind in SIGNALS for unit in UNITS}
-    shapes: dict[str, type[Shape]] = {ANY: AnySignal, **made}
-    return one_of_shapes(shapes, _signal_tag), {("signal", tag): shape for tag, shape in shapes.items()}
+def signal_codec() -> SignalCodec:
+    """The section [signal] with the kinds that there are."""
+    return SignalCodec({unit: _in_unit(unit) for unit in UNITS})
 
 
-def _signal_shape(kind: str, unit: str) -> type[Shape]:
-    keys = {name: key.of(unit) for name, key in SIGNALS[kind].keys.items()}
-    fields: dict[str, Any] = {
-        name: (Annotated[Any, key.check(key.unit)], Field(default=key.default, examples=[key.example]))
-        for name, key in keys.items()
-    }
-    fields["kind"] = (Literal[kind], NEEDED)
-    fields["input"] = (Annotated[str | None, PlainValidator(text)], None)
-    return create_model(f"{kind} in {unit}", __base__=Shape, **fields)
+def _in_unit(unit: str) -> TaggedCodec:
+    tables = {kind: _table(kind, unit) for kind in SIGNALS}
+    return TaggedCodec(
+        "kind", lambda: tables, one_of("a kind of signal", SIGNALS), lambda s: str(s["kind"]), "multisine"
+    )
 
 
-def _signal_tag(signal: Any) -> str:
-    kind = signal.get("kind") if isinstance(signal, dict) else None
-    if not isinstance(kind, str) or kind not in SIGNALS:
-        return ANY
-    moved = signal.get("input")
-    own = signal.units.get(moved) if isinstance(signal, Driving) and isinstance(moved, str | None) else None
-    return f"<{kind} in {own or unit_of(moved)}>"
+def _table(kind: str, unit: str) -> TableCodec:
+    def make(**values: Any) -> dict[str, Any]:
+        return {"kind": kind, **values}
+
+    keys = {name: one.of(unit) for name, one in SIGNALS[kind].keys.items()}
+    own = [Declaration(one.codec(one.unit), "", one.example, one.default, name, name) for name, one in keys.items()]
+    moved = Declaration(TEXT, "", "", None, "input", "input")
+    return TableCodec((*own, moved), make, tag=("kind", kind, "The kind of signal."))

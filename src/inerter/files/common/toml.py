@@ -7,42 +7,31 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, TypeVar
-
-from pydantic import ValidationError
+from typing import Any
 
 from inerter.errors import StudyError
+from inerter.files.common.codec import TableCodec, load_tables
 from inerter.files.common.kinds import FileKind, kind_of, kind_with, mistaken_kinds
 from inerter.files.common.problem import Problem
-from inerter.files.common.problems import explain, refusal
-from inerter.files.common.tables import Shape, Shapes
+from inerter.files.common.problems import refusal
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
-File = TypeVar("File", bound=Shape)
 
 
-def read_shape(path: Path, what: str, file: type[File], shapes: Shapes) -> File:
-    """A TOML file as the shape of its kind; `what` it should be, and its `shapes` by place, are for messages.
-
-    Raises `StudyError` as `read_tables` does, or with a line for every entry that does not fit.
-    """
-    return shape_of(read_tables(path, what), path, file, shapes)
-
-
-def shape_of(tables: Mapping[str, Any], path: Path, file: type[File], shapes: Shapes) -> File:
-    """Tables as the shape of a kind of file; `path`, where they are from, is for messages.
+def value_of(codec: TableCodec, tables: Mapping[str, Any], path: Path) -> Any:
+    """What the tables of a file stand for; `path`, where they are from, is for messages.
 
     Raises `StudyError` with a sentence for a file of another kind, or with a line for every entry that does not fit.
     """
-    if (mistaken := mistaken_kinds(tables, file.model_fields)) is not None:
+    if (mistaken := mistaken_kinds(tables, codec.names)) is not None:
         found, wanted = mistaken
         raise _mistaken(path, found, f"a {wanted.singular} for inerter {wanted.command}")
-    try:
-        return file.model_validate(tables, context=tables)
-    except ValidationError as error:
-        raise refusal(path, explain(error, shapes)) from None
+    value, problems = load_tables(codec, tables)
+    if problems:
+        raise refusal(path, problems)
+    return value
 
 
 def read_tables(path: Path, what: str) -> dict[str, Any]:

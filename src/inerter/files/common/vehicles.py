@@ -1,4 +1,4 @@
-"""What a table [vehicle] stands for: the mounts that layouts fill, the vehicle with them, and how a file says it.
+"""What a table [vehicle] stands for: the mounts that layouts fill, the vehicle with them, and what is wrong with it.
 
 A vehicle in a file is a model and its values: quantities by their keys or, of a mechanism, the tables of its parts; and
 perhaps the table of a seat.
@@ -6,16 +6,15 @@ perhaps the table of a seat.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from inerter.errors import InerterError, MechanismError
-from inerter.fields import Field, fields_of, mounts_of, needed_mounts_of
+from inerter.fields import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.tables import Shape
-from inerter.files.common.vehicle_shapes import MECHANISM, SEAT, Inertia, Length, forces_of
+from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import (
@@ -51,13 +50,9 @@ def models() -> tuple[str, ...]:
     return (*VEHICLES, MECHANISM)
 
 
-def values_of(table: Shape) -> tuple[str, dict[str, Any]]:
-    """The model and the values that the table [vehicle] gives."""
-    values = table.model_dump() | {key: value for key, value in table if isinstance(value, Free)}
-    model: str = values.pop("model")
-    if values.get(SEAT) is None:
-        values.pop(SEAT, None)
-    return model, values
+def parts_of(vehicle: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """The model and the values that a table [vehicle] gives."""
+    return str(vehicle["model"]), {name: value for name, value in vehicle.items() if name != "model"}
 
 
 def mounts(model: str, values: Values) -> dict[str, MountEntry]:
@@ -74,16 +69,6 @@ def made(model: str, values: Values, networks: Networks) -> Vehicle:
     vehicle = made(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
     place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
     return Seat(vehicle, seat["mass"], networks[SEAT], **place)
-
-
-def vehicle_entry(model: str, values: Values) -> dict[str, Any]:
-    """How a file says a vehicle, in SI units."""
-    seat = {}
-    if SEAT in values:
-        given = {"mass": f"{values[SEAT]['mass']!r} kg", "network": values[SEAT]["network"]}
-        place = values[SEAT]["place"]
-        seat = {SEAT: given if place is None else {**given, "place": _levers(place)}}
-    return {"model": model, **_form(model).entry(_without_seat(values)), **seat}
 
 
 def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | None, str]]:
@@ -126,23 +111,10 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
     return {road.name: road.track for road in roads}
 
 
-def in_si(fields: Iterable[Field], values: Mapping[str, Any]) -> dict[str, Any]:
-    """The texts of those quantities that there is a value of, in SI units; a table of two for one that is free."""
-    return {f.key: _in_si(values[f.key], f.unit) for f in fields if f.key in values}
-
-
-def _in_si(value: float | Free, unit: str) -> str | dict[str, str]:
-    if isinstance(value, Free):
-        return {"from": f"{value.lower!r} {unit}", "to": f"{value.upper!r} {unit}"}
-    return f"{value!r} {unit}"  # repr reads back as the same
-
-
 class _Form(Protocol):
     def mounts(self, values: Values) -> dict[str, MountEntry]: ...
 
     def made(self, values: Values, networks: Networks) -> Vehicle: ...
-
-    def entry(self, values: Values) -> dict[str, Any]: ...
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]: ...
 
@@ -172,9 +144,6 @@ class _Model:
     def made(self, values: Values, networks: Networks) -> Vehicle:
         arguments: dict[str, Any] = {**values, **networks}
         return VEHICLES[self.model](**arguments)
-
-    def entry(self, values: Values) -> dict[str, Any]:
-        return in_si(fields_of(VEHICLES[self.model]), values)
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
         for field in fields_of(VEHICLES[self.model]):
@@ -220,25 +189,6 @@ class _OwnMechanism:
             ),
         )
 
-    def entry(self, values: Values) -> dict[str, Any]:
-        coordinates = values["coordinates"].items()
-        struts = {
-            name: _given({"upper": _levers(s["upper"]), "lower": _levers(s["lower"]), "network": s["network"]})
-            for name, s in values["struts"].items()
-        }
-        tyres = {name: _given({**t, "port": _levers(t["port"])}) for name, t in values["tyres"].items()}
-        roads = {n: {**r, "distance": f"{r['distance']!r} m"} for n, r in values["roads"].items()}
-        weights = {key: None if w is None else _levers(w) for key, w in values["measures"].items() if key in _WEIGHTS}
-        tables = {
-            "coordinates": {n: f"{v!r} {'kg m^2' if isinstance(v, Inertia) else 'kg'}" for n, v in coordinates},
-            "struts": struts,
-            "tyres": tyres,
-            "roads": roads,
-            "forces": {name: _levers(port) for name, port in values["forces"].items()},
-            "measures": _given({**values["measures"], **weights}),
-        }
-        return {key: table for key, table in tables.items() if table}
-
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
         for name, value in values["coordinates"].items():
             yield name.replace("_", " "), value, "kg m^2" if isinstance(value, Inertia) else "kg"
@@ -280,9 +230,6 @@ class _OwnMechanism:
         return {**({"road": "m"} if values["roads"] else {}), **forces_of(values)}
 
 
-_WEIGHTS = ("comfort", "tyre_load")
-
-
 def _port_problems(
     place: tuple[str, ...], port: Mapping[str, float], known: Mapping[str, bool], roads: tuple[str, ...]
 ) -> Iterator[Problem]:
@@ -302,10 +249,6 @@ def _floats(port: Mapping[str, float]) -> Port:
     return {name: float(lever) for name, lever in port.items()}
 
 
-def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
-    return {n: f"{float(v)!r} m" if isinstance(v, Length) else float(v) for n, v in port.items()}
-
-
 def _place(port: Mapping[str, float]) -> str:
     """A port in words."""
     terms = [
@@ -317,7 +260,3 @@ def _place(port: Mapping[str, float]) -> str:
 
 def _times(lever: float, name: str) -> str:
     return name if lever == 1.0 else f"{lever:g} × {name}"
-
-
-def _given(table: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in table.items() if value is not None and value != {}}

@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import InerterError, StudyError
-from inerter.files.common.layouts import element_of, network_problems
+from inerter.files.common.layouts import network_problems
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest
-from inerter.files.common.toml import read_tables, shape_of
-from inerter.files.identification.shape import CHOOSE, SHAPES, IdentificationFile
+from inerter.files.common.toml import read_tables, value_of
+from inerter.files.identification.sections import AS_RECORDED, CHOOSE, IDENTIFICATION, RecordRequest
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
-from inerter.records.uncertain import Uncertain
 from inerter.units import shown
 from inerter.vehicle.rig import Rig
 
@@ -26,32 +25,11 @@ CUSTOM = "custom"
 
 
 @dataclass(frozen=True)
-class RecordRequest:
-    """How files are read, in the words of `read_record`, and what is done to their records then."""
-
-    channels: dict[str, str | int] = field(default_factory=dict)
-    units: dict[str, str] = field(default_factory=dict)
-    interval: float | None = None  # [s]
-    gaps: str | float = "refuse"
-    force_range: float | None = None  # [N]
-    force_bandwidth: float | None = None  # [Hz]
-    force_noise: float | None = None  # [N] r.m.s.
-    displacement_noise: float | None = None  # [m] r.m.s.
-    fixture_mass: Uncertain | None = None  # [kg]
-    period: float | None = None  # [s]
-    start: float | None = None  # [s]
-    stop: float | None = None  # [s]
-    resample: float | None = None  # [s]
-    repair: bool = False
-    detrend: bool = False
-
-
-@dataclass(frozen=True)
 class IdentificationRequest:
     """A model by its name, or made of elements, and what else the configuration says. No model is yet to be named."""
 
     title: str | None = None
-    record: RecordRequest = RecordRequest()
+    record: RecordRequest = AS_RECORDED
     name: str | None = None
     layout: str | None = None
     elements: dict[str, Element] = field(default_factory=dict)
@@ -93,17 +71,14 @@ def load_identification(path: str | Path) -> IdentificationRequest:
 
 def identification_of(tables: Mapping[str, Any], path: Path) -> IdentificationRequest:
     """The configuration that tables say; `path`, where they are from, is for messages."""
-    shape = shape_of(tables, path, IdentificationFile, SHAPES)
-    record, settings = dict(shape.record), dict(shape.fit)
-    roles = ("displacement", "force", "time", "velocity", "acceleration")
-    channels = {role: value for role in roles if (value := record.pop(role)) is not None}
+    found = value_of(IDENTIFICATION, tables, path)
     request = IdentificationRequest(
-        title=shape.title,
-        record=RecordRequest(channels, **record),
-        name=shape.model.name,
-        layout=shape.model.layout,
-        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
-        settings={name: value for name, value in settings.items() if value is not None},
+        title=found["title"],
+        record=found["record"],
+        name=found["model"].name,
+        layout=found["model"].layout,
+        elements=found["elements"],
+        settings=found["fit"],
     )
     problems = list(_problems(request))
     if problems:

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError, RecordError
-from inerter.files.identification.loading import CUSTOM, IdentificationRequest, RecordRequest
+from inerter.files.identification.loading import CUSTOM, IdentificationRequest
+from inerter.files.identification.sections import RecordRequest
 from inerter.identification.choice import Candidate, choose
 from inerter.identification.fit import Fit, RecordFit
 from inerter.identification.hypotheses import DELAY, GAIN

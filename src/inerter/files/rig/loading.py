@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from inerter.errors import InerterError
-from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
+from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import SignalRequest, signal_of
-from inerter.files.common.toml import read_shape
+from inerter.files.common.toml import read_tables, value_of
 from inerter.files.rig.running import RigRequest
-from inerter.files.rig.shape import RigSettings, shapes
+from inerter.files.rig.sections import rig_codec
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Element
 from inerter.networks.parser import network
@@ -32,22 +32,20 @@ def load_rig(path: str | Path) -> RigRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a rig file", *shapes())
-    elements = {name: element_of(name, entry) for name, entry in shape.elements.items()}
-    layouts = {name: StrutLayout(struts_of(Rig.key, {}, entry)) for name, entry in shape.layouts.items()}
-    chosen = shape.rig.layout or (next(iter(layouts)) if len(layouts) == 1 else "")
-    signal = signal_of(path, {Rig.moved: "m"}, shape.signal.model_dump())
+    found = value_of(rig_codec(), read_tables(path, "a rig file"), path)
+    elements, layouts, settings = found["elements"], found["layouts"], found["rig"]
+    chosen = settings.get("layout") or (next(iter(layouts)) if len(layouts) == 1 else "")
+    signal = signal_of(path, {Rig.moved: "m"}, found["signal"])
     problems = [
-        *layout_problems(Rig.key, {}, elements, layouts),
+        *layout_problems(elements, layouts),
         *chosen_layout("rig", chosen, tuple(layouts)),
         *_signal_problems(signal),
     ]
     if problems:
         raise refusal(path, problems)
-    rig = _rig(path, shape.rig, next(iter(layouts[chosen].struts.values())), elements)
-    return RigRequest(
-        characters(path.stem) if shape.title is None else shape.title, rig, signal, shape.rig.duration, shape.rig.start
-    )
+    rig = _rig(path, settings, next(iter(layouts[chosen].struts.values())), elements)
+    title = characters(path.stem) if found["title"] is None else found["title"]
+    return RigRequest(title, rig, signal, settings["duration"], settings["start"])
 
 
 def _signal_problems(signal: SignalRequest) -> Iterator[Problem]:
@@ -67,10 +65,8 @@ def _signal_problems(signal: SignalRequest) -> Iterator[Problem]:
             yield at(("signal",), str(error))
 
 
-def _rig(path: Path, settings: RigSettings, expression: str, elements: dict[str, Element]) -> VirtualRig:
-    given: dict[str, Any] = {
-        name: value for name, value in settings.model_dump().items() if name not in _OWN and value is not None
-    }
+def _rig(path: Path, settings: Mapping[str, Any], expression: str, elements: dict[str, Element]) -> VirtualRig:
+    given = {name: value for name, value in settings.items() if name not in _OWN}
     try:
         device = network(expression, **elements)
         piecewise(Rig(device))

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.errors import InerterError, SimulationError
-from inerter.files.common.layouts import StrutLayout, chosen_layout, element_of, layout_problems, struts_of
+from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.roads import MeasuredLine, coherence_values, line_through, track_problems
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import ROAD_QUANTITIES, MeasuredLine, line_through, track_problems, without_source
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.toml import read_shape
-from inerter.files.common.vehicles import inputs, tracks, values_of, vehicle_problems
+from inerter.files.common.toml import read_tables, value_of
+from inerter.files.common.vehicles import inputs, parts_of, tracks, vehicle_problems
 from inerter.files.simulation.request import SimulationRequest
-from inerter.files.simulation.shape import SimulationFile, shapes
+from inerter.files.simulation.sections import simulation_codec
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
 from inerter.units import shown
@@ -30,9 +30,9 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    shape = read_shape(path, "a simulation file", *shapes())
-    line, line_problems = line_through(shape.road, path)
-    request = _resolve(path, shape, line)
+    found = value_of(simulation_codec(), read_tables(path, "a simulation file"), path)
+    line, line_problems = line_through(found["road"], path)
+    request = _resolve(path, found, line)
     for check in (_names, _needs, _parts):
         problems = [*line_problems, *check(request)]
         if problems:
@@ -40,25 +40,20 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     return request
 
 
-def _resolve(path: Path, shape: SimulationFile, line: MeasuredLine | None) -> SimulationRequest:
-    (model, vehicle), settings = values_of(shape.vehicle), shape.simulation.model_dump()
-    layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
-    chosen = settings.pop("layout")
-    if chosen is None and len(layouts) == 1:
-        chosen = next(iter(layouts))
+def _resolve(path: Path, found: Mapping[str, Any], line: MeasuredLine | None) -> SimulationRequest:
+    (model, vehicle), settings, road = parts_of(found["vehicle"]), dict(found["simulation"]), found["road"]
+    if settings["layout"] is None:
+        settings["layout"] = next(iter(found["layouts"])) if len(found["layouts"]) == 1 else ""
     return SimulationRequest(
-        title=characters(path.stem) if shape.title is None else shape.title,
+        title=characters(path.stem) if found["title"] is None else found["title"],
         path=path,
         model=model,
         vehicle=vehicle,
-        speed=None if shape.road is None else shape.road.speed,
-        roughness=line.roughness if line else None if shape.road is None else shape.road.roughness,
-        coherence=coherence_values(shape.road),
+        road=without_source(road, line) if road else {},
         line=line,
-        elements={name: element_of(name, entry) for name, entry in shape.elements.items()},
-        layouts=layouts,
-        signal=signal_of(path, inputs(model, vehicle), shape.signal.model_dump()),
-        layout="" if chosen is None else chosen,
+        elements=found["elements"],
+        layouts=found["layouts"],
+        signal=signal_of(path, inputs(model, vehicle), found["signal"]),
         **settings,
     )
 
@@ -66,7 +61,7 @@ def _resolve(path: Path, shape: SimulationFile, line: MeasuredLine | None) -> Si
 def _names(request: SimulationRequest) -> Iterator[Problem]:
     """Names that nothing has."""
     yield from vehicle_problems(request.model, request.vehicle)
-    yield from layout_problems(request.model, request.vehicle, request.elements, request.layouts)
+    yield from layout_problems(request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
     moved, known = request.signal.input, inputs(request.model, request.vehicle)
     if moved not in known:
@@ -85,7 +80,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
             expected="another kind, or no input",
         )
     known = {"speed": request.speed, "roughness": request.roughness}
-    examples = {field.key: field.example for field in ROAD}
+    examples = {field.key: field.example for field in ROAD_QUANTITIES}
     for key in kind.needs:
         if known[key] is None:
             needed = f"missing, but a {signal.kind} needs it"

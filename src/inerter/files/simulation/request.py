@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, cast
 
-from inerter.files.common.kind_entry import entry_of
+from inerter.files.common.codec import declared
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.common.roads import MeasuredLine, coherence_entry, coherence_of, remark
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import MeasuredLine, remark
 from inerter.files.common.signals import SignalRequest
 from inerter.files.common.toml import as_toml
-from inerter.files.common.vehicles import in_si, vehicle_entry
+from inerter.files.simulation.sections import SimulationSettings, simulation_codec
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import Driven
@@ -22,28 +21,35 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.vehicle.vehicle import Vehicle
 
 
-@dataclass(frozen=True)
-class SimulationRequest:
+@declared
+class SimulationRequest(SimulationSettings):
     """All that a simulation file says, with defaults filled in. Equal requests may come from different files."""
 
     title: str
     path: Path = field(compare=False)
     model: str
     vehicle: dict[str, Any]
-    speed: float | None  # [m/s]
-    roughness: float | None  # [m^3/cycle]
+    road: dict[str, Any]  # by key, in SI units; empty without a road, and without roughness for what needs none
     elements: dict[str, Element]
     layouts: dict[str, StrutLayout]
     signal: SignalRequest
-    layout: str
-    duration: float | None  # [s]; None for one period
-    step: float = 2e-4  # [s]
-    integrator: str = "event-driven"
-    initial: str = "rest"
-    energy: bool = False
-    every: int = 1
-    coherence: dict[str, float] = field(default_factory=dict)  # of a random road, as the file says it
+    layout: str = ""
     line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
+
+    @property
+    def speed(self) -> float | None:
+        """Of the vehicle [m/s]; None without a road."""
+        return self.road.get("speed")
+
+    @property
+    def roughness(self) -> float | None:
+        """Of a random road [m^3/cycle]."""
+        return self.road.get("roughness")
+
+    @property
+    def coherence(self) -> dict[str, float]:
+        """Of a random road, as the file says it."""
+        return self.road.get("coherence") or {}
 
     @property
     def length(self) -> float | None:
@@ -75,7 +81,7 @@ class SimulationRequest:
 
     def signals(self) -> dict[str, Signal]:
         """The signal of each track, as `SignalRequest.tracks` has it."""
-        return self.signal.tracks(self.speed, self.roughness, coherence_of(self.coherence))
+        return self.signal.tracks(self.road)
 
     def check(self) -> int:
         """The number of steps; raises what `simulate` would raise before it integrates."""
@@ -100,26 +106,17 @@ class SimulationRequest:
 
     def resolved(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""
-        road: dict[str, Any] = in_si(ROAD, {f.key: v for f in ROAD if (v := getattr(self, f.key)) is not None})
-        if self.coherence:
-            road["coherence"] = coherence_entry(self.coherence)
-        return {
-            "title": self.title,
-            "vehicle": vehicle_entry(self.model, self.vehicle),
-            **({"road": road} if road else {}),
-            "elements": {name: entry_of(element) for name, element in self.elements.items()},
-            "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
-            "signal": self.signal.resolved(),
-            "simulation": {
-                "layout": self.layout,
-                **({} if self.duration is None else {"duration": f"{self.duration!r} s"}),
-                "step": f"{self.step!r} s",
-                "integrator": self.integrator,
-                "initial": self.initial,
-                "energy": self.energy,
-                "every": self.every,
-            },
-        }
+        return simulation_codec().dump(
+            {
+                "title": self.title,
+                "vehicle": {"model": self.model, **self.vehicle},
+                "road": self.road or None,
+                "elements": self.elements,
+                "layouts": self.layouts,
+                "signal": self.signal,
+                "simulation": self,
+            }
+        )
 
 
 def write_simulation(request: SimulationRequest) -> str:

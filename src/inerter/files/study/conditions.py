@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from inerter.fields import fields_of
-from inerter.files.common.roads import COHERENCE
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import COHERENCE, ROAD_QUANTITIES
 from inerter.files.common.ties import with_known_values
-from inerter.files.common.vehicle_shapes import SEAT
-from inerter.files.study.places import Place, element_at, number_at, place_of, with_numbers
+from inerter.files.common.vehicle_tables import SEAT
+from inerter.files.study.place import Place, element_at, place_of
+from inerter.files.study.places import number_at, with_numbers
+from inerter.files.study.sections import ConditionEntry
 from inerter.methods.conditions import Condition
 from inerter.networks.elements import Element, Tied
 from inerter.units import shown
@@ -19,8 +20,6 @@ from inerter.vehicle.registry import VEHICLES
 
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
-
-OVER = ("mean", "worst")
 
 
 @dataclass(frozen=True)
@@ -31,11 +30,11 @@ class StudyCondition:
     share: float = 1.0
     name: str = ""
 
-    def entry(self, study: Study) -> dict[str, str | float]:
+    def entry(self, study: Study) -> ConditionEntry:
         """How a file says it."""
         units = {label: found.unit for label in self.numbers if (found := number_at(study, place_of(label)))}
-        given = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
-        return {**given, "share": self.share, **({"name": self.name} if self.name else {})}
+        numbers = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
+        return ConditionEntry(numbers=numbers, share=self.share, name=self.name or None)
 
 
 def what_of(study: Study, place: Place) -> tuple[str, str] | None:
@@ -43,8 +42,8 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
     names = {
         "vehicle": _of_vehicle(study),
         "road": {
-            **{f.key: ("road", f.name) for f in ROAD},
-            **{f"coherence.{f.key}": ("road", "coherence") for f in COHERENCE},
+            **{f.key: ("road", f.name) for f in ROAD_QUANTITIES},
+            **{f"coherence.{one.name}": ("road", "coherence") for one in COHERENCE.keys},
         },
         "elements": {name: ("vehicle", name) for name in study.elements},
     }

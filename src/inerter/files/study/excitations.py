@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from pydantic import AfterValidator, Field, model_validator
-
-from inerter.files.common.entries import TEXT, Amount, positive
+from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, declared, key, keys_in
+from inerter.files.common.entries import TEXT, Amount, QuantityCodec
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import checked, quantity_schema
-from inerter.files.common.tables import Shape
-from inerter.files.study.filters import FILTER, filter_entry, in_s
-from inerter.files.study.number import Number
+from inerter.files.common.schema import quantity_schema
+from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.excitation import Excitation, GroundAcceleration, Shaped, WhiteForce
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
@@ -22,13 +20,12 @@ from inerter.units import parse_one_of, shown
 _GROUND, _INTENSITY = "ground_acceleration", "intensity"
 _OF_GROUND = "(m/s^2)^2/Hz"
 _OF_FORCES = {"N^2/Hz": "force", "(N m)^2/Hz": "moment"}
-Path = tuple[str, ...]
 
 
 class Named(NamedTuple):
     """A name in an entry that has to be the vehicle's: at which keys, of what ("output", "input" or "force")."""
 
-    keys: Path
+    keys: KeyPath
     what: str
     name: str
 
@@ -36,26 +33,41 @@ class Named(NamedTuple):
 class Sized(NamedTuple):
     """A size in an entry whose unit has to follow from that of the input: at which keys, its unit, and how."""
 
-    keys: Path
+    keys: KeyPath
     unit: str
     expected: Callable[[str], str]
 
 
-def amount_of(units: Mapping[str, str], what: str) -> Any:
+@dataclass(frozen=True)
+class AmountCodec(Codec):
     """A positive quantity in one of these units, each with what it is the unit of; `what` is all of that."""
 
-    def check(text: Any) -> Amount:
-        unit, value = parse_one_of(text, units, next(iter(units)), what)
+    units: Mapping[str, str]
+    what: str
+
+    def load(self, raw: Any, context: LoadContext) -> Amount:
+        """The value with its SI unit."""
+        unit, value = parse_one_of(raw, self.units, next(iter(self.units)), self.what)
         if value <= 0.0:
-            raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
+            raise EntryError(got=shown(raw), fault="not positive", expected=f"more than 0 {unit}")
         return Amount(unit, value)
 
-    return Annotated[Amount, checked(check, lambda: quantity_schema(*units, least="positive"))]
+    def dump(self, value: Amount) -> str:
+        """The text in that unit."""
+        return f"{value.value!r} {value.unit}"
 
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the text."""
+        return quantity_schema(*self.units, least="positive")
 
-def number_of(amount: Amount, words: str) -> Number:
-    """The amount as a number of the file."""
-    return Number(amount.unit, words, amount.value)
+    def numbers(self, value: Amount | None, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """It, where the file gives it."""
+        if value is not None:
+            yield (), Number(value.unit, words, value.value)
+
+    def put(self, value: Amount, keys: Sequence[str], number: float) -> Amount:
+        """Another value in the same unit."""
+        return value._replace(value=number)
 
 
 def in_words(name: str) -> str:
@@ -63,52 +75,30 @@ def in_words(name: str) -> str:
     return name.replace("_", " ")
 
 
-class ExcitationTable(Shape):
+@declared
+class StatedExcitation:
     """What excites the vehicle: white acceleration of the ground, a white force, or the road; perhaps shaped."""
 
-    ground_acceleration: Annotated[float | None, positive(_OF_GROUND)] = Field(
+    ground_acceleration: float | None = key(
+        QuantityCodec(_OF_GROUND, if_given=True),
+        "White acceleration of the ground: its spectral density, two-sided.",
+        'ground_acceleration = "0.01 (m/s^2)^2/Hz"',
         default=None,
-        description="White acceleration of the ground: its spectral density, two-sided.",
-        examples=['ground_acceleration = "0.01 (m/s^2)^2/Hz"'],
+        words="intensity of the ground acceleration",
     )
-    force: Annotated[str | None, TEXT] = Field(
-        default=None, description="A white force of the vehicle.", examples=['force = "sprung_force"']
-    )
-    intensity: amount_of(_OF_FORCES, "white force") | None = Field(  # type: ignore[valid-type]
+    force: str | None = key(TEXT, "A white force of the vehicle.", 'force = "sprung_force"', default=None)
+    intensity: Amount | None = key(
+        AmountCodec(_OF_FORCES, "white force"),
+        "Of the force: its spectral density, two-sided; of a moment in (N m)^2/Hz.",
+        'intensity = "1 N^2/Hz"',
         default=None,
-        description="Of the force: its spectral density, two-sided; of a moment in (N m)^2/Hz.",
-        examples=['intensity = "1 N^2/Hz"'],
     )
-    shaping: FILTER | None = Field(
+    shaping: Filter | None = key(
+        FILTER,
+        "A filter through which it arrives.",
+        "shaping = { numerator = [1.0], denominator = [1.0, 2.0] }",
         default=None,
-        description="A filter through which it arrives.",
-        examples=["shaping = { numerator = [1.0], denominator = [1.0, 2.0] }"],
     )
-
-    @model_validator(mode="after")
-    def _of_one_kind(self) -> ExcitationTable:
-        given = [key for key in type(self).model_fields if getattr(self, key) is not None]
-        others = [key for key in ("force", _INTENSITY) if key in given]
-        if not given:
-            wanted = "ground_acceleration, force with intensity, or shaping of the road"
-            raise EntryError(got="an empty table", expected=wanted)
-        if _GROUND in given and others:
-            raise EntryError(got=f"both {_GROUND} and {others[0]}", expected="one of the two")
-        if others == ["force"]:
-            raise EntryError(got="a force alone", expected='its intensity too, such as intensity = "1 N^2/Hz"')
-        if others == [_INTENSITY]:
-            raise EntryError(got="an intensity alone", expected='its force too, such as force = "sprung_force"')
-        return self
-
-
-@dataclass(frozen=True)
-class StatedExcitation:
-    """An excitation as a file says it; without ground or force it is the road."""
-
-    ground_acceleration: float | None
-    force: str | None
-    intensity: Amount | None
-    shaping: Filter | None
 
     @property
     def on_road(self) -> bool:
@@ -131,31 +121,6 @@ class StatedExcitation:
             plain = WhiteForce(self.force, self.intensity.value)
         return plain if self.shaping is None or plain is None else Shaped(plain, self.shaping)
 
-    def entry(self) -> dict[str, Any]:
-        """How a file says it."""
-        entries = {
-            _GROUND: None if self.ground_acceleration is None else f"{self.ground_acceleration!r} {_OF_GROUND}",
-            "force": self.force,
-            _INTENSITY: None if self.intensity is None else written(self.intensity),
-            "shaping": None if self.shaping is None else filter_entry(self.shaping),
-        }
-        return {key: entry for key, entry in entries.items() if entry is not None}
-
-    def numbers(self) -> dict[str, Number]:
-        """The numbers in it, by their keys."""
-        if self.ground_acceleration is not None:
-            return {_GROUND: Number(_OF_GROUND, "intensity of the ground acceleration", self.ground_acceleration)}
-        if self.force is None or self.intensity is None:
-            return {}
-        return {_INTENSITY: number_of(self.intensity, f"intensity of {in_words(self.force)}")}
-
-    def with_number(self, key: str, number: float) -> StatedExcitation:
-        """The same with another number at one of these keys."""
-        if key == _GROUND:
-            return replace(self, ground_acceleration=number)
-        assert self.intensity is not None
-        return replace(self, intensity=self.intensity._replace(value=number))
-
     def told(self) -> Iterator[tuple[str, str]]:
         """What a report says of it beside its numbers."""
         if self.shaping is not None:
@@ -172,18 +137,37 @@ class StatedExcitation:
             yield Sized((_INTENSITY,), self.intensity.unit, _density)
 
 
-def _stated(table: ExcitationTable) -> StatedExcitation:
-    return StatedExcitation(table.ground_acceleration, table.force, table.intensity, table.shaping)
+@dataclass(frozen=True)
+class ExcitationCodec(TableCodec):
+    """The table of an excitation, whose intensity is called by its force."""
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The intensity of the ground or of the force."""
+        for keys, number in super().numbers(value, words):
+            of_force = keys == (_INTENSITY,) and value.force is not None
+            yield keys, replace(number, words=f"intensity of {in_words(value.force)}") if of_force else number
 
 
-EXCITATION: Any = Annotated[ExcitationTable, AfterValidator(_stated)]
+def _of_one_kind(value: StatedExcitation) -> StatedExcitation:
+    given = [name for name, part in vars(value).items() if part is not None]
+    others = [name for name in ("force", _INTENSITY) if name in given]
+    if not given:
+        wanted = "ground_acceleration, force with intensity, or shaping of the road"
+        raise EntryError(got="an empty table", expected=wanted)
+    if _GROUND in given and others:
+        raise EntryError(got=f"both {_GROUND} and {others[0]}", expected="one of the two")
+    if others == ["force"]:
+        raise EntryError(got="a force alone", expected='its intensity too, such as intensity = "1 N^2/Hz"')
+    if others == [_INTENSITY]:
+        raise EntryError(got="an intensity alone", expected='its force too, such as force = "sprung_force"')
+    return value
+
+
+EXCITATION = ExcitationCodec(
+    keys_in(StatedExcitation), StatedExcitation, check=_of_one_kind, about=str(StatedExcitation.__doc__)
+)
 
 
 def _density(unit: str) -> str:
     """The unit of a spectral density of what has this unit."""
     return f"({unit})^2/Hz" if " " in unit else f"{unit}^2/Hz"
-
-
-def written(amount: Amount) -> str:
-    """An amount in its SI unit."""
-    return f"{amount.value!r} {amount.unit}"

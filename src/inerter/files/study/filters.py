@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
-
-from pydantic import AfterValidator, Field
+from typing import Any
 
 from inerter.checks import is_number
+from inerter.files.common.codec import Declaration, Scalar, TableCodec
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import checked
-from inerter.files.common.tables import Shape
 from inerter.systems.filters import Filter
 from inerter.units import shown
 
@@ -23,31 +20,31 @@ def _coefficients(value: Any) -> tuple[float, ...]:
     return tuple(map(float, value))
 
 
-_COEFFICIENTS = checked(_coefficients, lambda: {"type": "array", "items": {"type": "number"}, "minItems": 1})
-
-
-class FilterTable(Shape):
-    """A transfer function in s, s in rad/s."""
-
-    numerator: Annotated[tuple[float, ...], _COEFFICIENTS] = Field(
-        description="Coefficients of s, the highest power first.", examples=["numerator = [1.0, 0.0]"]
-    )
-    denominator: Annotated[tuple[float, ...], _COEFFICIENTS] = Field(
-        description="Coefficients of s, the highest power first; all poles are stable.",
-        examples=["denominator = [1.0, 0.5]"],
-    )
-
-
-def _filter(table: FilterTable) -> Filter:
-    return Filter(table.numerator, table.denominator)  # which says what is wrong with it
-
-
-FILTER: Any = Annotated[FilterTable, AfterValidator(_filter)]
-
-
-def filter_entry(value: Filter) -> dict[str, list[float]]:
-    """How a file says a filter."""
-    return {name: [float(c) for c in getattr(value, name)] for name in FilterTable.model_fields}
+_COEFFICIENTS = Scalar(
+    _coefficients,
+    lambda: {"type": "array", "items": {"type": "number"}, "minItems": 1},
+    lambda values: list(map(float, values)),
+)
+FILTER = TableCodec(
+    (
+        Declaration(
+            _COEFFICIENTS,
+            "Coefficients of s, the highest power first.",
+            "numerator = [1.0, 0.0]",
+            name="numerator",
+            attribute="numerator",
+        ),
+        Declaration(
+            _COEFFICIENTS,
+            "Coefficients of s, the highest power first; all poles are stable.",
+            "denominator = [1.0, 0.5]",
+            name="denominator",
+            attribute="denominator",
+        ),
+    ),
+    make=Filter,  # which says what is wrong with it
+    about="A transfer function in s, s in rad/s.",
+)
 
 
 def in_s(value: Filter) -> str:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, Never
-
-from pydantic import Discriminator, Field, Tag
+from typing import TYPE_CHECKING, Any
 
 from inerter.errors import InerterError
+from inerter.files.common.codec import Codec, KeyPath, Scalar, declared, given, key, table_of
+from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.schema import NEVER, OrDeeper, checked, quantity_schema
+from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.tables import Shape
 from inerter.indices.names import index_names
 from inerter.methods.asking import Asked
 from inerter.methods.method import asked_of
@@ -61,40 +61,63 @@ def _limit_text(value: Any) -> str | float:
     return quantity_text(value)
 
 
-_Text = Annotated[str | float | None, checked(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})]
+_LIMIT = Scalar(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})
 
 
-class LimitShape(Shape):
+@declared
+class LimitTable:
     """The sides on which an index is limited."""
 
-    at_most: _Text = Field(default=None, description="The most that it may be.", examples=['at_most = "3 mm"'])
-    at_least: _Text = Field(default=None, description="The least that it may be.", examples=['at_least = "1 mm"'])
-    equal: _Text = Field(default=None, description="What it has to be.", examples=['equal = "120 kN/m"'])
+    at_most: str | float | None = key(_LIMIT, "The most that it may be.", 'at_most = "3 mm"', default=None)
+    at_least: str | float | None = key(_LIMIT, "The least that it may be.", 'at_least = "1 mm"', default=None)
+    equal: str | float | None = key(_LIMIT, "What it has to be.", 'equal = "120 kN/m"', default=None)
 
 
-def _refused(entry: Any) -> Never:
-    raise EntryError(got=shown(entry), fault="not a table", expected='such as { at_most = "600 N" }')
+_SIDES = table_of(LimitTable, make=given, about=LimitTable.__doc__)
 
 
-LimitEntry = Annotated[
-    Annotated[LimitShape, Tag("<limit>")] | Annotated[Any, checked(_refused, lambda: NEVER), Tag("<no table>")],
-    Discriminator(lambda entry: "<limit>" if isinstance(entry, dict) else "<no table>"),
-    OrDeeper(),
-]
+@dataclass(frozen=True)
+class LimitsCodec(ByPlaceCodec):
+    """The limits of a study: tables by the names of indices and static stiffnesses."""
+
+    item: Codec = _SIDES
+    example: str = 'such as { at_most = "600 N" }'
+    entries: bool = True
+
+    def dump(self, value: Iterable[StudyLimit]) -> dict[str, dict[str, str | float]]:
+        """The values by index and side."""
+        found: dict[str, dict[str, str | float]] = {}
+        for limit in value:
+            found.setdefault(limit.of, {})[limit.sense] = limit.entry()
+        return found
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The values."""
+        for limit in value:
+            yield (limit.of, limit.sense), Number(limit.unit, limit.words, limit.value)
+
+    def put(self, value: Iterable[StudyLimit], keys: Sequence[str], number: float) -> tuple[StudyLimit, ...]:
+        """The limits, one of them with another value."""
+        *of, sense = keys
+        return tuple(
+            replace(limit, value=number) if (limit.of, limit.sense) == (".".join(of), sense) else limit
+            for limit in value
+        )
 
 
-def limits_of(study: Study, entries: Mapping[str, LimitShape]) -> tuple[tuple[StudyLimit, ...], list[Problem]]:
+def limits_of(
+    study: Study, entries: Mapping[str, Mapping[str, str | float]]
+) -> tuple[tuple[StudyLimit, ...], list[Problem]]:
     """The limits that a file sets, and what is wrong with them."""
     limits, problems = [], []
     if entries and study.optimise is None:
         problems.append(at(_PLACE, fault="nothing is optimised", expected="optimise, or no limits"))
-    for of, entry in entries.items():
-        given = {sense: text for sense, text in entry.model_dump().items() if text is not None}
+    for of, sides in entries.items():
         try:
-            if not given or ("equal" in given and len(given) > 1):
-                raise EntryError(got=shown(given) if given else "no limit", expected="at_most, at_least or equal")
+            if not sides or ("equal" in sides and len(sides) > 1):
+                raise EntryError(got=shown(sides) if sides else "no limit", expected="at_most, at_least or equal")
             unit = _unit(study, of)
-            found = [StudyLimit(of, sense, _value(text, unit), unit) for sense, text in given.items()]
+            found = [StudyLimit(of, sense, _value(text, unit), unit) for sense, text in sides.items()]
             if len(found) > 1 and found[0].value < found[1].value:
                 raise EntryError(got="at_most below at_least", expected="at_most above it, or equal")
             limits += found

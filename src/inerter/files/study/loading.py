@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.layouts import StrutLayout, elements_of, layout_problems, struts_of
+from inerter.files.common.elements import with_tied_values
+from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
-from inerter.files.common.roads import MeasuredLine, coherence_of, coherence_values, line_through, track_problems
+from inerter.files.common.roads import MeasuredLine, line_through, road_of, track_problems, without_source
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.tables import Shape
-from inerter.files.common.toml import read_tables, shape_of
-from inerter.files.common.vehicles import tracks, values_of, vehicle_problems
-from inerter.files.study.conditions import OVER
+from inerter.files.common.toml import read_tables, value_of
+from inerter.files.common.vehicles import parts_of, tracks, vehicle_problems
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.named import name_problems
-from inerter.files.study.own_indices import bare_index_problems, own_index, own_index_problems
-from inerter.files.study.shape import ROAD_EXAMPLE, StudyFile, shapes
-from inerter.files.study.study import POINTS, Study, elements_used
+from inerter.files.study.own_indices import bare_index_problems, own_index_problems
+from inerter.files.study.sections import ROAD_EXAMPLE, study_codec
+from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tolerances import tolerance_of
 from inerter.files.study.written import texts_of
-from inerter.indices.registry import index_settings
 from inerter.methods.registry import methods_that, searches
-from inerter.networks.elements import Free
-from inerter.signals.road import Road
+from inerter.networks.elements import Element, Free
 from inerter.units import shown
 from inerter.writing import characters
 
@@ -50,34 +47,36 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
 
     Raises `StudyError` as `load_study` does.
     """
-    shape = shape_of(tables, path, *shapes())
-    line, line_problems = line_through(shape.road, path)
-    study = replace(_resolve(path, shape, line), texts=texts_of(tables))
+    found = value_of(study_codec(), tables, path)
+    elements, element_problems = with_tied_values(found["elements"])
+    line, line_problems = line_through(found["road"], path)
+    study = replace(_resolve(path, found, elements, line), texts=texts_of(tables))
+    asked = found["study"]
     problems = [
-        *elements_of(shape.elements)[1],
+        *element_problems,
         *vehicle_problems(study.model, study.vehicle),
-        *layout_problems(study.model, study.vehicle, study.elements, study.layouts),
+        *layout_problems(study.elements, study.layouts),
         *line_problems,
         *_road_problems(study),
     ]
-    unclear = [*_index_problems(study, shape), *(() if problems else name_problems(study))]
+    unclear = [*_index_problems(study, asked["limits"]), *(() if problems else name_problems(study))]
     if unclear:  # what is asked is not known yet, and so what may be wrong with the rest
         raise refusal(path, [*problems, *unclear])
-    limits, limit_problems = limits_of(study, shape.study.subject_to or {})
+    limits, limit_problems = limits_of(study, asked["limits"] or {})
     study = replace(study, limits=limits)
-    swept, sweep_problems = ((), []) if shape.study.sweep is None else sweeps_of(study, shape.study.sweep)
+    swept, sweep_problems = ((), []) if asked["sweeps"] == () else sweeps_of(study, asked["sweeps"])
     study = replace(study, sweeps=swept)
-    conditions, condition_problems = conditions_of(study, shape.conditions)
-    spread, spread_problems = tolerance_of(study, shape.study.tolerance or {})
+    conditions, condition_problems = conditions_of(study, found["conditions"])
+    spread, spread_problems = tolerance_of(study, asked["tolerance"])
     study = replace(study, conditions=conditions, tolerance=spread)
     problems += [
         *sweep_problems,
         *condition_problems,
         *limit_problems,
         *spread_problems,
-        *_setting_problems(study, shape),
+        *_setting_problems(study, tables["study"]),
         *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
-        *_front_problems(study, shape),
+        *_front_problems(study, tables["study"]),
         *_scatter_problems(study),
         *method_problems(study),
     ]
@@ -88,48 +87,27 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     return study
 
 
-def _resolve(path: Path, shape: StudyFile, line: MeasuredLine | None) -> Study:
-    model, vehicle = values_of(shape.vehicle)
-    layouts = {name: StrutLayout(struts_of(model, vehicle, entry)) for name, entry in shape.layouts.items()}
-    settings = shape.study
-    baseline = settings.baseline
-    if baseline is None and len(layouts) > 1:
-        baseline = next(iter(layouts))
+def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element], line: MeasuredLine | None) -> Study:
+    """The study, but for what is said by places of it."""
+    model, vehicle = parts_of(found["vehicle"])
+    settings = {**found["study"], "sweeps": (), "limits": (), "tolerance": {}}
+    if settings["baseline"] is None and len(found["layouts"]) > 1:
+        settings["baseline"] = next(iter(found["layouts"]))
+    road = found["road"] and without_source(found["road"], line)
     return Study(
-        title=characters(path.stem) if shape.title is None else shape.title,
+        title=characters(path.stem) if found["title"] is None else found["title"],
         path=path,
         model=model,
         vehicle=vehicle,
-        road=_road(shape, line),
-        coherence=coherence_values(shape.road),
+        road=None if road is None else road_of(road, None if line is None else line.shape),
+        coherence=(road and road["coherence"]) or {},
         line=line,
-        elements=elements_of(shape.elements)[0],
-        layouts=layouts,
-        indices=settings.indices,
-        conventions=settings.conventions,
-        optimise=settings.optimise,
-        evaluate=settings.evaluate,
-        baseline=baseline,
-        seed=settings.seed,
-        realisations=settings.realisations,
-        relative_error=settings.relative_error,
-        settings={key: value for key in index_settings() if (value := getattr(settings, key)) is not None},
-        own_indices={name: own_index(entry) for name, entry in shape.indices.items()},
-        over=settings.conditions or OVER[0],
-        method_settings=_method_settings(shape),
-        trade_off=settings.trade_off,
-        points=settings.points or POINTS,
-        quantile=settings.quantile,
-        budgets=settings.budgets,
+        elements=elements,
+        layouts=found["layouts"],
+        own_indices=found["indices"],
+        method_settings={name: table for name, table in found.get("methods", {}).items() if table},
+        **settings,
     )
-
-
-def _road(shape: StudyFile, line: MeasuredLine | None) -> Road | None:
-    if shape.road is None:
-        return None
-    roughness = shape.road.roughness if line is None else line.roughness
-    measured = None if line is None else line.shape
-    return Road(roughness, shape.road.speed, coherence_of(coherence_values(shape.road)), measured)
 
 
 def _road_problems(study: Study) -> Iterator[Problem]:
@@ -137,9 +115,9 @@ def _road_problems(study: Study) -> Iterator[Problem]:
         yield from track_problems(("road", "coherence"), tracks(study.model, study.vehicle))
 
 
-def _index_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+def _index_problems(study: Study, limits: Iterable[str]) -> Iterator[Problem]:
     """What indices lack that cannot be without it: settings, a road."""
-    limited = [name for name in shape.study.subject_to or {} if study.knows(name)]
+    limited = [name for name in limits if study.knows(name)]
     asked = list(dict.fromkeys([*study.indices, *study.trade_off, *limited]))
     yield from bare_index_problems(asked)
     on_roads = [name for name in asked if study.needs_road(name)]
@@ -148,18 +126,10 @@ def _index_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
         yield at(("road",), fault=f"missing, but {some(on_roads)} {need} it", expected=ROAD_EXAMPLE)
 
 
-def _method_settings(shape: StudyFile) -> dict[str, dict[str, float]]:
-    """The section [methods], which is there if any method has settings of its own: by method, what is given."""
-    section: Shape | None = getattr(shape, "methods", None)
-    tables = {} if section is None else section.model_dump(by_alias=True)
-    given = {n: {key: value for key, value in table.items() if value is not None} for n, table in tables.items()}
-    return {name: table for name, table in given.items() if table}
-
-
-def _setting_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
-    if shape.study.conditions is not None and not study.conditions:
+def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]:
+    if "conditions" in given and not study.conditions:
         place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
-        yield at(place, got=shown(shape.study.conditions), fault="there are none", expected=wanted)
+        yield at(place, got=shown(study.over), fault="there are none", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
@@ -174,9 +144,9 @@ def _scatter_problems(study: Study) -> Iterator[Problem]:
         yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
 
 
-def _front_problems(study: Study, shape: StudyFile) -> Iterator[Problem]:
+def _front_problems(study: Study, given: Collection[str]) -> Iterator[Problem]:
     place = ("study", "trade_off")
-    if shape.study.points is not None and not study.trade_off:
+    if "points" in given and not study.trade_off:
         yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
     if not study.trade_off:
         return

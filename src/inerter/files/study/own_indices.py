@@ -4,26 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, Never
-
-from pydantic import AfterValidator, ConfigDict, Field, PlainValidator, create_model
+from typing import Any
 
 from inerter.errors import RowError
 from inerter.fields import fields_of
-from inerter.files.common.entries import layout_name, one_of
+from inerter.files.common.codec import TableCodec, given
+from inerter.files.common.codecs import NamesCodec, TaggedCodec
+from inerter.files.common.entries import layout_name, one_of, stated
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.common.schema import NEVER, checked
-from inerter.files.common.shape import ANY, if_given, of_choices, one_of_shapes
-from inerter.files.common.tables import Shape, Shapes
-from inerter.files.common.vehicles import in_si
-from inerter.files.study.forms import Form, form_of, of_forms
+from inerter.files.study.forms import Form, declaration_of, form_of
 from inerter.indices.names import index_names, index_words
 from inerter.indices.registry import INDICES, as_line, excitation_of, index_choices, index_forms, needed_settings
 from inerter.signals.road import Road
 from inerter.units import shown
 
 _KIND = "kind"
-_NO_TABLE = "<no table>"
 
 
 @dataclass(frozen=True)
@@ -56,39 +51,11 @@ class OwnIndex:
         """Its settings as the index takes them, on that road if it is on one."""
         return {**self.settings, **{key: form.made(value, road) for key, form, value in self.formed}}
 
-    def entry(self) -> dict[str, Any]:
-        """How a file says it."""
-        texts = {one.key: self.settings[one.key] for one in index_choices(self.symbol) if one.key in self.settings}
-        numbers = in_si(fields_of(INDICES[self.symbol]), self.settings)
-        formed = {key: form.written(value) for key, form, value in self.formed}
-        return {_KIND: index_words()[self.symbol], **texts, **numbers, **formed}
-
-
-def _kind(value: Any) -> str:
-    return one_of("a kind of index", index_names())(value)
-
-
-class _AnyIndex(Shape):
-    """An index whose kind is missing or unknown: nothing more can be said about its keys."""
-
-    model_config = ConfigDict(extra="ignore")
-    kind: Annotated[str, PlainValidator(_kind)] = Field(examples=['kind = "ride-comfort"'])
-
-
-def own_index(entry: Shape) -> OwnIndex:
-    """What a table says."""
-    given = {key: value for key in type(entry).model_fields if (value := getattr(entry, key)) is not None}
-    return OwnIndex(index_names()[given.pop(_KIND)], given)
-
 
 def indices_of(tables: Mapping[str, Any]) -> list[str]:
     """The names of all indices that a file can ask for: those that there are, and its own."""
     own = tables.get("indices")
     return [*index_names(), *(own if isinstance(own, dict) else ())]
-
-
-def _refused(entry: Any) -> Never:
-    raise EntryError(got=shown(entry), fault="not a table", expected='such as { kind = "ride-comfort" }')
 
 
 def _own_name(name: Any) -> str:
@@ -97,38 +64,32 @@ def _own_name(name: Any) -> str:
     return layout_name(name)
 
 
-_OwnName = Annotated[str, AfterValidator(_own_name)]
+def own_indices_codec() -> NamesCodec:
+    """The section [indices].
+
+    Raises `RowError` if an index has two settings of one key.
+    """
+    tables = {name: _index_table(name, symbol) for name, symbol in index_names().items()}
+    example = 'such as { kind = "ride-comfort" }'
+    check = one_of("a kind of index", index_names())
+    each = TaggedCodec(_KIND, lambda: tables, check, lambda own: index_words()[own.symbol], "ride-comfort")
+    return NamesCodec(each, _own_name, example=example)
 
 
-def index_shapes() -> tuple[Any, Shapes]:
-    """The section [indices], and its shapes by place."""
-    shapes: dict[str, type[Shape]] = {}
-    for name, symbol in index_names().items():
-        fields, choices, forms = fields_of(INDICES[symbol]), index_choices(symbol), index_forms(symbol)
-        taken = [_KIND, *(f.key for f in fields), *(one.key for one in choices), *(one.key for one in forms)]
-        if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:
-            raise RowError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
-        keys = {**if_given(fields), **of_choices(choices), **of_forms(forms)}
-        what = Field(description="Which index it is.", examples=[f'{_KIND} = "{name}"'])
-        shapes[f"<{name}>"] = create_model(f"Index {name}", __base__=Shape, **{_KIND: (Literal[name], what), **keys})
-    shapes[ANY] = _AnyIndex
+def _index_table(name: str, symbol: str) -> TableCodec:
+    def make(**values: Any) -> OwnIndex:
+        return OwnIndex(symbol, given(**values))
 
-    def tag(entry: Any) -> str:
-        if not isinstance(entry, dict):
-            return _NO_TABLE
-        kind = entry.get(_KIND)
-        return f"<{kind}>" if isinstance(kind, str) and f"<{kind}>" in shapes else ANY
-
-    no_table = Annotated[Any, checked(_refused, lambda: NEVER)]
-    each: Any = one_of_shapes({**shapes, _NO_TABLE: no_table}, tag)
-    table: Any = dict.__class_getitem__((_OwnName, each))
-    inside = {
-        ("indices", "*", f"<{name}>", one.key, *keys): held
-        for name, symbol in index_names().items()
-        for one in index_forms(symbol)
-        for keys, held in form_of(one).tables.items()
-    }
-    return table, {**{("indices", "*", tagged): shape for tagged, shape in shapes.items()}, **inside}
+    fields, choices = fields_of(INDICES[symbol]), index_choices(symbol)
+    keys = (
+        *(stated(field, optional=True) for field in fields),
+        *(stated(one) for one in choices),
+        *(declaration_of(one) for one in index_forms(symbol)),
+    )
+    taken = [_KIND, *(one.name for one in keys)]
+    if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:
+        raise RowError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
+    return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Which index it is."))
 
 
 def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from inerter.files.common.schema import json_schema
-from inerter.files.study.shape import shapes
+from inerter.files.study.sections import study_codec
 from inerter.rows import made_of_rows
 
 
 @made_of_rows
 def study_schema() -> dict[str, Any]:
     """The schema, with what other distributions add."""
-    file, _ = shapes()
     about = "Vehicle, road, elements, layouts and what is asked of them. Every quantity is text with its unit."
-    return json_schema(file, "A study file of inerter", about)
+    return json_schema(study_codec().schema(), "A study file of inerter", about)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.files.study.places import place_of, with_numbers
+from inerter.files.study.place import place_of
+from inerter.files.study.places import with_numbers
 from inerter.methods.asking import Asked
 from inerter.methods.counterpart import has_play
 from inerter.methods.equivalent import has_friction

@@ -9,12 +9,12 @@ from typing import Any
 from inerter.errors import InerterError, StudyError, with_article
 from inerter.fields import Field, fields_of, needed_mounts_of
 from inerter.files.common.keys import keys_of
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
-from inerter.files.common.vehicle_shapes import MECHANISM
+from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.schema import study_schema
-from inerter.files.study.shape import judged_models
+from inerter.files.study.sections import judged_models
 from inerter.indices.registry import INDICES, make_index
 from inerter.methods.registry import DEFAULT
 from inerter.networks.elements import Damper, Inerter, Network, Spring
@@ -83,7 +83,7 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
         ],
         [as_line("title", f"{car.capitalize()}: with an inerter and without")],
         ["[vehicle]", as_line("model", model), *(_PARTS if kind is _Quarter else _quantities(fields_of(kind)))],
-        *([["[road]", *_quantities(ROAD)]] if _moved_by_road(kind) else []),
+        *([["[road]", *_quantities(ROAD_QUANTITIES)]] if _moved_by_road(kind) else []),
         [*_elements(kind)],
         [_JOINED, *_mounts(kind), "[layouts]", *(_line(as_line(n, text), why) for n, (text, why) in _LAYOUTS.items())],
         [*_settings(kind)],

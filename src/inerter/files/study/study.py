@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.fields import fields_of
-from inerter.files.common.kind_entry import entry_of
+from inerter.files.common.codec import declared
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
-from inerter.files.common.roads import MeasuredLine, coherence_entry
-from inerter.files.common.shape import ROAD
+from inerter.files.common.roads import MeasuredLine
 from inerter.files.common.suggest import nearest
-from inerter.files.common.vehicles import in_si, vehicle_entry
-from inerter.files.study.conditions import OVER, StudyCondition, condition_of, what_of
-from inerter.files.study.limits import StudyLimit
+from inerter.files.study.conditions import StudyCondition, condition_of, what_of
 from inerter.files.study.own_indices import OwnIndex
-from inerter.files.study.places import Place, element_at, place_of, with_numbers
+from inerter.files.study.place import Place, element_at, place_of
+from inerter.files.study.places import sections_of, with_numbers
+from inerter.files.study.sections import OVER, Settings, study_codec
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
-from inerter.indices.registry import INDICES, excitation_of, index_settings, make_index
+from inerter.indices.registry import INDICES, excitation_of, make_index
 from inerter.methods.asking import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
-from inerter.methods.registry import DEFAULT, make_method, method_settings
+from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
 from inerter.scatter.robust import Quantile
@@ -36,27 +35,9 @@ from inerter.signals.road import Road
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
-POINTS = 25  # of a front
 
-
-@dataclass(frozen=True)
-class Sweep:
-    """The values that the number at a place takes in turn, in its SI unit."""
-
-    place: Place
-    values: tuple[float, ...]
-    unit: str
-    words: str  # what is swept
-    written: str = field(default="", compare=False)  # the unit in which the file gives the values; empty if in several
-
-    @property
-    def label(self) -> str:
-        """What it is called in results."""
-        return self.place.label
-
-
-@dataclass(frozen=True)
-class Study:
+@declared
+class Study(Settings):
     """All that a study file says, with defaults filled in. Equal studies may come from different files."""
 
     title: str
@@ -66,29 +47,13 @@ class Study:
     road: Road | None  # of indices that are asked on one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one in all layouts
     layouts: dict[str, StrutLayout]
-    indices: tuple[str, ...]
-    conventions: str = "exact"
-    optimise: str | None = None
-    evaluate: tuple[str, ...] = (DEFAULT,)
-    baseline: str | None = None  # the layout that the others are compared with; None if there is but one
-    sweeps: tuple[Sweep, ...] = ()  # each value of one with each of the others
     coherence: dict[str, float] = field(default_factory=dict)  # of the road, as the file says it
     line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
-    seed: int = 0
-    realisations: int | None = None  # random roads of methods that average; None: as many as they like
-    relative_error: float | None = None  # or as many as this needs
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
-    limits: tuple[StudyLimit, ...] = ()  # which optima keep
     conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
-    over: str = OVER[0]  # how
     texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
-    trade_off: tuple[str, ...] = ()  # two or three indices, whose front of each layout is asked for
-    points: int = POINTS  # of each front
-    tolerance: dict[str, float] = field(default_factory=dict)  # by what part of itself the number at a place scatters
-    quantile: float | None = None  # of what an index becomes then, which takes its place
-    budgets: tuple[str, ...] = ()  # elements, each for which values a layout is better than the baseline
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -218,52 +183,7 @@ class Study:
 
         Two studies that ask the same of the same vehicle have the same dictionary, wherever their files are.
         """
-        return {
-            "title": self.title,
-            "vehicle": vehicle_entry(self.model, self.vehicle),
-            **({"road": self._road()} if self.road else {}),
-            "elements": {name: entry_of(element) for name, element in self.elements.items()},
-            "layouts": {name: layout.entry() for name, layout in self.layouts.items()},
-            **({"indices": own} if (own := {n: index.entry() for n, index in self.own_indices.items()}) else {}),
-            **({"conditions": [c.entry(self) for c in self.conditions]} if self.conditions else {}),
-            "study": self._settings(),
-            **({"methods": own} if (own := self._of_methods()) else {}),
-        }
-
-    def _road(self) -> dict[str, Any]:
-        own = in_si(ROAD, {f.key: getattr(self.road, f.key) for f in ROAD})
-        return {**own, "coherence": coherence_entry(self.coherence)} if self.coherence else own
-
-    def _of_methods(self) -> dict[str, Any]:
-        return {name: in_si(method_settings(name), given) for name, given in self.method_settings.items()}
-
-    def _settings(self) -> dict[str, Any]:
-        settings = {
-            "indices": list(self.indices),
-            "conventions": self.conventions,
-            "optimise": self.optimise,
-            "evaluate": list(self.evaluate),
-            "baseline": self.baseline,
-            "sweep": {s.label: [f"{value!r} {s.unit}" for value in s.values] for s in self.sweeps} or None,
-            "seed": self.seed,
-            "realisations": self.realisations,
-            "relative_error": self.relative_error,
-            **in_si(index_settings().values(), self.settings),
-            "subject_to": self._limits() or None,
-            "conditions": self.over if self.conditions else None,
-            "trade_off": list(self.trade_off) or None,
-            "points": self.points if self.trade_off else None,
-            "tolerance": self.tolerance or None,
-            "quantile": self.quantile,
-            "budgets": list(self.budgets) or None,
-        }
-        return {key: value for key, value in settings.items() if value is not None}
-
-    def _limits(self) -> dict[str, dict[str, str | float]]:
-        found: dict[str, dict[str, str | float]] = {}
-        for limit in self.limits:
-            found.setdefault(limit.of, {})[limit.sense] = limit.entry()
-        return found
+        return study_codec().dump(sections_of(self))
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:

@@ -11,13 +11,14 @@ import numpy as np
 
 from inerter.errors import InerterError
 from inerter.files.common.entries import MOST_POINTS, quantity_text
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
-from inerter.files.study.number import Number
-from inerter.files.study.places import Place, element_at, number_at, place_of, places, with_numbers
-from inerter.files.study.shape import SweepRange
-from inerter.files.study.study import Study, Sweep, elements_used
+from inerter.files.study.place import Place, Sweep, element_at, place_of
+from inerter.files.study.places import number_at, places, with_numbers
+from inerter.files.study.sections import SweepRange
+from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free, Tied
 from inerter.units import are_alike, format_quantity, is_unit_for, parse_quantity, shown, unit_in
 
@@ -129,7 +130,7 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
     problems: list[Problem] = []
     for i, entry in enumerate(entries, start=1):
         numbers = {}
-        for label, given in (entry.model_extra or {}).items():
+        for label, given in entry.numbers.items():
             where = (f"{_CONDITIONS}[{i}]", label)
             try:
                 place = place_of(label)
@@ -139,7 +140,7 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
                 problems.append(replace(error.problem, place=where))
             except InerterError as error:
                 problems.append(at(where, str(error)))
-        conditions.append(StudyCondition(numbers, entry.share, entry.name))
+        conditions.append(StudyCondition(numbers, entry.share, entry.name or ""))
     swept = {sweep.label for sweep in study.sweeps}
     for i, condition in enumerate(conditions, start=1):
         for label in condition.numbers.keys() & swept:

@@ -15,7 +15,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.conditions import what_of
-from inerter.files.study.places import element_at, place_of
+from inerter.files.study.place import element_at, place_of
 from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
 from inerter.methods.registry import deciding
@@ -116,16 +116,16 @@ def tolerance_cases(study: Study) -> list[ToleranceCase]:
     return [ToleranceCase(layout, index) for index in study.indices for layout in study.layouts if study.spread(layout)]
 
 
-def tolerance_of(study: Study, entries: Mapping[str, Any]) -> tuple[dict[str, float], list[Problem]]:
+def tolerance_of(study: Study, entries: Mapping[str, float]) -> tuple[dict[str, float], list[Problem]]:
     """By what part of itself each number scatters, by its label, and what is wrong with that."""
     spread, problems = {}, []
-    for label, given in entries.items():
+    for label, part in entries.items():
         try:
             place = place_of(label)
             if what_of(study, place) is None or place.section == "road":
                 raise unknown_place(study, place)
             _check_is_part(study, element_at(place))
-            spread[place.label] = _part(given)
+            spread[place.label] = part
         except EntryError as error:
             problems.append(replace(error.problem, place=(*_PLACE, label)))
         except InerterError as error:
@@ -139,19 +139,6 @@ def _check_is_part(study: Study, name: str) -> None:
         tied = [other for other, e in study.elements.items() if isinstance(e.value, Tied) and name in e.value.names]
         hint = f"; {some(tied)} follows from it, and scatters by its own name" if tied else ""
         raise EntryError(got=shown(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout")
-
-
-def _part(given: Any) -> float:
-    """A part of a value: a number, or text with a per cent sign."""
-    number = given
-    if isinstance(given, str) and given.rstrip().endswith("%"):
-        try:
-            number = float(given.rstrip()[:-1]) / 100.0
-        except ValueError:
-            number = None
-    if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < 1.0:
-        raise EntryError(got=shown(given), expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
-    return float(number)
 
 
 def tolerances_csv(found: Sequence[ToleranceOutcome]) -> str:

@@ -1,0 +1,294 @@
+"""One codec for files: what a declaration says is read, written, described to editors, and found and changed by place.
+
+A `Codec` says what an entry may be. A frozen dataclass has one for each of its fields that is a key, and with them is
+a table of a file, `TableCodec(kind)`. Loading with a sentence for every problem, dumping, the JSON Schema, the numbers
+in an object by their places, and the object with another number at a place all follow from that.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeVar, dataclass_transform
+
+from inerter.errors import InerterError
+from inerter.files.common.kinds import kind_with
+from inerter.files.common.number import Number
+from inerter.files.common.problem import EntryError, Problem
+from inerter.files.common.schema import example_value
+from inerter.files.common.suggest import nearest
+from inerter.units import shown
+
+INVALID: Any = object()  # stands for an entry that cannot be read
+REQUIRED: Any = object()  # the default of a key that must be given
+_DECLARATION = "inerter key"
+KeyPath = tuple[str, ...]
+Kind = TypeVar("Kind")
+
+
+@dataclass(frozen=True)
+class LoadContext:
+    """Where an entry stands in a file that is read, with the problems so far."""
+
+    tables: Mapping[str, Any]  # of the whole file
+    root: Codec
+    place: KeyPath = ()
+    example: str = ""  # of what may stand here, for messages
+    problems: list[Problem] = field(default_factory=list)
+    loaded: dict[str, Any] = field(default_factory=dict)  # sections that were read before, by their keys
+
+    def at(self, key: str, example: str = "") -> LoadContext:
+        """The context of an entry below; without an example it has that of the table that it is in."""
+        return replace(self, place=(*self.place, key), example=example or self.example)
+
+    def add(self, error: Exception) -> None:
+        """Add the problem of the entry that an error states."""
+        problem = error.problem if isinstance(error, EntryError) else Problem(said=str(error))
+        self.problems.append(replace(problem, place=(*self.place, *problem.place)))
+
+    def read(self, codec: Codec, raw: Any) -> Any:
+        """The value of an entry; `INVALID`, with its problems added, where there is none."""
+        try:
+            return codec.load(raw, self)
+        except (ValueError, InerterError) as error:
+            self.add(error)
+            return INVALID
+
+    def table(self, raw: Any) -> Mapping[str, Any]:
+        """The entry, if it is a table; raises `EntryError` for another."""
+        if not isinstance(raw, Mapping):
+            raise EntryError(got=shown(raw), fault="not a table", expected=self.example)
+        return raw
+
+
+class Codec:
+    """What an entry of a file may be, and the value that stands for it."""
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The value; raises ValueError, or adds problems to the context and returns `INVALID`."""
+        raise NotImplementedError
+
+    def dump(self, value: Any) -> Any:
+        """The entry of a value, in SI units; None or empty for what is left out."""
+        return value
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the entry."""
+        raise NotImplementedError
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The numbers in a value, by the keys to them; `words` are those of the value."""
+        yield from ()
+
+    def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
+        """The value with another number at these keys, in its SI unit."""
+        return number
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """The tables that the entry may hold or be, by their places."""
+        yield from ()
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """A key of a table: what may stand there, a sentence, and an example as a line of a file."""
+
+    codec: Codec
+    sentence: str = ""
+    example: str = ""
+    default: Any = REQUIRED
+    name: str = ""  # in files
+    attribute: str = ""  # in Python
+    words: str = ""  # of its number, in sentences
+    implied: bool = False  # whether the file may leave it out because other keys say it
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the key."""
+        found = dict(self.codec.schema())
+        if self.sentence:
+            found["description"] = self.sentence
+        if (example := example_value(self.example)) is not None:
+            found["examples"] = [example]
+        if isinstance(self.default, str | int | float):
+            found["default"] = self.default
+        elif isinstance(self.default, tuple) and self.default:
+            found["default"] = list(self.default)
+        return found
+
+
+def key(codec: Codec, sentence: str = "", example: str = "", *, default: Any = REQUIRED, **more: Any) -> Any:
+    """A field of a `declared` class that is a key of a file; as `Declaration`.
+
+    It has the name of the field unless another `name` is given, as one that is a keyword of Python needs.
+    """
+    own: dict[str, Any] = {} if default is REQUIRED else {"default_factory": lambda: default}
+    return field(**own, metadata={_DECLARATION: Declaration(codec, sentence, example, default, **more)})
+
+
+def section(name: str, codec: Codec, sentence: str = "", example: str = "", default: Any = REQUIRED) -> Declaration:
+    """A key that has the same name in Python."""
+    return Declaration(codec, sentence, example, default, name, name)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, field))
+def declared(kind: type[Kind]) -> type[Kind]:
+    """A frozen dataclass, of keyword arguments alone, whose fields may be keys."""
+    return dataclass(frozen=True, kw_only=True)(kind)
+
+
+def keys_in(kind: Any) -> tuple[Declaration, ...]:
+    """The keys that a declared class states, in their order."""
+    every = [(f, f.metadata[_DECLARATION]) for f in dataclasses.fields(kind) if _DECLARATION in f.metadata]
+    return tuple(
+        replace(one, name=one.name or f.name, attribute=f.name, words=one.words or f.name.replace("_", " "))
+        for f, one in every
+    )
+
+
+def given(**values: Any) -> dict[str, Any]:
+    """Those values that are not None."""
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def attributes(value: Any) -> Mapping[str, Any]:
+    """The parts of what a table became, by their names."""
+    return value if isinstance(value, Mapping) else vars(value)
+
+
+@dataclass(frozen=True)
+class TableCodec(Codec):
+    """A table that becomes `make(**values)`, an object of a declared class or a dictionary.
+
+    `before` may change the raw table and `check` the value; both raise ValueError for what is wrong as a whole. One of
+    several kinds has a tag: the key that decides that it is this one, its word there, and a sentence.
+    """
+
+    keys: tuple[Declaration, ...]
+    make: Callable[..., Any] = dict
+    values: Callable[[Any], Mapping[str, Any]] = attributes
+    tag: tuple[str, str, str] = ("", "", "")
+    before: Callable[[Mapping[str, Any]], Mapping[str, Any]] = dict
+    check: Callable[[Any], Any] = lambda value: value
+    rest: str = ""  # the attribute of all other keys, if they are not errors
+    about: str = ""  # a sentence
+
+    @property
+    def names(self) -> list[str]:
+        """All keys that it knows."""
+        return [*filter(None, self.tag[:1]), *(one.name for one in self.keys)]
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The object or the dictionary; keys that it does not know are problems."""
+        raw, count = self.before(context.table(raw)), len(context.problems)
+        values: dict[str, Any] = {}
+        for one in self.keys:
+            if one.name in raw:
+                values[one.attribute] = context.at(one.name, one.example).read(one.codec, raw[one.name])
+            elif one.default is REQUIRED:
+                example = one.example or f"a section [{'.'.join((*context.place, one.name))}]"
+                context.at(one.name).add(EntryError(fault="missing", expected=example))
+                values[one.attribute] = INVALID
+            else:
+                values[one.attribute] = one.default
+            if not context.place:
+                context.loaded[one.name] = values[one.attribute]
+        others = {name: entry for name, entry in raw.items() if name not in self.names}
+        if self.rest:
+            values[self.rest] = others
+        for name in () if self.rest else others:
+            hint = self._hint(name, context)
+            context.at(name).add(EntryError(fault="unknown key", expected=f"one of {', '.join(self.names)}", hint=hint))
+        return INVALID if len(context.problems) > count else self.check(self.make(**values))
+
+    def _hint(self, name: str, context: LoadContext) -> str:
+        """Where an unknown key may belong, or the known one that it may be."""
+        other = None if context.place else kind_with(name)
+        if other is not None:
+            return f"It is a section of {other.plural}, for: inerter {other.command}."
+        every = [(p, t) for p, t in context.root.tables(()) if p and "*" not in p and name in t.names]
+        for place, table in every:
+            if place == context.place[:1] and table.tag[1]:
+                return f'It is a key of {table.tag[0]} = "{table.tag[1]}".'
+        elsewhere = sorted((place for place, _ in every if place[:1] != context.place[:1]), key=len)
+        return f"It belongs in [{'.'.join(elsewhere[0])}]." if elsewhere else nearest(name, self.names)
+
+    def dump(self, value: Any) -> dict[str, Any]:
+        """The table, without what is None or empty."""
+        values = self.values(value)
+        entries = {
+            one.name: one.codec.dump(part) for one in self.keys if (part := values.get(one.attribute)) is not None
+        }
+        tag, word, _ = self.tag
+        others = values[self.rest] if self.rest else {}
+        return {
+            **others,
+            **({tag: word} if tag else {}),
+            **{k: entry for k, entry in entries.items() if entry not in (None, {})},
+        }
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the table."""
+        tag, word, what = self.tag
+        decides = {"const": word, "type": "string", "description": what, "examples": [word]}
+        properties = {**({tag: decides} if tag else {}), **{one.name: one.schema() for one in self.keys}}
+        required = [one.name for one in self.keys if one.default is REQUIRED and not one.implied]
+        return {
+            "type": "object",
+            **({"description": self.about} if self.about else {}),
+            "properties": properties,
+            **({"required": [*filter(None, [tag]), *required]} if tag or required else {}),
+            "additionalProperties": bool(self.rest),
+        }
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The numbers of all its keys; none where there is no table."""
+        values = {} if value is None else self.values(value)
+        for one in () if value is None else self.keys:
+            for keys, number in one.codec.numbers(values.get(one.attribute), one.words):
+                yield (one.name, *keys), number
+
+    def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
+        """The object with another number at a key, or below it."""
+        values = self.values(value)
+        one = next(one for one in self.keys if one.name == keys[0])
+        return self.make(**{**values, one.attribute: one.codec.put(values.get(one.attribute), keys[1:], number)})
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """Itself, and those at its keys."""
+        yield place, self
+        for one in self.keys:
+            yield from one.codec.tables((*place, one.name))
+
+
+def table_of(kind: Any, **more: Any) -> TableCodec:
+    """The table of a declared class, which becomes an object of it; as `TableCodec`."""
+    return TableCodec(**{"keys": keys_in(kind), "make": kind, **more})
+
+
+@dataclass(frozen=True)
+class Scalar(Codec):
+    """An entry without keys of its own: `check` turns it into its value, or raises ValueError."""
+
+    check: Callable[[Any], Any]
+    describe: Callable[[], dict[str, Any]]  # its JSON Schema, made when it is asked for: rows may be added until then
+    write: Callable[[Any], Any] = lambda value: value
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The value."""
+        return self.check(raw)
+
+    def dump(self, value: Any) -> Any:
+        """The entry."""
+        return self.write(value)
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the entry."""
+        return self.describe()
+
+
+def load_tables(codec: Codec, tables: Mapping[str, Any]) -> tuple[Any, list[Problem]]:
+    """What the tables of a file stand for, and all that is wrong with them; `INVALID` if anything is."""
+    context = LoadContext(tables, codec)
+    found = context.read(codec, tables)
+    return (INVALID if context.problems else found), context.problems

@@ -1,0 +1,212 @@
+"""Codecs that are made of others: one of several tables, tables by names or by places, and lists of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, TableCodec
+from inerter.files.common.number import Number
+from inerter.files.common.problem import EntryError
+from inerter.units import shown
+
+
+@dataclass(frozen=True)
+class TaggedCodec(Codec):
+    """One of several tables, decided by the word at the key `tag`; `word_of` is that of a value."""
+
+    tag: str
+    of: Callable[[], Mapping[str, TableCodec]]
+    word: Callable[[Any], str]  # checks the word; raises ValueError for an unknown one
+    word_of: Callable[[Any], str]
+    usual: str  # a word, for examples
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The value of the table that its word decides."""
+        table, inside = context.table(raw), context.at(self.tag)
+        if self.tag not in table:
+            inside.add(EntryError(fault="missing", expected=f'{self.tag} = "{self.usual}"'))
+            return INVALID
+        try:
+            found = self.of()[self.word(table[self.tag])]
+        except ValueError as error:
+            inside.add(error)
+            return INVALID
+        return found.load(table, context)
+
+    def table_of(self, value: Any) -> TableCodec:
+        """The table of a value."""
+        return self.of()[self.word_of(value)]
+
+    def dump(self, value: Any) -> dict[str, Any]:
+        """The table, with its word."""
+        return self.table_of(value).dump(value)
+
+    def schema(self) -> dict[str, Any]:
+        """Any of the tables."""
+        return any_of([table.schema() for table in self.of().values()])
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """Those of the value's table."""
+        yield from self.table_of(value).numbers(value, words)
+
+    def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
+        """As the value's table does."""
+        return self.table_of(value).put(value, keys, number)
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """All of them."""
+        for table in self.of().values():
+            yield from table.tables(place)
+
+
+@dataclass(frozen=True)
+class NamesCodec(Codec):
+    """A table of names of the author's own, each with an entry of one kind."""
+
+    item: Codec
+    name: Callable[[Any], str] = str  # checks a name; raises ValueError
+    least: int = 0
+    example: str = ""  # of an entry, for messages; that of the whole table if left out
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The values by their names."""
+        table = context.table(raw)
+        if len(table) < self.least:
+            raise EntryError(fault="none given", expected=context.example)
+        count, values = len(context.problems), {}
+        for name, entry in table.items():
+            inside = context.at(name, self.example)
+            try:
+                self.name(name)
+            except ValueError as error:
+                inside.add(error)
+            values[name] = inside.read(self.item, entry)
+        return values if len(context.problems) == count else INVALID
+
+    def dump(self, value: Any) -> dict[str, Any]:
+        """The entries by their names."""
+        return {name: self.item.dump(part) for name, part in value.items()}
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the table."""
+        least = {"minProperties": self.least} if self.least else {}
+        return {"type": "object", "additionalProperties": self.item.schema(), **least}
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """Those of all entries, in words with their names."""
+        for name, part in (value or {}).items():
+            for keys, number in self.item.numbers(part, ""):
+                yield (name, *keys), replace(number, words=with_name(number.words, name))
+
+    def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
+        """The table with another number in one of its entries, whose name may have points in it."""
+        count = next(i for i in range(1, len(keys) + 1) if ".".join(keys[:i]) in value)
+        name = ".".join(keys[:count])
+        return {**value, name: self.item.put(value[name], keys[count:], number)}
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """Those of its entries."""
+        yield from self.item.tables((*place, "*"))
+
+
+def with_name(words: str, name: str) -> str:
+    """What is called so, of what has a name."""
+    return f"{words} {'for' if ' of ' in words else 'of'} {name}" if words else name
+
+
+@dataclass(frozen=True)
+class RowsCodec(Codec):
+    """A list of tables, which has as many places."""
+
+    item: TableCodec
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The values of the tables, in their order."""
+        if not isinstance(raw, list):
+            raise EntryError(got=shown(raw), fault="not a list of tables", expected=context.example)
+        *above, name = context.place
+        rows = (replace(context, place=(*above, f"{name}[{i}]")) for i in range(1, len(raw) + 1))
+        return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))
+
+    def dump(self, value: Any) -> list[Any]:
+        """The tables."""
+        return [self.item.dump(one) for one in value]
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the list."""
+        return {"type": "array", "items": self.item.schema()}
+
+
+@dataclass(frozen=True)
+class EitherCodec(Codec):
+    """A table of one kind, or what is no table."""
+
+    table: TableCodec
+    other: Codec
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The value of the one that it is."""
+        return (self.table if isinstance(raw, dict) else self.other).load(raw, context)
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of both."""
+        return any_of([self.table.schema(), self.other.schema()])
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """The table."""
+        yield from self.table.tables(place)
+
+
+@dataclass(frozen=True)
+class ByPlaceCodec(NamesCodec):
+    """A table by places of the whole file, which may be written with quotes, or as tables in tables."""
+
+    entries: bool = False  # whether an entry may be a table, one that holds no other
+
+    def load(self, raw: Any, context: LoadContext) -> Any:
+        """The entries by their places; what they may be is seen when the whole file is known."""
+        return super().load(by_place(raw, entries=self.entries), context)
+
+    def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """None: they are of other places."""
+        yield from ()
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of both ways to write it."""
+        inside = {"additionalProperties": {"type": ["array", "object"]}} if self.entries else {}
+        deeper = {"type": "object", **inside, "minProperties": 1}
+        each = any_of([*_alternatives(self.item.schema()), deeper])
+        return {"type": "object", "additionalProperties": each}
+
+
+def by_place(table: Any, *, entries: bool = True) -> Any:
+    """A table of a file by places: a place that is written without quotes is a table in a table.
+
+    Tables may be `entries` too, where they hold no others.
+
+    >>> by_place({"road": {"speed": ["20 m/s", "30 m/s"]}, "k": {"from": "1 N/m", "to": "2 N/m"}})
+    {'road.speed': ['20 m/s', '30 m/s'], 'k': {'from': '1 N/m', 'to': '2 N/m'}}
+    """
+    if not isinstance(table, dict):
+        return table
+    found: dict[Any, Any] = {}
+    for key, entry in table.items():
+        further = isinstance(entry, dict)
+        if further and entries:
+            further = any(isinstance(inner, dict | list) for inner in entry.values())
+        if further:
+            found |= by_place({f"{key}.{name}": inner for name, inner in entry.items()}, entries=entries)
+        else:
+            found[key] = entry
+    return found
+
+
+def _alternatives(schema: dict[str, Any]) -> list[dict[str, Any]]:
+    return list(schema["anyOf"]) if set(schema) == {"anyOf"} else [schema]
+
+
+def any_of(schemas: Collection[dict[str, Any]]) -> dict[str, Any]:
+    """The JSON Schema of what one of these takes."""
+    return {"anyOf": list(schemas)} if len(schemas) > 1 else dict(next(iter(schemas)))

@@ -1,0 +1,209 @@
+"""Elements in files: a value whose unit tells the kind, a range, a table that names the kind, or one tied to others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+from inerter.errors import UnitError
+from inerter.fields import Field
+from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codecs import NamesCodec, any_of
+from inerter.files.common.entries import (
+    AMOUNT,
+    LOWER,
+    UPPER,
+    Amount,
+    amount,
+    check_order,
+    element_name,
+    other_bound,
+    text_of,
+    with_bounds,
+)
+from inerter.files.common.number import Number
+from inerter.files.common.problem import EntryError, Problem
+from inerter.files.common.schema import or_range_schema, quantity_schema
+from inerter.files.common.sizes import check_size
+from inerter.files.common.suggest import nearest
+from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
+from inerter.networks.elements import NAME, Element, Free, Tied
+from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
+from inerter.units import parse_quantity, shown
+
+KIND = "kind"
+
+
+class Range(NamedTuple):
+    """The two ends of a free value."""
+
+    lower: Amount
+    upper: Amount
+
+
+def _range(lower: Amount, upper: Amount) -> Range:
+    check_order(lower, upper)
+    return Range(lower, upper)
+
+
+RANGE = TableCodec(
+    (
+        Declaration(AMOUNT, "The least it may be.", 'from = "100 N s/m"', name=LOWER, attribute="lower"),
+        Declaration(AMOUNT, "The most it may be.", 'to = "100 kN s/m"', name=UPPER, attribute="upper"),
+    ),
+    make=_range,
+    about="A free value: an optimiser chooses it between two bounds.",
+)
+
+
+@dataclass(frozen=True)
+class ElementCodec(Codec):
+    """An element, which has the name of its key; its value may be a range if `free`, and `tied` to others.
+
+    One that is tied is read as its expression, since the others may come later.
+    """
+
+    free: bool = True
+    tied: bool = False
+
+    def load(self, raw: Any, context: LoadContext) -> Element | TieEntry:
+        """The element, or what it follows from."""
+        name = context.place[-1] if NAME.fullmatch(context.place[-1]) else "unnamed"  # which is refused with the key
+        if self.tied and is_tie(raw):
+            return tie_entry(raw)
+        if _names_kind(raw):
+            return _of_kind(raw, name, free=self.free)
+        if not isinstance(raw, dict):
+            value = amount(raw)
+            return kinds_by_unit()[value.unit].of(value.value, name)
+        if not self.free:
+            hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
+            raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
+        found = RANGE.load(raw, context)
+        if found is INVALID:
+            return INVALID  # type: ignore[no-any-return]
+        return kinds_by_unit()[found.lower.unit].of(Free(found.lower.value, found.upper.value, name), name)
+
+    def dump(self, value: Element) -> str | dict[str, Any]:
+        """Its value or range alone where the unit tells the kind."""
+        number, unit = value.value, value.unit
+        if isinstance(number, Tied):
+            return {TIED: tie_text(number)}
+        alone = text_of(number, unit)
+        if kinds_by_unit().get(unit) is type(value):
+            return alone
+        more = {field.name: text_of(getattr(value, field.name), field.unit) for field in value.more}
+        return {KIND: value.key, value.quantity: alone, **more}
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of all forms."""
+        ties = [tie_schema()] if self.tied else []
+        ranges = [RANGE.schema()] if self.free else []
+        return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties])
+
+    def numbers(self, value: Element, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """Its value with its bounds, and what else it is made of."""
+        yield from with_bounds(Number(value.unit, words, value.value, value.may_vanish))
+        for field in value.more:
+            yield (field.name,), Number(field.unit, field.in_words, getattr(value, field.name))
+
+    def put(self, value: Element, keys: Sequence[str], number: float) -> Element:
+        """The element with another value, bound or further number."""
+        if not keys:
+            return value.with_value(number)
+        old, (part,) = value.value, keys
+        if isinstance(old, Free) and part in (LOWER, UPPER):
+            return value.with_value(other_bound(old, part, number))
+        more = {field.name: getattr(value, field.name) for field in value.more}
+        return type(value).of(old, value.name, **{**more, part: number})
+
+    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+        """That of a range."""
+        if self.free:
+            yield place, RANGE
+
+
+def elements_codec(*, free: bool, tied: bool = False, least: int = 1) -> NamesCodec:
+    """The section [elements], with at least as many of them."""
+    return NamesCodec(ElementCodec(free, tied), element_name, least)
+
+
+def with_tied_values(entries: Mapping[str, Element | TieEntry]) -> tuple[dict[str, Element], list[Problem]]:
+    """The elements, in their order, and what is wrong with those that are tied."""
+    own = {name: entry for name, entry in entries.items() if not isinstance(entry, TieEntry)}
+    found, problems = {}, []
+    for name, entry in entries.items():
+        try:
+            found[name] = tied_element(name, entry, own) if isinstance(entry, TieEntry) else entry
+        except EntryError as error:
+            problems.append(replace(error.problem, place=("elements", name)))
+    return found, problems
+
+
+def _names_kind(entry: Any) -> bool:
+    """Whether an entry is one that names its kind."""
+    return isinstance(entry, dict) and KIND in entry
+
+
+def _of_kind(entry: dict[str, Any], name: str, *, free: bool) -> Element:
+    """The element of an entry that names its kind; raises ValueError for what is wrong with it."""
+    named = entry[KIND]
+    if not isinstance(named, str) or named not in ELEMENTS:
+        listed = ", ".join(map(shown, ELEMENTS))
+        raise EntryError(got=f"kind = {shown(named)}", fault="not a kind of element", expected=f"one of {listed}")
+    kind = ELEMENTS[named]
+    fields = {field.name: field for field in kind.fields()}
+    for key in entry:
+        if key not in (KIND, *fields):
+            hint = nearest(key, fields)
+            raise EntryError(got=shown(key), fault=f"not a key of a {named}", expected=", ".join(fields), hint=hint)
+    for key, field in fields.items():
+        if key not in entry:
+            example = f'{key} = "1 {field.unit}"'
+            raise EntryError(got=f"no {key} of the {named}", expected=example, hint=field.sentence)
+    value, *more = fields.values()
+    amounts = {field.name: _amount(field, entry[field.name], False) for field in more}
+    given = entry[value.name]
+    if not isinstance(given, dict):
+        return kind.of(_amount(value, given, kind.may_vanish), name, **amounts)
+    if not free or set(given) != {"from", "to"}:
+        expected = f'a range {{ from = "1 {value.unit}", to = "2 {value.unit}" }}' if free else "one value"
+        raise EntryError(got=f"a table for {value.name}", expected=expected)
+    lower, upper = (_amount(value, given[end], kind.may_vanish) for end in ("from", "to"))
+    if not lower < upper:
+        ends = f"equal or reversed ends of {value.name}"
+        raise EntryError(got=ends, expected="from less than to", hint="Swap them.")
+    return kind.of(Free(lower, upper, name), name, **amounts)
+
+
+def _kind_schema() -> dict[str, Any]:
+    """What a JSON Schema says of an entry that names its kind."""
+    return {"anyOf": [_schema_of(name, kind) for name, kind in ELEMENTS.items()]}
+
+
+def _schema_of(name: str, kind: type[Element]) -> dict[str, Any]:
+    least = "not negative" if kind.may_vanish else "positive"
+    value, *more = kind.fields()
+    one = quantity_schema(value.unit, least=least)
+    texts = {
+        field.name: {**quantity_schema(field.unit, least="positive"), "description": field.sentence} for field in more
+    }
+    keys = {
+        KIND: {"const": name, "description": "What it is, where its unit does not tell."},
+        value.name: {**or_range_schema(one), "description": value.sentence},
+        **texts,
+    }
+    return {"type": "object", "properties": keys, "required": list(keys), "additionalProperties": False}
+
+
+def _amount(field: Field, text: Any, may_vanish: bool) -> float:
+    try:
+        amount = parse_quantity(text, field.unit)
+    except UnitError as error:
+        raise ValueError(f"{field.name}: {error}") from None
+    check_size(amount, text, field.unit)
+    if amount < 0.0 or (amount == 0.0 and not may_vanish):
+        given = f"{field.name} = {shown(text)}"
+        raise EntryError(got=given, fault="not positive", expected=f"more than 0 {field.unit}")
+    return amount

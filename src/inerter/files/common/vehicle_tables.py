@@ -1,0 +1,289 @@
+"""The table [vehicle]: the quantities of a model, or the parts of a mechanism, and a seat."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from inspect import getdoc
+from typing import Any
+
+from inerter.checks import is_number
+from inerter.errors import RowError, UnitError
+from inerter.fields import fields_of
+from inerter.files.common.codec import Codec, KeyPath, LoadContext, Scalar, TableCodec, declared, key, keys_in, table_of
+from inerter.files.common.codecs import NamesCodec, TaggedCodec
+from inerter.files.common.entries import EXPRESSION, TEXT, not_negative, positive, stated, word
+from inerter.files.common.number import Number
+from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import quantity_schema
+from inerter.networks.elements import NAME
+from inerter.units import parse_one_of, parse_quantity, shown
+from inerter.vehicle.mechanism import TRACKS
+from inerter.vehicle.registry import VEHICLES
+
+MECHANISM = "mechanism"
+SEAT = "seat"
+NOTHING: Mapping[str, Any] = {}
+NO_MEASURES: Mapping[str, Any] = {"comfort": NOTHING, "tyre_load": None, "load_input": None, "load_output": None}
+
+
+class Length(float):
+    """The lever of an angle [m]."""
+
+
+class Inertia(float):
+    """The moment of inertia of an angle [kg m^2]."""
+
+
+def lever(entry: Any) -> float:
+    """The lever of a coordinate: a number; of an angle a length."""
+    if isinstance(entry, str):
+        return Length(parse_quantity(entry, "m"))
+    if not is_number(entry):
+        raise EntryError(got=shown(entry), expected='a number such as 1, or for an angle a length such as "1.2 m"')
+    return float(entry)
+
+
+def inertia(entry: Any) -> float:
+    """A mass, or the moment of inertia of an angle."""
+    try:
+        unit, value = parse_one_of(entry, {"kg": "", "kg m^2": ""}, "kg")
+    except UnitError:
+        wanted = 'a mass such as "250 kg", or of an angle a moment of inertia such as "200 kg m^2"'
+        raise EntryError(got=shown(entry), expected=wanted) from None
+    if value <= 0.0:
+        raise EntryError(got=shown(entry), fault="not positive", expected=f"more than 0 {unit}")
+    return value if unit == "kg" else Inertia(value)
+
+
+def part_name(name: Any) -> str:
+    """A name that can stand before the name of a motion or a force."""
+    if not NAME.fullmatch(name):
+        letters = "a letter followed by letters, digits and underscores, such as body"
+        raise EntryError(got=shown(name), fault="not a name", expected=letters)
+    return str(name)
+
+
+def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
+    return {n: f"{float(v)!r} m" if isinstance(v, Length) else float(v) for n, v in port.items()}
+
+
+@dataclass(frozen=True)
+class InertiaCodec(Codec):
+    """A mass, or the moment of inertia of an angle."""
+
+    def load(self, raw: Any, context: LoadContext) -> float:
+        """The mass [kg], or an `Inertia`."""
+        return inertia(raw)
+
+    def dump(self, value: float) -> str:
+        """The text in its unit."""
+        return f"{float(value)!r} {_unit_of(value)}"
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of the text."""
+        return quantity_schema("kg", "kg m^2", least="positive")
+
+    def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """It."""
+        yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
+
+    def put(self, value: float, keys: Sequence[str], number: float) -> float:
+        """Another one of the same sort."""
+        return type(value)(number)
+
+
+def _unit_of(value: float) -> str:
+    return "kg m^2" if isinstance(value, Inertia) else "kg"
+
+
+_LEVER = Scalar(lever, lambda: {"anyOf": [{"type": "number"}, quantity_schema("m")]})
+
+
+@dataclass(frozen=True)
+class PortCodec(NamesCodec):
+    """Names with levers: coordinates that a port is joined to, or outputs with their weights."""
+
+    item: Codec = _LEVER
+    name: Callable[[Any], str] = part_name
+
+    def dump(self, value: Mapping[str, float]) -> dict[str, Any]:
+        """The levers by their names."""
+        return _levers(value)
+
+
+PORT = PortCodec(least=1)
+SOME_PORT = PortCodec()
+
+
+@declared
+class StrutTable:
+    """Between two ports; without a lower one it is on the ground."""
+
+    upper: Mapping[str, float] = key(
+        PORT, "The port at its upper end: coordinates with their levers.", 'upper = { body = 1, pitch = "1.2 m" }'
+    )
+    lower: Mapping[str, float] = key(
+        SOME_PORT, "The port at its lower end; the ground if left out.", "lower = { wheel = 1 }", default=NOTHING
+    )
+    network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "k | c"', default=None)
+
+
+@declared
+class TyreTable:
+    """Between a port and a road."""
+
+    port: Mapping[str, float] = key(PORT, "What it carries: coordinates with their levers.", "port = { wheel = 1 }")
+    road: str = key(TEXT, "The road below it.", 'road = "road"')
+    network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "kt"', default=None)
+
+
+@declared
+class RoadPlace:
+    """Where the mechanism meets the road."""
+
+    distance: float = key(not_negative("m"), "Behind the first axle.", 'distance = "2.5 m"', default=0.0)
+    track: str = key(word("a track", TRACKS), "Left or right, where there are two.", 'track = "left"', default="")
+
+
+@declared
+class MeasureTable:
+    """Which outputs answer the questions of indices."""
+
+    comfort: Mapping[str, float] = key(
+        SOME_PORT,
+        "Outputs that ride comfort is about, with their weights.",
+        "comfort = { body_acceleration = 1 }",
+        default=NOTHING,
+    )
+    tyre_load: Mapping[str, float] | None = key(
+        SOME_PORT,
+        "Outputs that tyre load is about, with their weights.",
+        "tyre_load = { wheel_load = 1 }",
+        default=None,
+    )
+    load_input: str | None = key(TEXT, "The force of load carrying.", 'load_input = "load"', default=None)
+    load_output: str | None = key(TEXT, "What it moves.", 'load_output = "body_displacement"', default=None)
+
+
+@declared
+class SeatTable:
+    """A seat with its occupant, on any vehicle."""
+
+    mass: float = key(
+        positive("kg"), "The occupant, with what moves along of the seat.", 'mass = "60 kg"', words="mass on the seat"
+    )
+    network: str = key(EXPRESSION, "Between floor and occupant.", 'network = "ks | cs"')
+    place: Mapping[str, float] | None = key(
+        PORT,
+        "Where it stands: coordinates with their levers.",
+        'place = { sprung = 1, pitch = "0.3 m" }',
+        default=None,
+    )
+
+
+def _parts_of(kind: Any) -> TableCodec:
+    return table_of(kind, make=dict, about=(kind.__doc__ or "").partition("\n\n")[0])
+
+
+@declared
+class MechanismTable:
+    """A vehicle of masses, levers, networks and roads."""
+
+    coordinates: Mapping[str, float] = key(
+        NamesCodec(InertiaCodec(), part_name, least=1),
+        "What moves: each with its mass, or its moment of inertia.",
+        'a section [vehicle.coordinates] with lines such as body = "250 kg"',
+    )
+    struts: Mapping[str, Any] = key(
+        NamesCodec(_parts_of(StrutTable), part_name),
+        "What is between two ports.",
+        "a section [vehicle.struts] with lines such as s = { upper = { body = 1 }, lower = { wheel = 1 } }",
+        default=NOTHING,
+    )
+    tyres: Mapping[str, Any] = key(
+        NamesCodec(_parts_of(TyreTable), part_name),
+        "What is between a port and a road.",
+        'a section [vehicle.tyres] with lines such as tyre = { port = { wheel = 1 }, road = "road" }',
+        default=NOTHING,
+    )
+    roads: Mapping[str, Any] = key(
+        NamesCodec(_parts_of(RoadPlace), part_name),
+        "Where the roads are met.",
+        'a section [vehicle.roads] with lines such as rear = { distance = "2.5 m" }',
+        default=NOTHING,
+    )
+    forces: Mapping[str, Mapping[str, float]] = key(
+        NamesCodec(SOME_PORT, part_name),
+        "External forces and moments, by where they act.",
+        "a section [vehicle.forces] with lines such as load = { body = 1 }",
+        default=NOTHING,
+    )
+    measures: Mapping[str, Any] = key(
+        _parts_of(MeasureTable),
+        "Which outputs answer which index.",
+        "a section [vehicle.measures] with comfort = { body_acceleration = 1 }",
+        default=NO_MEASURES,
+    )
+    seat: Mapping[str, Any] | None = key(
+        _parts_of(SeatTable), "A seat with its occupant.", 'a section [vehicle.seat] with mass = "60 kg"', default=None
+    )
+
+
+_SEAT = keys_in(MechanismTable)[-1]
+
+
+def vehicle_codec(models: Sequence[str], check_model: Callable[[Any], str], *, free: bool) -> TaggedCodec:
+    """The table [vehicle] of any of these models, as a dictionary of its values with "model" among them.
+
+    Its quantities may be `free` where something is optimised.
+    """
+    made = {model: _vehicle_table(model, free) for model in models}
+    return TaggedCodec("model", lambda: made, check_model, lambda vehicle: str(vehicle["model"]), next(iter(models)))
+
+
+def _vehicle_table(model: str, free: bool) -> TableCodec:
+    def make(**values: Any) -> dict[str, Any]:
+        values = {"model": model, **values}
+        return {name: value for name, value in values.items() if value is not None or name != SEAT}
+
+    tag = ("model", model, "The kind of vehicle.")
+    if model == MECHANISM:
+        return table_of(MechanismTable, make=make, tag=tag, about=str(MechanismTable.__doc__))
+    keys = tuple(stated(field, free=free) for field in fields_of(VEHICLES[model]))
+    seat = (_SEAT,) if VEHICLES[model].moved == "road" else ()
+    taken = sorted({"model", *(one.name for one in seat)} & {one.name for one in keys})
+    if taken:
+        raise RowError(f"{model} has a quantity {taken[0]!r}, a key that [vehicle] has already. Choose another name.")
+    about = (getdoc(VEHICLES[model]) or model).partition("\n\n")[0]
+    return TableCodec((*keys, *seat), make, tag=tag, about=about)
+
+
+def units_of_inputs(vehicle: Any) -> dict[str | None, str]:
+    """The units of inputs that only this vehicle knows, from its table as it is written: of None, if none is named."""
+    if not isinstance(vehicle, dict):
+        return {}
+    forces: dict[str | None, str] = dict(forces_of(vehicle).items())
+    row = VEHICLES.get(str(vehicle.get("model")))
+    if row is not None:
+        first = row.forces.get(row.moved)
+    else:
+        first = None if vehicle.get("roads") else next(iter(forces.values()), None)
+    return forces if first is None else {**forces, None: first}
+
+
+def forces_of(vehicle: Mapping[str, Any]) -> dict[str, str]:
+    """The forces of a mechanism, with their units, from its table or what became of it."""
+    forces, coordinates = (vehicle.get(part) for part in ("forces", "coordinates"))
+    if not isinstance(forces, dict) or not isinstance(coordinates, dict):
+        return {}
+    angles = {name for name, entry in coordinates.items() if _is_angle(entry)}
+    ports = {name: port for name, port in forces.items() if isinstance(port, dict)}
+    return {name: "N m" if port and port.keys() <= angles else "N" for name, port in ports.items()}
+
+
+def _is_angle(entry: Any) -> bool:
+    try:
+        return isinstance(entry if isinstance(entry, float) else inertia(entry), Inertia)
+    except ValueError:  # told with the coordinate
+        return False

@@ -1,0 +1,176 @@
+"""The keys of a configuration for `inerter identify`: how records are read, what is fitted, and how."""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import Any
+
+from inerter.files.common.codec import Scalar, TableCodec, declared, given, key, keys_in, section, table_of
+from inerter.files.common.elements import elements_codec
+from inerter.files.common.entries import (
+    EXPRESSION,
+    TEXT,
+    TEXT_SCHEMA,
+    YES_OR_NO,
+    any_quantity,
+    not_negative,
+    positive,
+    whole,
+    word,
+)
+from inerter.files.common.problem import EntryError
+from inerter.files.common.schema import quantity_schema, words_schema
+from inerter.files.common.suggest import nearest
+from inerter.identification.models import MODELS
+from inerter.records.record import CHANNELS
+from inerter.records.uncertain import Uncertain, parse_uncertain
+from inerter.units import parse_quantity, shown
+
+NO_UNITS: dict[str, str] = {}
+NO_ELEMENTS: dict[str, Any] = {}
+ROLES = ("displacement", "force", "time", "velocity", "acceleration")
+CHOOSE = "choose"  # between all models
+GAPS = ("refuse", "fill", "longest")
+_MOST_STARTS = 4096
+
+
+def channel(value: Any) -> str | int:
+    """A channel by its name or its number."""
+    if isinstance(value, bool) or not isinstance(value, str | int) or value == "":
+        raise EntryError(got=shown(value), expected='the name of a channel, such as "Load", or its number from 0')
+    return value
+
+
+def channel_units(value: Any) -> dict[str, str]:
+    """Units by what a channel is, not by its name."""
+    if not isinstance(value, dict):
+        raise EntryError(got=shown(value), expected='a table such as { force = "kgf" }')
+    for role, unit in value.items():
+        if role not in CHANNELS:
+            known = ", ".join(CHANNELS)
+            hint = nearest(role, CHANNELS)
+            raise EntryError(got=f"a unit of {shown(role)}", expected=f"one of {known}", hint=hint)
+        if not isinstance(unit, str):
+            raise EntryError(got=f"{shown(unit)} as the unit of the {role}", expected='text such as "kgf"')
+    return value
+
+
+def gap_treatment(value: Any) -> str | float:
+    """What is done where samples are missing."""
+    if isinstance(value, str) and value in GAPS:
+        return value
+    try:
+        seconds = parse_quantity(value, "s")
+    except ValueError:
+        seconds = -1.0
+    if seconds <= 0.0:
+        known = ", ".join(map(shown, GAPS))
+        raise EntryError(got=shown(value), expected=f'one of {known}, or the longest to fill, such as "50 ms"')
+    return seconds
+
+
+def longest_delay(value: Any) -> bool | float:
+    """Whether the force may be late, or by how much at most."""
+    return value if isinstance(value, bool) else parse_quantity(value, "s")
+
+
+def check_part(value: Any) -> float:
+    """The part of each record that is kept for the check."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 0.6:
+        raise EntryError(got=shown(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
+    return float(value)
+
+
+_CHANNEL = Scalar(channel, lambda: {"anyOf": [{"type": "string", "minLength": 1}, {"type": "integer", "minimum": 0}]})
+_UNITS = Scalar(channel_units, lambda: {"type": "object", "additionalProperties": {"type": "string"}})
+_GAPS = Scalar(gap_treatment, lambda: {"anyOf": [words_schema(GAPS), quantity_schema("s")]})
+_DELAY = Scalar(longest_delay, lambda: {"anyOf": [{"type": "boolean"}, quantity_schema("s")]})
+_CHECK = Scalar(check_part, lambda: {"type": "number", "minimum": 0, "maximum": 0.6})
+_MASS = Scalar(lambda value: parse_uncertain(value, "kg"), lambda: TEXT_SCHEMA)
+_SCALE = Scalar(parse_uncertain, lambda: {"anyOf": [{"type": "number"}, TEXT_SCHEMA]})
+_ANY_TIME = any_quantity("s")
+
+
+@declared
+class RecordRequest:
+    """How files are read, in the words of `read_record`, and what is done to their records then."""
+
+    channels: dict[str, str | int] = field(default_factory=dict)  # by role
+    units: dict[str, str] = key(_UNITS, "Of channels, by what they are.", 'units = { force = "kgf" }', default=NO_UNITS)
+    interval: float | None = key(positive("s"), "From sample to sample, where the file has no time.", default=None)
+    gaps: str | float = key(_GAPS, "What is done where samples are missing.", 'gaps = "fill"', default="refuse")
+    force_range: float | None = key(positive("N"), "The largest force of the load cell.", default=None)
+    force_bandwidth: float | None = key(positive("Hz"), "Of the load cell.", default=None)
+    force_noise: float | None = key(positive("N"), "Of the load cell, r.m.s.", default=None)
+    displacement_noise: float | None = key(positive("m"), "Of the displacement, r.m.s.", default=None)
+    fixture_mass: Uncertain | None = key(_MASS, "Between load cell and device.", default=None)
+    period: float | None = key(positive("s"), "Of a motion that repeats.", default=None)
+    start: float | None = key(_ANY_TIME, "Where the records begin.", default=None)
+    stop: float | None = key(_ANY_TIME, "Where the records end.", default=None)
+    resample: float | None = key(positive("s"), "From sample to sample of a clock of its own.", default=None)
+    repair: bool = key(YES_OR_NO, "Whether faults of the recording are mended.", default=False)
+    detrend: bool = key(YES_OR_NO, "Whether a trend is taken out.", default=False)
+
+
+AS_RECORDED = RecordRequest()
+
+
+@declared
+class ModelRequest:
+    """The device: one of the catalogue, or a network of the section [elements]."""
+
+    name: str | None = key(word("a model", (*MODELS, CHOOSE)), "One of the catalogue.", default=None)
+    layout: str | None = key(EXPRESSION, "A network of the elements.", default=None)
+
+
+@declared
+class FitSettings:
+    """How it is fitted, as `identify` takes it."""
+
+    seed: int = key(whole(0, 2**63 - 1), "Of the starts.", "seed = 0", default=0)
+    starts: int | None = key(whole(8, _MOST_STARTS), "How many starts.", default=None)
+    offset: bool = key(YES_OR_NO, "Whether the force may have an offset.", default=True)
+    gain: bool = key(YES_OR_NO, "Whether the force may have a gain.", default=False)
+    delay: bool | float | None = key(_DELAY, "Whether the force may be late, or by how much at most.", default=None)
+    check: float = key(_CHECK, "The part of each record that is kept for the check.", default=0.2)
+    bandwidth: float | None = key(positive("Hz"), "Up to which frequency is fitted.", default=None)
+    lead: float | None = key(not_negative("s"), "How much of each record is left out at its beginning.", default=None)
+    force_scale: Uncertain | None = key(_SCALE, "What the force is to be multiplied by.", default=None)
+    displacement_scale: Uncertain | None = key(_SCALE, "What the displacement is to be multiplied by.", default=None)
+
+
+def _record(**values: Any) -> RecordRequest:
+    roles = given(**{role: values.pop(role) for role in ROLES})
+    return RecordRequest(channels=roles, **values)
+
+
+_CHANNELS = tuple(section(role, _CHANNEL, f"The channel of the {role}.", default=None) for role in ROLES)
+IDENTIFICATION = TableCodec(
+    (
+        section("title", TEXT, default=None),
+        section(
+            "record",
+            TableCodec((*_CHANNELS, *keys_in(RecordRequest)), _record),
+            example='a section [record] with force = "Load"',
+            default=AS_RECORDED,
+        ),
+        section(
+            "model",
+            table_of(ModelRequest),
+            example='a section [model] with name = "ball-screw"',
+            default=ModelRequest(),
+        ),
+        section(
+            "elements",
+            elements_codec(free=True, least=0),
+            example='a section [elements] with lines such as b = "113 kg"',
+            default=NO_ELEMENTS,
+        ),
+        section(
+            "fit",
+            table_of(FitSettings, make=given),
+            example="a section [fit] with seed = 0",
+            default=given(**vars(FitSettings())),
+        ),
+    )
+)

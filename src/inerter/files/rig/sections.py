@@ -1,0 +1,53 @@
+"""The keys of a rig file: what it shares with simulation files, and [rig]."""
+
+from __future__ import annotations
+
+from inerter.files.common.codec import TableCodec, declared, given, key, section, table_of
+from inerter.files.common.elements import elements_codec
+from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
+from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.signals import signal_codec
+from inerter.rows import made_of_rows
+from inerter.vehicle.rig import Rig
+
+
+@declared
+class RigSettings:
+    """How long is measured, and the sensors; what is left out is that of `VirtualRig`."""
+
+    layout: str | None = key(TEXT, "The device that is measured, where there are several.", default=None)
+    duration: float = key(positive("s"), "How long is measured.", 'duration = "5 s"')
+    start: float = key(not_negative("s"), "How long the rig runs before.", default=0.0)
+    seed: int = key(whole(0, 2**63 - 1), "Of the noise.", default=0)
+    sampling: float | None = key(positive("Hz"), "Samples per time.", default=None)
+    table_bandwidth: float | None = key(positive("Hz"), "Of the table.", default=None)
+    encoder_resolution: float | None = key(not_negative("m"), "A step of the encoder.", default=None)
+    encoder_noise: float | None = key(not_negative("m"), "Of the encoder, r.m.s.", default=None)
+    force_range: float | None = key(positive("N"), "The largest force of the load cell.", default=None)
+    force_resolution: float | None = key(not_negative("N"), "A step of the load cell.", default=None)
+    force_noise: float | None = key(not_negative("N"), "Of the load cell, r.m.s.", default=None)
+    force_bandwidth: float | None = key(positive("Hz"), "Of the load cell.", default=None)
+    force_offset: float | None = key(any_quantity("N"), "Of the load cell.", default=None)
+    force_gain: float | None = key(POSITIVE, "Of the load cell: what it shows over what there is.", default=None)
+    force_delay: float | None = key(not_negative("s"), "Of the load cell behind the encoder.", default=None)
+    reversed: bool = key(YES_OR_NO, "Whether the load cell has the other sign.", default=False)
+
+
+@made_of_rows
+def rig_codec() -> TableCodec:
+    """The whole file, as a dictionary by its sections."""
+    return TableCodec(
+        (
+            section("title", TEXT, default=None),
+            section(
+                "elements", elements_codec(free=False), example='a section [elements] with lines such as b = "113 kg"'
+            ),
+            section(
+                "layouts",
+                layouts_codec(Rig.key),
+                example='a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"',
+            ),
+            section("signal", signal_codec(), example='a section [signal] with kind = "cosine"'),
+            section("rig", table_of(RigSettings, make=given), example='a section [rig] with duration = "5 s"'),
+        )
+    )

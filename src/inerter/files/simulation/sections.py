@@ -1,0 +1,79 @@
+"""The keys of a simulation file: what it shares with study files, [signal] and [simulation]."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from inerter.files.common.codec import TableCodec, declared, key, section, table_of
+from inerter.files.common.elements import elements_codec
+from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whole, word
+from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.roads import road_codec
+from inerter.files.common.signals import signal_codec
+from inerter.files.common.vehicle_tables import vehicle_codec
+from inerter.files.common.vehicles import models
+from inerter.rows import made_of_rows
+from inerter.units import shown
+
+INTEGRATORS = ("event-driven", "time-stepping")
+INITIAL = ("rest", "preload", "periodic")
+
+
+@declared
+class SimulationSettings:
+    """How the motion is computed, and what is kept of it."""
+
+    layout: str | None = key(
+        TEXT, "The layout that is simulated, where there are several.", 'layout = "S1"', default=None
+    )
+    duration: float | None = key(
+        positive("s"), "From the first to the last sample; a period if left out.", 'duration = "10 s"', default=None
+    )
+    step: float = key(positive("s"), "From sample to sample.", 'step = "0.2 ms"', default=2e-4)
+    integrator: str = key(
+        word("an integrator", INTEGRATORS),
+        "How the motion is computed.",
+        'integrator = "time-stepping"',
+        default="event-driven",
+    )
+    initial: str = key(
+        word("an initial state", INITIAL), "The state to begin with.", 'initial = "preload"', default="rest"
+    )
+    energy: bool = key(YES_OR_NO, "Whether energies are kept.", "energy = true", default=False)
+    every: int = key(whole(1, 10**9), "How many steps there are to a sample that is kept.", "every = 10", default=1)
+
+
+def _model(value: Any) -> str:
+    return one_of("a vehicle model", models())(value)
+
+
+@made_of_rows
+def simulation_codec() -> TableCodec:
+    """The whole file, as a dictionary by its sections."""
+    *others, last = map(shown, models())
+    return TableCodec(
+        (
+            section("title", TEXT, default=None),
+            section(
+                "vehicle",
+                vehicle_codec(models(), _model, free=False),
+                example=f"a section [vehicle] with model = {', '.join(others)} or {last}",
+            ),
+            section(
+                "road",
+                road_codec(rough=False),
+                example='a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"',
+                default=None,
+            ),
+            section(
+                "elements", elements_codec(free=False), example='a section [elements] with lines such as k = "120 kN/m"'
+            ),
+            section("layouts", layouts_codec(), example='a section [layouts] with lines such as S1 = "k | c"'),
+            section("signal", signal_codec(), example='a section [signal] with kind = "multisine"'),
+            section(
+                "simulation",
+                table_of(SimulationSettings, make=dict),
+                example='a section [simulation] with duration = "10 s"',
+            ),
+        )
+    )

@@ -1,0 +1,320 @@
+"""The keys of a study file, each declared once: what it may hold, a sentence, and an example."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from inerter.errors import RowError
+from inerter.fields import fields_of
+from inerter.files.common.codec import Codec, Scalar, TableCodec, declared, given, key, keys_in, section, table_of
+from inerter.files.common.codecs import ByPlaceCodec, EitherCodec, RowsCodec, by_place
+from inerter.files.common.elements import elements_codec
+from inerter.files.common.entries import (
+    LOWER,
+    MOST_POINTS,
+    POSITIVE,
+    SHARE,
+    SHARE_SCHEMA,
+    SWEEP_LIST,
+    SWEPT,
+    TEXT,
+    UPPER,
+    SomeOfFile,
+    one_of,
+    some_names,
+    some_of,
+    stated,
+    whole,
+    word,
+)
+from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.problem import EntryError
+from inerter.files.common.roads import road_codec
+from inerter.files.common.schema import words_schema
+from inerter.files.common.vehicle_tables import vehicle_codec
+from inerter.files.common.vehicles import models
+from inerter.files.study.limits import LimitsCodec, StudyLimit
+from inerter.files.study.own_indices import indices_of, own_indices_codec
+from inerter.files.study.place import Sweep
+from inerter.indices.registry import index_settings
+from inerter.methods.linear import CONVENTIONS
+from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
+from inerter.networks.elements.registry import units_told
+from inerter.rows import made_of_rows
+from inerter.units import shown
+from inerter.vehicle.registry import VEHICLES
+
+_MOST_ROADS = 100_000
+_MOST_OF_FRONT = 1000
+OVER = ("mean", "worst")
+SPACINGS = ("linear", "log")
+POINTS = 25  # of a front
+ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
+_NONE: dict[str, Any] = {}
+_NO_ROWS: list[Any] = []
+
+
+@declared
+class SweepRange:
+    """Values of a number from one end to the other."""
+
+    lower: str = key(SWEPT, "The first value.", 'from = "10 kN/m"', name=LOWER)
+    upper: str = key(SWEPT, "The last value.", 'to = "300 kN/m"', name=UPPER)
+    points: int = key(whole(2, MOST_POINTS), "How many values.", "points = 30")
+    spacing: str = key(
+        word("a spacing", SPACINGS), "Equal steps, or equal ratios.", 'spacing = "log"', default="linear"
+    )
+
+
+@declared
+class ConditionEntry:
+    """Numbers by their places, and how much of the time they are so."""
+
+    share: float = key(POSITIVE, "How much of the time it is so, beside the others.", "share = 0.3", default=1.0)
+    name: str | None = key(TEXT, "What it is called.", 'name = "loaded"', default=None)
+    numbers: Mapping[str, Any]
+
+
+_CONDITION = table_of(
+    ConditionEntry,
+    before=lambda table: by_place(table, entries=False),
+    rest="numbers",
+    about=ConditionEntry.__doc__,
+)
+
+
+_VALUES = EitherCodec(table_of(SweepRange, about=SweepRange.__doc__), SWEEP_LIST)
+
+
+@dataclass(frozen=True)
+class SweepsCodec(ByPlaceCodec):
+    """The values that numbers of the file take, by their places."""
+
+    item: Codec = _VALUES
+    entries: bool = True
+
+    def dump(self, value: Iterable[Sweep]) -> dict[str, list[str]]:
+        """All values, one by one."""
+        return {sweep.label: [f"{one!r} {sweep.unit}" for one in sweep.values] for sweep in value}
+
+
+def judged_models() -> list[str]:
+    """The models that are judged, on a road or under a force."""
+    return [model for model in models() if model not in VEHICLES or VEHICLES[model].moved != "displacement"]
+
+
+def _car(value: Any) -> str:
+    cars = tuple(judged_models())
+    if isinstance(value, str) and value in VEHICLES and value not in cars:
+        raise ValueError(
+            f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
+            f"A {value.replace('-', ' ')} is for: inerter simulate."
+        )
+    return one_of("a vehicle model", cars)(value)
+
+
+def _search(value: Any) -> str:
+    return one_of("an optimisation method", methods_that(searches))(value)
+
+
+_SEARCH = Scalar(_search, lambda: words_schema(methods_that(searches)))
+_INDICES = SomeOfFile("an index", indices_of)
+
+
+def _scatter(given: Any) -> float:
+    """A part of a value: a number, or text with a per cent sign."""
+    number = given
+    if isinstance(given, str) and given.rstrip().endswith("%"):
+        try:
+            number = float(given.rstrip()[:-1]) / 100.0
+        except ValueError:
+            number = None
+    if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < 1.0:
+        raise EntryError(got=shown(given), expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
+    return float(number)
+
+
+_SCATTER = Scalar(_scatter, lambda: {"anyOf": [SHARE_SCHEMA, {"type": "string", "pattern": r"%\s*$"}]})
+
+
+@declared
+class Settings:
+    """What is asked of the layouts, and how it is answered."""
+
+    indices: tuple[str, ...] = key(
+        _INDICES, "What is asked of each layout.", 'indices = ["J1", "J3", "J5"]', implied=True
+    )
+    conventions: str = key(
+        word("a set of conventions", CONVENTIONS),
+        "How numbers are made: exactly, or as in the paper of 2008.",
+        'conventions = "paper2008"',
+        default="exact",
+    )
+    optimise: str | None = key(
+        _SEARCH,
+        "The method whose value is made smallest; needed if anything is free.",
+        'optimise = "norm"',
+        default=None,
+    )
+    evaluate: tuple[str, ...] = key(
+        some_of("a method", METHODS),
+        "The methods that judge the designs; tables and figures are about the first.",
+        'evaluate = ["norm", "expected-value"]',
+        default=(DEFAULT,),
+    )
+    baseline: str | None = key(
+        TEXT, "The layout that the others are compared with; the first if left out.", 'baseline = "S1"', default=None
+    )
+    sweeps: tuple[Sweep, ...] = key(
+        SweepsCodec(),
+        "Numbers of this file, by their places, that take these values in turn; two make a map.",
+        'sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }',
+        default=(),
+        name="sweep",
+    )
+    seed: int = key(whole(0, 2**63 - 1), "Of the search and of the random roads.", "seed = 1", default=0)
+    realisations: int | None = key(
+        whole(2, _MOST_ROADS),
+        "Random roads of the methods that average; their own choice if left out.",
+        "realisations = 20",
+        default=None,
+    )
+    relative_error: float | None = key(
+        SHARE,
+        "As many roads as make the standard error that part of the value.",
+        "relative_error = 0.002",
+        default=None,
+    )
+    budgets: tuple[str, ...] = key(
+        some_names("f"),
+        "Elements: for which values of each is a layout better than the baseline?",
+        'budgets = ["f"]',
+        default=(),
+    )
+    limits: tuple[StudyLimit, ...] = key(
+        LimitsCodec(),
+        "Limits on other indices: what is best is the best that keeps them.",
+        'subject_to = { tyre-load = { at_most = "600 N" } }',
+        default=(),
+        name="subject_to",
+    )
+    over: str = key(
+        word("a way to take an index over conditions", OVER),
+        "What an index is over the [[conditions]].",
+        'conditions = "worst"',
+        default=OVER[0],
+        name="conditions",
+    )
+    trade_off: tuple[str, ...] = key(
+        _INDICES, "Two indices whose front is sought.", 'trade_off = ["J1", "J3"]', default=()
+    )
+    points: int = key(whole(3, _MOST_OF_FRONT), "How many designs of a front.", "points = 25", default=POINTS)
+    tolerance: Mapping[str, float] = key(
+        ByPlaceCodec(_SCATTER),
+        "By what part values scatter: what the index then is, and what matters.",
+        'tolerance = { c = "10 %", b = "5 %" }',
+        default=_NONE,
+    )
+    quantile: float | None = key(
+        SHARE, "The part of all scattered designs that is to be at least as good.", "quantile = 0.95", default=None
+    )
+
+
+def _of_a_trade_off(table: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The indices of a trade-off are asked for by themselves too."""
+    alone = "trade_off" in table and "indices" not in table
+    return {**table, "indices": table["trade_off"]} if alone else table
+
+
+def _settings(**values: Any) -> dict[str, Any]:
+    """The arguments of a study that its section [study] gives; those of indices are together in one."""
+    shared = index_settings()
+    own = {name: value for name, value in values.items() if name not in shared}
+    return {**own, "settings": given(**{name: value for name, value in values.items() if name in shared})}
+
+
+def _settings_in(study: Any) -> dict[str, Any]:
+    """The section [study] of a study, by attributes; what has no effect is left out."""
+    silent = {"over": not study.conditions, "points": not study.trade_off}
+    own = {one.attribute: getattr(study, one.attribute) for one in keys_in(Settings)}
+    return {**{name: value for name, value in own.items() if not silent.get(name)}, **study.settings}
+
+
+@made_of_rows
+def study_codec() -> TableCodec:
+    """The whole file, as a dictionary by its sections.
+
+    Raises `RowError` if an index has a setting whose key is one of the section's own.
+    """
+    own = keys_in(Settings)
+    taken = sorted(index_settings().keys() & {one.name for one in own})
+    if taken:
+        raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
+    settings = TableCodec(
+        (*own, *(stated(field, optional=True) for field in index_settings().values())),
+        _settings,
+        _settings_in,
+        before=_of_a_trade_off,
+        about=str(Settings.__doc__),
+    )
+    *others, last = map(shown, judged_models())
+    keys = (
+        section("title", TEXT, "A line for reports; the name of the file if left out.", 'title = "My car"', None),
+        section(
+            "vehicle",
+            vehicle_codec(judged_models(), _car, free=True),
+            "What the struts are mounted in: its model decides which other keys there are.",
+            f"a section [vehicle] with model = {', '.join(others)} or {last}",
+        ),
+        section("road", road_codec(), "What the vehicle drives on, and how fast.", ROAD_EXAMPLE, None),
+        section(
+            "elements",
+            elements_codec(free=True, tied=True),
+            f"What struts are made of, by names of your own. The unit tells the element: {units_told()}. "
+            "A value is fixed, or free between two bounds.",
+            'a section [elements] with lines such as k = "120 kN/m"',
+        ),
+        section(
+            "layouts",
+            layouts_codec(),
+            "How elements are joined: | side by side, - end to end.",
+            'a section [layouts] with lines such as S1 = "k | c"',
+        ),
+        section(
+            "indices",
+            own_indices_codec(),
+            "Indices of your own: a kind, with its settings.",
+            'a section [indices.comfort] with kind = "ride-comfort"',
+            _NONE,
+        ),
+        section(
+            "conditions",
+            RowsCodec(_CONDITION),
+            "Numbers of this file, by their places, as they are in one operating condition.",
+            '[[conditions]] with "road.speed" = "15 m/s"',
+            _NO_ROWS,
+        ),
+        section(
+            "study",
+            settings,
+            "What is asked of the layouts, and how it is answered.",
+            'a section [study] with indices = ["J1", "J3", "J5"]',
+        ),
+    )
+    methods = _methods()
+    about = "Settings of methods, a table for each."
+    return TableCodec((*keys, section("methods", methods, about, "", _NONE)) if methods.keys else keys)
+
+
+def _methods() -> TableCodec:
+    """The section [methods], with a table for each method that has settings of its own."""
+    with_settings = {name: fields_of(kind) for name, kind in METHODS.items() if fields_of(kind)}
+    tables = {
+        name: TableCodec(tuple(stated(field, optional=True) for field in fields), given)
+        for name, fields in with_settings.items()
+    }
+    return TableCodec(
+        tuple(section(name, table, f"Settings of the method {name}.", default=_NONE) for name, table in tables.items())
+    )

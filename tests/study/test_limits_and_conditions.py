@@ -276,8 +276,8 @@ BAD = {
         '"conditions[1]"."elements.c.to"',
         ["not what a condition can change"],
     ),
-    "share of nothing": (ASK, "[[conditions]]\nshare = 0\n", "conditions.0.share", ["positive number"]),
-    "share in text": (ASK, '[[conditions]]\nshare = "30 %"\n', "conditions.0.share", ["without quotes"]),
+    "share of nothing": (ASK, "[[conditions]]\nshare = 0\n", '"conditions[1]".share', ["positive number"]),
+    "share in text": (ASK, '[[conditions]]\nshare = "30 %"\n', '"conditions[1]".share', ["without quotes"]),
     "swept and in a condition": (
         ASK + 'sweep = { road.speed = ["1 m/s", "2 m/s"] }',
         TWO,

@@ -40,7 +40,9 @@ class LoadContext:
 
     def at(self, key: str, example: str = "") -> LoadContext:
         """The context of an entry below; without an example it has that of the table that it is in."""
-        return replace(self, place=(*self.place, key), example=example or self.example)
+        return LoadContext(
+            self.tables, self.root, (*self.place, key), example or self.example, self.problems, self.loaded
+        )
 
     def add(self, error: Exception) -> None:
         """Add the problem of the entry that an error states."""
@@ -193,12 +195,13 @@ class TableCodec(Codec):
                 values[one.attribute] = one.default
             if not context.place:
                 context.loaded[one.name] = values[one.attribute]
-        others = {name: entry for name, entry in raw.items() if name not in self.names}
+        known = self.names
+        others = {name: entry for name, entry in raw.items() if name not in known}
         if self.rest:
             values[self.rest] = others
         for name in () if self.rest else others:
             hint = self._hint(name, context)
-            context.at(name).add(EntryError(fault="unknown key", expected=f"one of {', '.join(self.names)}", hint=hint))
+            context.at(name).add(EntryError(fault="unknown key", expected=f"one of {', '.join(known)}", hint=hint))
         return INVALID if len(context.problems) > count else self.check(self.make(**values))
 
     def _hint(self, name: str, context: LoadContext) -> str:

@@ -1,6 +1,6 @@
-"""One codec for files: what a declaration says is read, written, described to editors, and found and changed by place.
+"""One codec for files: each key is declared once, and from that read, written, described, and found and changed by place.
 
-A `Codec` says what an entry may be. A frozen dataclass has one for each of its fields that is a key, and with them is
+A `Codec` is a kind of entry. A frozen dataclass has one for each of its fields that is a key, and with them is
 a table of a file, `TableCodec(kind)`. Loading with a sentence for every problem, dumping, the JSON Schema, the numbers
 in an object by their places, and the object with another number at a place all follow from that.
 """
@@ -29,7 +29,7 @@ Kind = TypeVar("Kind")
 
 @dataclass(frozen=True)
 class LoadContext:
-    """Where an entry stands in a file that is read, with the problems so far."""
+    """Position of an entry in a file that is read, with the problems so far."""
 
     tables: Mapping[str, Any]  # of the whole file
     root: Codec
@@ -65,7 +65,7 @@ class LoadContext:
 
 
 class Codec:
-    """What an entry of a file may be, and the value that stands for it."""
+    """A kind of entry of a file: reads, writes and describes it, and finds and replaces the numbers in its value."""
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """The value; raises ValueError, or adds problems to the context and returns `INVALID`."""
@@ -148,8 +148,8 @@ def keys_in(kind: Any) -> tuple[Declaration, ...]:
     )
 
 
-def given(**values: Any) -> dict[str, Any]:
-    """Those values that are not None."""
+def without_none(**values: Any) -> dict[str, Any]:
+    """The values by name, without those that are None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -205,7 +205,7 @@ class TableCodec(Codec):
         return INVALID if len(context.problems) > count else self.check(self.make(**values))
 
     def _hint(self, name: str, context: LoadContext) -> str:
-        """Where an unknown key may belong, or the known one that it may be."""
+        """A sentence on the section that an unknown key may belong in, or the known key that is meant; else empty."""
         other = None if context.place else kind_with(name)
         if other is not None:
             return f"It is a section of {other.plural}, for: inerter {other.command}."
@@ -258,7 +258,7 @@ class TableCodec(Codec):
         return self.make(**{**values, one.attribute: one.codec.put(values.get(one.attribute), keys[1:], number)})
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """Itself, and those at its keys."""
+        """The table, and those at its keys."""
         yield place, self
         for one in self.keys:
             yield from one.codec.tables((*place, one.name))
@@ -291,7 +291,7 @@ class Scalar(Codec):
 
 
 def load_tables(codec: Codec, tables: Mapping[str, Any]) -> tuple[Any, list[Problem]]:
-    """What the tables of a file stand for, and all that is wrong with them; `INVALID` if anything is."""
+    """The value of the tables of a file, and their problems; `INVALID` if there are any."""
     context = LoadContext(tables, codec)
     found = context.read(codec, tables)
     return (INVALID if context.problems else found), context.problems

@@ -44,15 +44,15 @@ class TaggedCodec(Codec):
         return self.table_of(value).dump(value)
 
     def schema(self) -> dict[str, Any]:
-        """Any of the tables."""
+        """The JSON Schema of any of the tables."""
         return any_of([table.schema() for table in self.of().values()])
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """Those of the value's table."""
+        """The numbers of the value's table."""
         yield from self.table_of(value).numbers(value, words)
 
     def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
-        """As the value's table does."""
+        """The value with another number in its table."""
         return self.table_of(value).put(value, keys, number)
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
@@ -95,7 +95,7 @@ class NamesCodec(Codec):
         return {"type": "object", "additionalProperties": self.item.schema(), **least}
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """Those of all entries, in words with their names."""
+        """The numbers of all entries, in words with their names."""
         for name, part in (value or {}).items():
             for keys, number in self.item.numbers(part, ""):
                 yield (name, *keys), replace(number, words=with_name(number.words, name))
@@ -107,12 +107,12 @@ class NamesCodec(Codec):
         return {**value, name: self.item.put(value[name], keys[count:], number)}
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """Those of its entries."""
+        """The tables of its entries."""
         yield from self.item.tables((*place, "*"))
 
 
 def with_name(words: str, name: str) -> str:
-    """What is called so, of what has a name."""
+    """Words for a number of an entry that has a name: "mass of body", "intensity of a force for sway"."""
     return f"{words} {'for' if ' of ' in words else 'of'} {name}" if words else name
 
 
@@ -170,7 +170,7 @@ class ByPlaceCodec(NamesCodec):
         return super().load(by_place(raw, entries=self.entries), context)
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """None: they are of other places."""
+        """No numbers, since they are those of other places."""
         yield from ()
 
     def schema(self) -> dict[str, Any]:

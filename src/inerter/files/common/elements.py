@@ -119,7 +119,7 @@ class ElementCodec(Codec):
         return type(value).of(old, value.name, **{**more, part: number})
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """That of a range."""
+        """The table of a range."""
         if self.free:
             yield place, RANGE
 
@@ -178,7 +178,7 @@ def _of_kind(entry: dict[str, Any], name: str, *, free: bool) -> Element:
 
 
 def _kind_schema() -> dict[str, Any]:
-    """What a JSON Schema says of an entry that names its kind."""
+    """The JSON Schema of an entry that names its kind."""
     return {"anyOf": [_schema_of(name, kind) for name, kind in ELEMENTS.items()]}
 
 

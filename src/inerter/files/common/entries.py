@@ -1,4 +1,4 @@
-"""What a single entry of a study file may be: checks that turn it into its value, or say what is wrong with it."""
+"""Single entries of files: checks that turn one into its value or state its problem, and codecs made of them."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class QuantityCodec(Codec):
         return or_range_schema(one) if self.free else one
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """It, and its bounds if it is free."""
+        """The quantity, and its bounds if it is free."""
         if value is not None or not self.if_given:
             yield from with_bounds(Number(self.unit, words, value, self.least == "not negative"))
 
@@ -94,7 +94,7 @@ class QuantityCodec(Codec):
 
 
 def text_of(value: float | Free, unit: str) -> str | dict[str, str]:
-    """How a file says a value in its SI unit, to the last bit; a table of two for one that is free."""
+    """A value with its SI unit as text, to the last bit; a table of two for one that is free."""
     if isinstance(value, Free):
         return {LOWER: f"{value.lower!r} {unit}", UPPER: f"{value.upper!r} {unit}"}
     return f"{value!r} {unit}"
@@ -146,7 +146,7 @@ def positive_in(text: Any, unit: str) -> float:
     return value
 
 
-def stated(one: Field | TextChoice, *, optional: bool = False, free: bool = False) -> Declaration:
+def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: bool = False) -> Declaration:
     """The key of what a dataclass states of a field of its own; one that may be free may be a range here if `free`.
 
     Those without a default must be given, unless all are `optional` here, and those whose default is zero may be zero.

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.errors import NetworkError
 from inerter.fields import mounts_of
-from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, given, section
+from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, section, without_none
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import EXPRESSION, layout_name
 from inerter.files.common.problem import EntryError, Problem, at
@@ -102,7 +102,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
             )
             for name, mount in known.items()
         ),
-        given,
+        without_none,
     )
 
 

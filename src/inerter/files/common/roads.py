@@ -13,8 +13,18 @@ from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.fields import fields_of
 from inerter.files.common import profiles
-from inerter.files.common.codec import REQUIRED, Scalar, TableCodec, declared, given, key, keys_in, section, table_of
-from inerter.files.common.entries import TEXT, QuantityCodec, stated, word
+from inerter.files.common.codec import (
+    REQUIRED,
+    Scalar,
+    TableCodec,
+    declared,
+    key,
+    keys_in,
+    section,
+    table_of,
+    without_none,
+)
+from inerter.files.common.entries import TEXT, QuantityCodec, declaration_of, word
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import some
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
@@ -66,7 +76,7 @@ class CoherenceTable:
 
 
 def _of_one_form(values: dict[str, float]) -> dict[str, float]:
-    """What is given, with what is left out of a form that has a default."""
+    """The values, with those that a form has by default."""
     names = list(values)
     if not names:
         raise EntryError(got="an empty table", expected=_FORMS)
@@ -75,12 +85,12 @@ def _of_one_form(values: dict[str, float]) -> dict[str, float]:
     return {_LEVEL: 1.0, **values} if "wavenumber" in values else values
 
 
-COHERENCE = table_of(CoherenceTable, make=given, check=_of_one_form, about=CoherenceTable.__doc__)
+COHERENCE = table_of(CoherenceTable, make=without_none, check=_of_one_form, about=CoherenceTable.__doc__)
 
 
 @declared
 class RoadSource:
-    """Where the roughness of a road is from, if the file does not say it: a class, or a measured profile."""
+    """Source of a roughness that the file does not say: a class, or a measured profile."""
 
     letter: str | None = key(
         word("a class of ISO 8608", ROAD_CLASSES),
@@ -149,7 +159,7 @@ def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def road_codec(*, rough: bool = True) -> TableCodec:
     """The section [road], as a dictionary of its values; not all that drive on one need its roughness (`rough`)."""
-    speed, roughness, *others = map(stated, ROAD_QUANTITIES)
+    speed, roughness, *others = map(declaration_of, ROAD_QUANTITIES)
     roughness = replace(roughness, implied=True, default=REQUIRED if rough else None)
     return TableCodec(
         (

@@ -96,7 +96,7 @@ class SignalCodec(Codec):
         return any_of([codec.schema() for codec in self.in_unit.values()])
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """Those of all kinds in all units."""
+        """The tables of all kinds in all units."""
         for codec in self.in_unit.values():
             yield from codec.tables(place)
 

@@ -21,7 +21,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def value_of(codec: TableCodec, tables: Mapping[str, Any], path: Path) -> Any:
-    """What the tables of a file stand for; `path`, where they are from, is for messages.
+    """The value of the tables of a file; `path`, where they are from, is for messages.
 
     Raises `StudyError` with a sentence for a file of another kind, or with a line for every entry that does not fit.
     """

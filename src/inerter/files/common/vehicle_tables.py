@@ -12,7 +12,7 @@ from inerter.errors import RowError, UnitError
 from inerter.fields import fields_of
 from inerter.files.common.codec import Codec, KeyPath, LoadContext, Scalar, TableCodec, declared, key, keys_in, table_of
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
-from inerter.files.common.entries import EXPRESSION, TEXT, not_negative, positive, stated, word
+from inerter.files.common.entries import EXPRESSION, TEXT, declaration_of, not_negative, positive, word
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
@@ -85,7 +85,7 @@ class InertiaCodec(Codec):
         return quantity_schema("kg", "kg m^2", least="positive")
 
     def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """It."""
+        """The mass or the moment of inertia."""
         yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
 
     def put(self, value: float, keys: Sequence[str], number: float) -> float:
@@ -250,7 +250,7 @@ def _vehicle_table(model: str, free: bool) -> TableCodec:
     tag = ("model", model, "The kind of vehicle.")
     if model == MECHANISM:
         return table_of(MechanismTable, make=make, tag=tag, about=str(MechanismTable.__doc__))
-    keys = tuple(stated(field, free=free) for field in fields_of(VEHICLES[model]))
+    keys = tuple(declaration_of(field, free=free) for field in fields_of(VEHICLES[model]))
     seat = (_SEAT,) if VEHICLES[model].moved == "road" else ()
     taken = sorted({"model", *(one.name for one in seat)} & {one.name for one in keys})
     if taken:

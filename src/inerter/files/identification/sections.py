@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import Any
 
-from inerter.files.common.codec import Scalar, TableCodec, declared, given, key, keys_in, section, table_of
+from inerter.files.common.codec import Scalar, TableCodec, declared, key, keys_in, section, table_of, without_none
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import (
     EXPRESSION,
@@ -140,7 +140,7 @@ class FitSettings:
 
 
 def _record(**values: Any) -> RecordRequest:
-    roles = given(**{role: values.pop(role) for role in ROLES})
+    roles = without_none(**{role: values.pop(role) for role in ROLES})
     return RecordRequest(channels=roles, **values)
 
 
@@ -168,9 +168,9 @@ IDENTIFICATION = TableCodec(
         ),
         section(
             "fit",
-            table_of(FitSettings, make=given),
+            table_of(FitSettings, make=without_none),
             example="a section [fit] with seed = 0",
-            default=given(**vars(FitSettings())),
+            default=without_none(**vars(FitSettings())),
         ),
     )
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inerter.files.common.codec import TableCodec, declared, given, key, section, table_of
+from inerter.files.common.codec import TableCodec, declared, key, section, table_of, without_none
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
 from inerter.files.common.layouts import layouts_codec
@@ -48,6 +48,6 @@ def rig_codec() -> TableCodec:
                 example='a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"',
             ),
             section("signal", signal_codec(), example='a section [signal] with kind = "cosine"'),
-            section("rig", table_of(RigSettings, make=given), example='a section [rig] with duration = "5 s"'),
+            section("rig", table_of(RigSettings, make=without_none), example='a section [rig] with duration = "5 s"'),
         )
     )

@@ -61,7 +61,7 @@ class AmountCodec(Codec):
         return quantity_schema(*self.units, least="positive")
 
     def numbers(self, value: Amount | None, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """It, where the file gives it."""
+        """The quantity, where the file gives it."""
         if value is not None:
             yield (), Number(value.unit, words, value.value)
 

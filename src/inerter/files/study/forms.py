@@ -39,7 +39,7 @@ class Form:
     sized: Callable[[Any], Iterable[Sized]] = lambda value: ()
 
 
-def declaration_of(setting: Formed) -> Declaration:
+def form_declaration(setting: Formed) -> Declaration:
     """The key of a setting that has a form."""
     example, default = f"{setting.key} = {setting.example}", REQUIRED if setting.needed else None
     words = setting.key.replace("_", " ")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from inerter.errors import InerterError
-from inerter.files.common.codec import Codec, KeyPath, Scalar, declared, given, key, table_of
+from inerter.files.common.codec import Codec, KeyPath, Scalar, declared, key, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
@@ -73,7 +73,7 @@ class LimitTable:
     equal: str | float | None = key(_LIMIT, "What it has to be.", 'equal = "120 kN/m"', default=None)
 
 
-_SIDES = table_of(LimitTable, make=given, about=LimitTable.__doc__)
+_SIDES = table_of(LimitTable, make=without_none, about=LimitTable.__doc__)
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from typing import Any
 
 from inerter.errors import RowError
 from inerter.fields import fields_of
-from inerter.files.common.codec import TableCodec, given
+from inerter.files.common.codec import TableCodec, without_none
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
-from inerter.files.common.entries import layout_name, one_of, stated
+from inerter.files.common.entries import declaration_of, layout_name, one_of
 from inerter.files.common.problem import EntryError, Problem, at
-from inerter.files.study.forms import Form, declaration_of, form_of
+from inerter.files.study.forms import Form, form_declaration, form_of
 from inerter.indices.names import index_names, index_words
 from inerter.indices.registry import INDICES, as_line, excitation_of, index_choices, index_forms, needed_settings
 from inerter.signals.road import Road
@@ -78,13 +78,13 @@ def own_indices_codec() -> NamesCodec:
 
 def _index_table(name: str, symbol: str) -> TableCodec:
     def make(**values: Any) -> OwnIndex:
-        return OwnIndex(symbol, given(**values))
+        return OwnIndex(symbol, without_none(**values))
 
     fields, choices = fields_of(INDICES[symbol]), index_choices(symbol)
     keys = (
-        *(stated(field, optional=True) for field in fields),
-        *(stated(one) for one in choices),
-        *(declaration_of(one) for one in index_forms(symbol)),
+        *(declaration_of(field, optional=True) for field in fields),
+        *(declaration_of(one) for one in choices),
+        *(form_declaration(one) for one in index_forms(symbol)),
     )
     taken = [_KIND, *(one.name for one in keys)]
     if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:

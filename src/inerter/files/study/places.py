@@ -66,7 +66,7 @@ def sections_of(study: Study) -> dict[str, Any]:
 
 
 class _Section(NamedTuple):
-    """What a section that may hold numbers says in a study, and the arguments of a study that it gives."""
+    """A section that may hold numbers: its value in a study, and the arguments of a study that a value gives."""
 
     get: Callable[[Study], Any]
     arguments: Callable[[Study, Any], dict[str, Any]]

@@ -8,7 +8,17 @@ from typing import Any
 
 from inerter.errors import RowError
 from inerter.fields import fields_of
-from inerter.files.common.codec import Codec, Scalar, TableCodec, declared, given, key, keys_in, section, table_of
+from inerter.files.common.codec import (
+    Codec,
+    Scalar,
+    TableCodec,
+    declared,
+    key,
+    keys_in,
+    section,
+    table_of,
+    without_none,
+)
 from inerter.files.common.codecs import ByPlaceCodec, EitherCodec, RowsCodec, by_place
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import (
@@ -22,10 +32,10 @@ from inerter.files.common.entries import (
     TEXT,
     UPPER,
     SomeOfFile,
+    declaration_of,
     one_of,
     some_names,
     some_of,
-    stated,
     whole,
     word,
 )
@@ -232,7 +242,7 @@ def _settings(**values: Any) -> dict[str, Any]:
     """The arguments of a study that its section [study] gives; those of indices are together in one."""
     shared = index_settings()
     own = {name: value for name, value in values.items() if name not in shared}
-    return {**own, "settings": given(**{name: value for name, value in values.items() if name in shared})}
+    return {**own, "settings": without_none(**{name: value for name, value in values.items() if name in shared})}
 
 
 def _settings_in(study: Any) -> dict[str, Any]:
@@ -253,7 +263,7 @@ def study_codec() -> TableCodec:
     if taken:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
     settings = TableCodec(
-        (*own, *(stated(field, optional=True) for field in index_settings().values())),
+        (*own, *(declaration_of(field, optional=True) for field in index_settings().values())),
         _settings,
         _settings_in,
         before=_of_a_trade_off,
@@ -312,7 +322,7 @@ def _methods() -> TableCodec:
     """The section [methods], with a table for each method that has settings of its own."""
     with_settings = {name: fields_of(kind) for name, kind in METHODS.items() if fields_of(kind)}
     tables = {
-        name: TableCodec(tuple(stated(field, optional=True) for field in fields), given)
+        name: TableCodec(tuple(declaration_of(field, optional=True) for field in fields), without_none)
         for name, fields in with_settings.items()
     }
     return TableCodec(

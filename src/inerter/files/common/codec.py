@@ -1,4 +1,4 @@
-"""One codec for files: each key is declared once, and from that read, written, described, and found and changed by place.
+"""One codec for files: a key is declared once, and so read, written, described, and found and changed by its place.
 
 A `Codec` is a kind of entry. A frozen dataclass has one for each of its fields that is a key, and with them is
 a table of a file, `TableCodec(kind)`. Loading with a sentence for every problem, dumping, the JSON Schema, the numbers

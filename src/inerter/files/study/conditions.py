@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from inerter.fields import fields_of
-from inerter.files.common.roads import COHERENCE, ROAD_QUANTITIES
 from inerter.files.common.ties import with_known_values
-from inerter.files.common.vehicle_tables import SEAT
 from inerter.files.study.place import Place, element_at, place_of
 from inerter.files.study.places import number_at, with_numbers
 from inerter.files.study.sections import ConditionEntry
@@ -38,23 +36,20 @@ class StudyCondition:
 
 
 def what_of(study: Study, place: Place) -> tuple[str, str] | None:
-    """Whether a place is one of the vehicle or of the road, and what it is called there; None if of neither."""
-    names = {
-        "vehicle": _of_vehicle(study),
-        "road": {
-            **{f.key: ("road", f.name) for f in ROAD_QUANTITIES},
-            **{f"coherence.{one.name}": ("road", "coherence") for one in COHERENCE.keys},
-        },
-        "elements": {name: ("vehicle", name) for name in study.elements},
-    }
-    return names.get(place.section, {}).get(place.key)
-
-
-def _of_vehicle(study: Study) -> dict[str, tuple[str, str]]:
-    coordinates = {f"coordinates.{name}": ("vehicle", name) for name in study.vehicle.get("coordinates", {})}
-    fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES else ()
-    seat = {f"{SEAT}.mass": ("vehicle", "mass")} if SEAT in study.vehicle else {}
-    return {**{f.key: ("vehicle", f.name) for f in fields}, **coordinates, **seat}
+    """Whether the number at a place is one of the vehicle or of the road, and its name there; None if of neither."""
+    *inside, last = place.key.split(".")
+    match place.section, inside:
+        case "elements", []:
+            return "vehicle", last
+        case "road", []:
+            return "road", last
+        case "road", ["coherence"]:
+            return "road", "coherence"
+        case "vehicle", [] | ["coordinates"] | ["seat"]:
+            fields = fields_of(VEHICLES[study.model]) if study.model in VEHICLES and not inside else ()
+            return "vehicle", {field.key: field.name for field in fields}.get(last, last)
+        case _:
+            return None
 
 
 def following(study: Study, numbers: Mapping[str, float]) -> dict[str, Element]:

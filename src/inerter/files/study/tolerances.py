@@ -16,6 +16,7 @@ from inerter.files.common.suggest import some
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.conditions import what_of
 from inerter.files.study.place import element_at, place_of
+from inerter.files.study.places import number_at
 from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
 from inerter.methods.registry import deciding
@@ -122,7 +123,7 @@ def tolerance_of(study: Study, entries: Mapping[str, float]) -> tuple[dict[str, 
     for label, part in entries.items():
         try:
             place = place_of(label)
-            if what_of(study, place) is None or place.section == "road":
+            if number_at(study, place) is None or what_of(study, place) is None or place.section == "road":
                 raise unknown_place(study, place)
             _check_is_part(study, element_at(place))
             spread[place.label] = part

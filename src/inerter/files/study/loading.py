@@ -104,7 +104,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
         line=line,
         elements=elements,
         layouts=found["layouts"],
-        own_indices=found["indices"],
+        own_indices=dict(found["indices"]),
         method_settings={name: table for name, table in found.get("methods", {}).items() if table},
         **settings,
     )

@@ -10,6 +10,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -33,7 +34,7 @@ from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import figures, window
-from inerter.report.identification_text import identification_text, share
+from inerter.report.identification_text import identification_text, share, unreliable
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 from inerter.units import format_handy
@@ -316,3 +317,20 @@ def test_a_misfit_is_shown_where_it_is(found: Identified, tmp_path: Path) -> Non
     assert sentence in told["sentence"]
     assert told["changes"] == [0.5]
     assert told["patterns"][0]["kind"] == "begins"
+
+
+@pytest.mark.parametrize(
+    ("likeliest", "severity", "is_named"), [(None, "warning", True), (None, "info", False), ("x", "warning", False)]
+)
+def test_a_misfit_that_nothing_explains_begins_with_what_records_were_warned_of(likeliest, severity, is_named):
+    readings = [
+        SimpleNamespace(used=SimpleNamespace(source=name), findings=[SimpleNamespace(severity=one)])
+        for name, one in (("a.csv", "info"), ("b.csv", severity))
+    ]
+    fit = SimpleNamespace(
+        status=Status(StatusKind.INACCURATE, "it leaves much"), doubt=SimpleNamespace(numbers={"likeliest": likeliest})
+    )
+    said = unreliable(SimpleNamespace(readings=readings, fit=fit))
+    assert said.startswith("it leaves much")
+    assert ("Begin with the warning about b.csv below" in said) == is_named
+    assert unreliable(SimpleNamespace(readings=readings, fit=SimpleNamespace(status=OK))) == ""

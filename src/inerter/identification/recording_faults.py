@@ -30,6 +30,7 @@ _FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
 _RESONANCES = (15.0, 40.0, 100.0)  # [Hz] where a resonance of the frame is looked for
 _BESIDE = 10  # samples to either side of repaired ones that are not compared
 _SETTLED = 0.3  # [s] after a joint that are not compared, while the device forgets
+_NOTHING = 1e-5  # of its largest value, below which a parameter that changes is none
 _FITTED = 0.75  # of a record, after which a change is hardly fitted
 _INDEX = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.BEGINS, MisfitPattern.ENDS, MisfitPattern.LEVEL_STEP)
 
@@ -176,7 +177,8 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
 
     def details(values: Values) -> Details:
         pairs = [(n, units[n], values[n], values[other]) for n, other in later.items()]
-        return {"time": time, "values": tuple(p for p in pairs if abs(p[3] - p[2]) > 0.01 * abs(p[2]))}
+        shown = (p for p in pairs if abs(p[3] - p[2]) > max(0.01 * abs(p[2]), _NOTHING * bounds[p[0]][1]))
+        return {"time": time, "values": tuple(shown)}
 
     return Hypothesis(Suspect.CHANGED_DEVICE, unknowns, read=read, details=details, alike=later)
 

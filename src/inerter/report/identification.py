@@ -23,6 +23,7 @@ from inerter.report.identification_text import (
     misfit,
     remarks,
     share,
+    unreliable,
     whiteness,
 )
 from inerter.report.identified_values import (
@@ -98,7 +99,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             title=found.title,
             model="that of the configuration" if found.name == CUSTOM else found.name,
             layout=written(found.model, [e.label for e in found.model.elements()]),
-            status="" if fit.status.ok else fit.status.message,
+            status=unreliable(found),
             answers=list(_answers(found)),
             rows=list(_rows(found)),
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],

@@ -43,7 +43,7 @@ def _warning(found: Identified) -> Iterator[str]:
     """A wrong model or sensor, before anything else, and what explains it."""
     if found.fit.status.ok:
         return
-    yield from wrap(f"Not to be relied on: {found.fit.status.message}.", WIDTH)
+    yield from wrap(f"Not to be relied on: {unreliable(found)}.", WIDTH)
     for place in found.fit.localisations:
         of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
         yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
@@ -57,6 +57,21 @@ def _warning(found: Identified) -> Iterator[str]:
         )
         for line in (f"With it {values}." if values else "", f"What to do: {remedy}." if remedy else ""):
             yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
+
+
+def unreliable(found: Identified) -> str:
+    """Why a fit is not to be relied on; empty if it is.
+
+    Where no hypothesis explains the misfit, what the records were warned of before is the first thing to look at.
+    """
+    status = found.fit.status
+    if status.ok:
+        return ""
+    warned = [r.used.source for r in found.readings if any(f.severity == "warning" for f in r.findings)]
+    doubt = found.fit.doubt
+    if not warned or doubt is None or doubt.numbers.get("likeliest") is not None:
+        return status.message
+    return f"{status.message}. Begin with the warning about {' and '.join(warned)} below, which may name the cause"
 
 
 def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:

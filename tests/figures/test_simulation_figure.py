@@ -22,8 +22,10 @@ from inerter.files.simulation.running import SimulationResult
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-def result(name, duration=1.0, layout=None, **changes):
+def result(name, duration=1.0, layout=None, roughness=None, **changes):
     request = replace(load_simulation(EXAMPLES / f"{name}.toml"), duration=duration, **changes)
+    if roughness is not None:
+        request = replace(request, road={**request.road, "roughness": roughness})
     if layout is not None:
         request = replace(
             request,

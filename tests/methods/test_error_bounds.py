@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import inerter as it
 from inerter.errors import ErrorSource, StatusKind
 from inerter.indices.excitation import RoadVelocity
+from inerter.methods import steady_squares
 from inerter.methods.error_bounds import checked, of_weighted_sum, of_worst
 from inerter.scatter.spread import scatter_of
 
@@ -109,3 +112,24 @@ def test_static_stiffness_and_quantiles_have_bounds():
     assert it.evaluate(car(), it.static_stiffness("strut"), it.Norm()).error_bound <= 1e-9
     over = it.Quantile(COMFORT, scatter_of({"c": 0.1}, "uniform"), 0.9, samples=64)
     assert 0.0 < it.evaluate(car(), over, it.Norm()).error_bound <= 1e-9
+
+
+@pytest.mark.parametrize("force", [5.0, 40.0])
+def test_the_jump_of_an_acceleration_where_friction_turns_is_twice_its_force_over_the_mass(force, monkeypatch):
+    """Also where slip was met one way only, beside stick: it could go as far the other way."""
+    met = []
+    monkeypatch.setattr(steady_squares, "missed_by_samples", lambda *given: met.append(given[:2]) or given[2] * 0.0)
+    rubbing = car(it.Spring(30e3) | it.Damper(800) | it.Friction(force))
+    it.evaluate(rubbing, COMFORT, it.ExpectedValue(realisations=2, jobs=1))
+    (integration, outputs), *_ = met
+    assert outputs[0] == "sprung_acceleration"
+    expected = [[2.0 * force / 181.75]]
+    maps, states = integration.modes.maps[: integration.count], integration.modes.state[: integration.count]
+    assert {state.item() for state in states} == {-1, 0, 1}
+    ways = {"both": states[:, 0] > -2, "up": states[:, 0] >= 0, "down": states[:, 0] <= 0}
+    for kept in ways.values():
+        modes = SimpleNamespace(maps=maps[kept], state=states[kept])
+        some = SimpleNamespace(
+            system=integration.system, count=int(kept.sum()), modes=modes, seen=integration.seen, eta=integration.eta
+        )
+        np.testing.assert_allclose(steady_squares.jump_sizes(some, outputs[:1]), expected, rtol=1e-9)

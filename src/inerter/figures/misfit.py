@@ -95,7 +95,7 @@ def _spectrum(ax: Axes, s: ResidualSamples) -> None:
         ax.plot(frequency[first:], values[first:] * own.factor, **{"linewidth": 0.7, **style}, label=label)
     ax.plot(frequency[first:], _smooth(sound)[first:] * own.factor, **_SOUND, linestyle=":", label="sensor noise")
     for line in s.lines:
-        ax.axvline(line, **_MARK)
+        ax.axvline(line, **{**_MARK, "linestyle": "-."}, label="line of the residual")
     log_axis(ax, "x")
     log_axis(ax, "y")
     least = 0.3 * float(np.median(sound[first:])) * own.factor

@@ -170,6 +170,8 @@ _PROFILES = (
 )
 _SCALED = " Intervals are wider than the curves by the uncertainty of the scales, which no record shows."
 _MISFIT = (
-    "(a) over time, with the times at which it changes; (b) amplitude spectrum; (c) to (e) over displacement, velocity "
-    "and model force, with means of bins; (f) mean over displacement and velocity (restoring-force surface)."
+    "The residual is the measured force less that of the model. (a) over time, with the times at which it changes; (b) "
+    "amplitude spectrum, with the lines that stand out of it; (c) to (e) over displacement, velocity and model force, "
+    "with means of bins (their axes leave out the most extreme 0.6 % of the samples, which (a) shows); (f) mean over "
+    "displacement and velocity (restoring-force surface)."
 )

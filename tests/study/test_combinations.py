@@ -117,7 +117,7 @@ def check_costs(tables: Tables, folder: Path, found: Outcome) -> None:
     """What a limit costs is what moving it by one per cent costs, on one side at least."""
     study = opened(tables, folder)
     assert len(found.limits) == len(tables["study"]["subject_to"])
-    for (name, limit), (_, active, cost) in zip(tables["study"]["subject_to"].items(), found.limits, strict=True):
+    for (name, limit), (_, active, cost, *_) in zip(tables["study"]["subject_to"].items(), found.limits, strict=True):
         ((sense, quantity),) = limit.items()
         slopes = []
         for factor in (1.01, 1.0 / 1.01):

@@ -450,9 +450,9 @@ def test_a_broken_distribution_is_one_sentence(case: str, study: Path, tmp_path:
     (place / "inerter_extending" / "seated_car.py").write_text(f"import inerter as it\n{program}\n", encoding="utf-8")
     done = inerter(place, "check", study.name, cwd=study.parent, code=2)
     assert done.stdout == ""
-    assert done.stderr.startswith("inerter: inerter-extending 1.0 adds rows to inerter, but its inerter_extending.seat")
-    assert done.stderr.count("\n") == 1
-    assert word in done.stderr
+    (line,) = (line for line in done.stderr.splitlines() if not line.startswith("inerter: preparing"))  # if it is slow
+    assert line.startswith("inerter: inerter-extending 1.0 adds rows to inerter, but its inerter_extending.seat")
+    assert word in line
 
 
 def test_help_looks_for_no_distribution(tmp_path: Path) -> None:

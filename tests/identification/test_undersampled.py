@@ -22,7 +22,7 @@ def test_the_highest_frequency_of_tones(frequency: float, size: float, seed: int
     time = np.arange(8000) / 2000.0
     noise = 1e-6 * np.random.default_rng(seed).standard_normal(time.size)
     motion = 0.02 * np.sin(4.0 * time) + size * np.sin(2.0 * np.pi * frequency * time + 1.0) + noise
-    assert highest_frequency(motion, 1.0 / 2000.0, 3e-6) == pytest.approx(frequency, abs=4.0)
+    assert -0.25 <= highest_frequency(motion, 1.0 / 2000.0, 3e-6) - frequency <= 4.0  # a line of the spectrum; leakage
 
 
 @pytest.mark.parametrize(("sampling", "told"), [(50.0, True), (70.0, True), (200.0, False), (1000.0, False)])

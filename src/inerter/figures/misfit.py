@@ -157,5 +157,6 @@ def _surface(figure: Figure, ax: Axes, s: ResidualSamples) -> None:
         vmin=-most * up.factor, vmax=most * up.factor, rasterized=True,
     )  # fmt: skip
     ax.grid(visible=False)
+    ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
     figure.colorbar(cells, ax=ax, label=axis_label("Mean residual", up.unit))
     ax.set(xlabel=axis_label("Displacement", x.unit), ylabel=axis_label("Velocity", v.unit))

@@ -269,8 +269,7 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
         return None, [at(("road", "profile"), got=problem.got, fault=problem.fault, expected=problem.expected)]
     except (RecordError, OSError, ValueError) as error:  # the last: a name that no file can have
         return None, [at(("road", "profile"), str(error))]
-    line = _line(path, digest, track, spectrum, measured.notes)
-    return replace(line, sampling=sampling), []
+    return _line(path, digest, track, spectrum, measured.notes, sampling), []
 
 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
@@ -284,7 +283,9 @@ def remark(line: MeasuredLine | None) -> str:
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
 
 
-def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: tuple[str, ...]) -> MeasuredLine:
+def _line(
+    path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: tuple[str, ...], sampling: str
+) -> MeasuredLine:
     return MeasuredLine(
         path=path,
         digest=digest,
@@ -298,6 +299,7 @@ def _line(path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: 
         highest=spectrum.highest,
         shape=spectrum.road(1.0).shape,
         reading=reading,
+        sampling=sampling,
         folded=spectrum.folded,
     )
 

@@ -45,9 +45,6 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     asked, method = study.asked(index, layout), quick_method(study, vehicle)
     if not (_is_late(vehicle, asked) or (not is_blind(method) and _rubs(vehicle))):
         return {}, ""
-    way = study.method(method)
-    if isinstance(way, Doubting) and any(way.share_unsure(*one, {}) for one in asked_of(vehicle, asked)):
-        return {method: [np.nan] * len(BESIDE)}, "it takes more digits than double precision has"
     found = [_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
     values, messages = [value for value, _ in found], [message for _, message in found if message]
     return {method: values}, "; ".join(dict.fromkeys(messages))
@@ -59,8 +56,11 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
     assert study.road is not None
     speed = factor * study.road.speed
     there = with_numbers(study, [(place_of(SPEED), speed)])
+    question, way = there.asked(index, layout), there.method(method)
     try:
-        found = evaluate(vehicle, there.asked(index, layout), there.method(method))
+        if isinstance(way, Doubting) and any(way.share_unsure(*one, {}) for one in asked_of(vehicle, question)):
+            return np.nan, "it takes more digits than double precision has"
+        found = evaluate(vehicle, question, way)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
         return np.nan, f"at {3.6 * speed:.4g} km/h there is no value ({str(error).rstrip('.')})"
     if not np.isfinite(found.value):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -131,3 +132,16 @@ def test_measurements_in_the_place_of_a_file_are_one_sentence(
     assert "this is a file of measurements" in str(refused.value)
     assert f"Try: inerter identify {path}" in str(refused.value)
     assert len(str(refused.value).splitlines()) == 1
+
+
+def test_a_command_that_is_proposed_can_be_pasted_into_a_shell(tmp_path: Path) -> None:
+    folder = tmp_path / "my cars; $HOME"
+    folder.mkdir()
+    study, record = folder / "a car.toml", folder / "run 1.csv"
+    study.write_text((EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    record.write_text("time [s],force [N]\n0.1,1\n", encoding="utf-8")
+    for path, command in ((study, "run"), (record, "identify")):
+        with pytest.raises(StudyError) as refused:
+            load_simulation(path)
+        _, _, proposed = str(refused.value).partition("Try: ")
+        assert shlex.split(proposed)[:3] == ["inerter", command, str(path)]

@@ -8,6 +8,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 from pkgutil import iter_modules
+from shlex import quote
 from typing import Any
 
 from inerter import files
@@ -36,7 +37,7 @@ class FileKind:
 
     def call(self, path: Path) -> str:
         """The command line that takes the file at `path`."""
-        return f"inerter {self.command} {self.usage.format(file=path)}"
+        return f"inerter {self.command} {self.usage.format(file=quote(str(path)))}"
 
     def check_lines(self, path: Path) -> Iterable[str]:
         """Sentences about a sound file of this kind; raises `StudyError` for another."""

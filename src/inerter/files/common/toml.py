@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 from inerter.errors import StudyError
@@ -81,7 +82,7 @@ def _record_problem(path: Path, what: str) -> Problem | None:
 
     if path.suffix.lower() not in FORMATS or path.suffix.lower() == ".txt":
         return None
-    hint = f"Try: inerter identify {path} --model choose"
+    hint = f"Try: inerter identify {quote(str(path))} --model choose"
     return Problem(fault="this is a file of measurements", expected=what, hint=hint)
 
 

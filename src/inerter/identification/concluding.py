@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.identification.experiment import saturated
 from inerter.identification.explaining import explanations
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
@@ -28,6 +27,7 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
+from inerter.records.saturation import saturated
 from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]

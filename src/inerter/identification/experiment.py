@@ -13,6 +13,7 @@ from inerter.errors import IdentificationError, InerterError
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.records.lost import MAD
 from inerter.records.record import Record
+from inerter.records.saturation import saturated
 from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
@@ -142,7 +143,7 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         table = _table(motion)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
-    kept = ~saturated(record)
+    kept = np.convolve(saturated(record), np.ones(3), "same") == 0.0  # within a sample of one cut off it was too
     at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
     wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
     if not 0.0 <= wait < record.duration:
@@ -188,14 +189,6 @@ def reading_of(record: Record) -> str:
 def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
     """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
     return experiment.moved(*experiment.motion.smoothed(experiment.record.displacement + noise))
-
-
-def saturated(record: Record) -> NDArray[np.bool_]:
-    """Samples at the end of the load cell's range, and one beside them; none if the range is not known."""
-    if record.force_range is None:
-        return np.zeros(record.time.size, dtype=bool)
-    at_end = np.abs(record.force) >= 0.999 * record.force_range
-    return np.asarray(np.convolve(at_end, np.ones(3), "same") > 0.0)
 
 
 def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> int:

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import IdentificationError, Status
-from inerter.identification.experiment import saturated
 from inerter.identification.fit import Fit, Parameter
 from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability, Verdict
@@ -28,6 +27,7 @@ from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
+from inerter.records.saturation import saturated
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate

@@ -11,18 +11,17 @@ from scipy.signal import welch
 from inerter.records import signs
 from inerter.records.clocks import clock_drift, jitter
 from inerter.records.finding import Finding, Severity
-from inerter.records.gaps import runs
 from inerter.records.instants import Instant
 from inerter.records.kinds import COARSE, LARGE, RecordFinding
 from inerter.records.lost import losses
 from inerter.records.record import UNIFORM, Record
 from inerter.records.repair import faulty_instants
+from inerter.records.saturation import plateaus, saturated
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import lonely_line
 
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
-FLAT = 3  # samples in a row at the extreme value that look like a limit
 _FOLDED = 0.8  # of half the sampling rate: motion up to there may go on beyond
 HUM = (50.0, 60.0)  # Hz of the mains
 PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more often a wrong unit than a large rig
@@ -156,34 +155,13 @@ def _sizes(record: Record) -> list[Finding]:
 
 def _saturation(record: Record) -> list[Finding]:
     """The force at a known limit, or flat at its extremes for longer than its motion explains."""
-    force, limit = record.force, record.force_range
-    step = resolution(force)
-    if limit is not None:
-        at = np.abs(force) >= limit - max(0.5 * step, 1e-6 * limit)
-        share = float(np.mean(at))
-        if share > 0.0:
-            return [Finding(RecordFinding.SATURATION, "warning", "force", {"share": share, "limit": limit})]
+    share = float(np.mean(saturated(record)))
+    if share == 0.0:
         return []
-    flat = []
-    for value in (float(np.max(force)), float(np.min(force))):
-        near = np.abs(force - value) <= 1e-9 * abs(value)
-        longest = max(stop - start for start, stop in runs(near))
-        if longest >= FLAT and longest > 2.0 * _expected_at_turn(force, value, step):
-            flat.append((value, longest, float(np.mean(near))))
-    if not flat:
-        return []
-    size = {"share": sum(share for *_, share in flat), "limit": max(abs(value) for value, *_ in flat)}
-    extremes = [(value, longest) for value, longest, _ in flat]
-    return [Finding(RecordFinding.SATURATION, "warning", "force", {**size, "extremes": extremes})]
-
-
-def _expected_at_turn(force: Vector, extreme: float, step: float) -> float:
-    """How long a smooth signal would stay within one step of its extreme, judged by how it leaves 10 % of its range."""
-    if step == 0.0:
-        return 1.0
-    band = max(0.1 * float(np.ptp(force)), 4.0 * step)
-    longest = max(stop - start for start, stop in runs(np.abs(force - extreme) <= band))
-    return max(1.0, longest * math.sqrt(step / band))
+    extremes = [(plateau.value, plateau.longest) for plateau in plateaus(record)]
+    where = {"limit": record.force_range} if record.force_range is not None else {"extremes": extremes}
+    numbers = {"share": share, **where}
+    return [Finding(RecordFinding.SATURATION, "warning", "force", numbers)]
 
 
 def _steps(record: Record) -> list[Finding]:

@@ -14,7 +14,8 @@ LARGE = 0.5  # of the amplitude: a mean that may be an offset
 CLEAR = 0.3  # least correlation that says anything
 SEEN = 3.0  # standard errors of a delay that is seen
 _LIMITED = (
-    "it looks cut off there, and what lies above is lost. Reduce the motion, or ",
+    "it looks cut off there, and what lies above is lost. A fit leaves these samples out, a frequency response does "
+    "not: reduce the motion, or ",
     Remedy(Action.TRIM),
     " those stretches away.",
 )

@@ -1,0 +1,59 @@
+"""Samples at which a load cell or its amplifier cuts the force off."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.records.gaps import runs
+from inerter.records.record import Record
+from inerter.records.smoothing import resolution
+
+Vector = NDArray[np.float64]
+FLAT = 3  # samples in a row at the extreme value that look like a limit
+
+
+@dataclass(frozen=True)
+class Plateau:
+    """An extreme [N] at which a force stays, and the largest number of samples in a row there."""
+
+    value: float
+    longest: int
+
+
+def saturated(record: Record) -> NDArray[np.bool_]:
+    """Samples (samples,) at the end of the load cell's range, or on a plateau of the force where that is unknown."""
+    force, limit = record.force, record.force_range
+    if limit is not None:
+        return np.asarray(np.abs(force) >= min(limit - 0.5 * resolution(force), 0.999 * limit))
+    at_end = np.zeros(force.size, dtype=bool)
+    for plateau in plateaus(record):
+        at_end |= _at(force, plateau.value)
+    return at_end
+
+
+def plateaus(record: Record) -> list[Plateau]:
+    """The extremes of the force at which it stays for longer than its motion explains."""
+    force, step = record.force, resolution(record.force)
+    found = []
+    for value in (float(np.max(force)), float(np.min(force))):
+        longest = max(stop - start for start, stop in runs(_at(force, value)))
+        if longest >= FLAT and longest > 2.0 * _expected_at_turn(force, value, step):
+            found.append(Plateau(value, longest))
+    return found
+
+
+def _at(force: Vector, value: float) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(force - value) <= 1e-9 * abs(value))
+
+
+def _expected_at_turn(force: Vector, extreme: float, step: float) -> float:
+    """How long a smooth signal would stay within one step of its extreme, judged by how it leaves 10 % of its range."""
+    if step == 0.0:
+        return 1.0
+    band = max(0.1 * float(np.ptp(force)), 4.0 * step)
+    longest = max(stop - start for start, stop in runs(np.abs(force - extreme) <= band))
+    return max(1.0, longest * math.sqrt(step / band))

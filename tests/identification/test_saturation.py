@@ -1,0 +1,43 @@
+"""A load cell that cuts the force off: what it read at its limit is left out, whether the limit is stated or seen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from troubled_rig import Device, Sensors, Tones, measured
+
+import inerter as it
+from inerter.records.saturation import plateaus, saturated
+
+MODEL = (it.Spring(1e6) | it.Damper(3200.0)) - (
+    it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
+)
+LIMIT = 0.93  # of the largest force
+
+
+CASES = [(seed, known) for seed in range(12) for known in (False, True)]
+
+
+@pytest.mark.parametrize(("seed", "known"), sampled(CASES, [(0, False)], often=[(0, True)], kept=2))
+def test_a_force_that_is_cut_off_gives_the_same_device(seed: int, known: bool) -> None:
+    """With all samples the friction alone would be wrong by more than its interval says."""
+    random = np.random.default_rng([31, seed])
+    b, f = float(random.uniform(60.0, 200.0)), float(random.uniform(5.0, 30.0))
+    motion = Tones((1e-3, 3e-4), (4.0, 9.0), (0.0, float(random.uniform(0.0, 3.0))))
+    sensors = Sensors(cell=300.0)
+    time, displacement, force = measured(Device(b=b, f=f, ks=1e6, cs=3200.0), motion, sensors, 1.0, seed)
+    limit = LIMIT * float(np.abs(force).max())
+    read = np.clip(force, -limit, limit)
+    record = it.Record(
+        time, displacement, read, force_bandwidth=300.0, force_range=limit if known else None, source="clipped"
+    )
+    cut = saturated(record)
+    assert np.all(cut[force != read])
+    assert np.count_nonzero(cut & (force == read)) <= 0.002 * force.size
+    assert len(plateaus(record)) >= 1
+    fit = it.identify(record, MODEL, starts=8)
+    assert fit.status.ok
+    for name, true in (("b", b), ("f", f)):
+        low, high = fit.parameters[name].interval
+        assert low - 0.5 * (high - low) < true < high + 0.5 * (high - low)

@@ -105,6 +105,31 @@ def test_numbers_of_the_patterns() -> None:
     assert set(np.round(centres[np.argsort(means)[-2:]], 3)) <= {1e-3, -1e-3, -1.1e-3, -1.2e-3, -1.3e-3, 1.1e-3, 9e-4}
 
 
+def test_spikes_are_told_from_slower_bumps_with_their_length() -> None:
+    _, motion = rigid_record(1)
+    spiked = motion["force"].copy()
+    spiked[[400, 401, 1200, 2000]] += 60.0
+    of_force = localisation_of(rigid_fit(read(motion, spiked, 1))).patterns[0]
+    assert of_force.kind is MisfitPattern.INSTANTS
+    assert of_force.numbers["longest"] == 2
+    assert of_force.numbers["at"] in of_force.numbers["times"]
+    assert "the force leaps from sample to sample" in of_force.sentence
+    slow = motion["force"] + 60.0 * np.exp(-(((motion["time"] - 1.5) / 6e-3) ** 2))
+    bump = localisation_of(rigid_fit(read(motion, slow, 1))).patterns[0]
+    assert bump.kind is MisfitPattern.INSTANTS
+    assert not bump.numbers["leaps"]
+
+
+@pytest.mark.parametrize(("frequency", "multiple"), [(15.0, 3), (17.3, 0), (35.0, 7), (31.5, 0)])
+def test_a_harmonic_of_the_motion_is_no_disturbance(frequency: float, multiple: int) -> None:
+    _, motion = rigid_record(0, duration=6.0, tones=((2e-3, 5.0),))
+    added = 3.0 * np.sin(2.0 * np.pi * frequency * motion["time"])
+    patterns = localisation_of(rigid_fit(read(motion, motion["force"] + added, 0))).patterns
+    line = next(p for p in patterns if p.kind is MisfitPattern.LINE)
+    assert line.numbers["multiple"] == multiple
+    assert line.numbers["foreign"] == (multiple == 0)
+
+
 def coloured(seed: int) -> Record:
     """A record whose load cell has noise that is autocorrelated over 10 ms, which belongs to nothing in it."""
     _, motion = rigid_record(seed)

@@ -19,6 +19,7 @@ Matrix = NDArray[np.float64]
 _BINS, _CELLS = 24, 18  # of a curve, and of the map to either side
 _FEWEST = 3  # samples in a bin
 _MOST_POINTS = 4000
+_BESIDE = 12  # samples to either side of an instant that is shown larger
 _POINTS: dict[str, Any] = {"linestyle": "", "marker": ".", "markersize": 1.2, "color": "#9CC8E6", "rasterized": True}
 _MARK: dict[str, Any] = {"color": colour(1), "linewidth": 0.9, "linestyle": "--"}
 _SOUND: dict[str, Any] = {"color": "#7A7A7A", "linewidth": 0.9}
@@ -37,6 +38,7 @@ class ResidualSamples:
     interval: float  # [s]
     changes: Sequence[float] = ()  # [s] at which the residual changes
     lines: Sequence[float] = ()  # [Hz] that stand alone in it
+    instant: float | None = None  # [s] of the largest residual, where it sits at single samples
 
 
 def misfit_figure(s: ResidualSamples) -> Figure:
@@ -76,6 +78,23 @@ def _over_time(ax: Axes, s: ResidualSamples) -> None:
         ax.axvline(change, **_MARK, label="change")
     ax.set_xlim(float(s.time[0]), float(s.time[-1]))
     ax.set(xlabel=axis_label("Time", "s"), ylabel=axis_label("Residual force", own.unit))
+    if s.instant is not None:
+        _around(ax, s, int(np.searchsorted(s.time, s.instant)), own.factor)
+
+
+def _around(ax: Axes, s: ResidualSamples, at: int, factor: float) -> None:
+    """The samples about an instant, in a window above the others."""
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + 1.1 * (high - low))
+    ax.plot(s.time[at], high, marker="v", markersize=4.0, color=colour(1), clip_on=False)
+    inset = ax.inset_axes((0.56, 0.68, 0.4, 0.3))
+    near = slice(max(at - _BESIDE, 0), at + _BESIDE + 1)
+    inset.plot(s.time[near], s.residual[near] * factor, color=colour(0), linewidth=0.7, marker=".", markersize=3.0)
+    inset.xaxis.set_major_locator(MaxNLocator(2))
+    inset.yaxis.set_major_locator(MaxNLocator(2))
+    inset.tick_params(labelsize="x-small")
+    for side in ("top", "right"):
+        inset.spines[side].set_visible(True)
 
 
 def _spectrum(ax: Axes, s: ResidualSamples) -> None:

@@ -15,12 +15,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
+from scipy.ndimage import label, maximum_filter1d
 from scipy.signal import get_window
 
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.misfit_patterns import FRICTION, TRAVEL, MisfitPattern
 from inerter.records.finding import Finding
+from inerter.records.gaps import runs
 
 Matrix = NDArray[np.float64]
 SURE = 0.02  # p-value, of all tests together, below which a pattern is no chance
@@ -37,10 +38,13 @@ _MEANS = (*_QUANTITIES, TRAVEL, FRICTION)  # of which the mean may be a function
 _SCATTERED = ("velocity", "acceleration", "force", "force rate")  # with whose size the scatter may grow
 _TESTS = 2 + 2 * len(_SIGNALS) + len(_MEANS) + len(_SCATTERED) + 2  # level, coefficients, means, scatter; places, line
 _CLIP = 8.0  # r.m.s. residuals (of most samples) beyond which one counts no more in a dependence
+_LEAPS = 0.5  # of the residual: second differences of a force that leaps, of which a spike has 2 and a bump little
 _RARE = 0.01  # of the samples: those that may be single instants
 _AS_GOOD = 0.9  # of the best share: quantities that cannot be told apart
 _EDGE = 0.05  # of a record, within which nothing begins
 _NONE = 2.0  # times the noise of the sensors: a part without misfit
+_ONE_LINE = 0.9  # of the squared displacement: a motion that mostly consists of one sine ...
+_HIGHEST = 20  # ... of which a nonlinear device answers with such multiples of its frequency
 _CLEAR_LINE = 8.0  # amplitude over the median within an octave
 
 
@@ -54,6 +58,7 @@ class LocalisedSamples:
     motion: Mapping[str, Matrix]
     block: NDArray[np.int64]
     further: Mapping[str, Matrix] = field(default_factory=dict)
+    leaps: Matrix | None = None  # [N] second differences of the force as read, where it was
 
     @property
     def tests(self) -> int:
@@ -125,6 +130,7 @@ def _samples(c: RecordFit) -> LocalisedSamples:
         {name: values[used] for name, values in signals.items()},
         np.unique(number, return_inverse=True)[1],  # none is empty
         {name: values[used] for name, values in c.record.further.items()},
+        np.abs(np.diff(c.record.force, 2, prepend=c.record.force[0], append=c.record.force[-1]))[used],
     )
 
 
@@ -155,9 +161,12 @@ def _instants(s: LocalisedSamples) -> Iterator[Finding]:
     near = np.convolve(marked, np.ones(7), "same") > 0.0
     numbered, count = label(near)
     peaks = [int(np.argmax(np.where(numbered == i, square, 0.0))) for i in range(1, min(count, 200) + 1)]
+    leap = np.zeros(square.size) if s.leaps is None else maximum_filter1d(s.leaps, 3)
     numbers = {
         "count": count, "times": tuple(float(s.time[p]) for p in peaks[:6]),
-        "largest": float(np.abs(s.residual[peaks]).max()), "share": share,
+        "longest": max(stop - start for start, stop in runs(marked)), "share": share,
+        "leaps": float(np.median(leap[peaks] / np.abs(s.residual[peaks]))) > _LEAPS,
+        "largest": float(np.abs(s.residual[peaks]).max()), "at": float(s.time[np.argmax(square)]),
     }  # fmt: skip
     yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
 
@@ -404,15 +413,27 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     beside = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
     if beside.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[beside])):
-        foreign = bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
+        multiple = _multiple(peak, moved)
+        foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
         above = float(amplitude[peak]) / max(float(np.median(amplitude[beside])), 1e-300)
         chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
         numbers = {
             "frequency": float(frequency[peak]), "amplitude": float(amplitude[peak]), "foreign": foreign,
-            "share": share if foreign else 0.5 * share, "p": chance,
+            "share": share if foreign else 0.5 * share, "p": chance, "multiple": multiple,
         }  # fmt: skip
         yield Finding(MisfitPattern.LINE, "info", numbers=numbers)
     yield from _band(frequency, excess, total, c.experiment.motion.highest)
+
+
+def _multiple(peak: int, moved: Matrix) -> int:
+    """Which multiple of the sine that a motion mostly consists of is at this place of its spectrum; 0 if none is."""
+    main = int(np.argmax(moved[2:])) + 2
+    own = moved[max(main - 3, 0) : main + 4]
+    if float(np.sum(own**2)) < _ONE_LINE * float(np.sum(moved[2:] ** 2)):
+        return 0
+    centre = float(np.average(np.arange(max(main - 3, 0), main + 4), weights=own**2))
+    multiple = round(peak / centre)
+    return multiple if 1 <= multiple <= _HIGHEST and abs(peak - multiple * centre) < 1.0 + 0.1 * multiple else 0
 
 
 def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> Iterator[Finding]:

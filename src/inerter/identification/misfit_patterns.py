@@ -121,6 +121,8 @@ def _positions(f: Finding) -> str:
 def _line(f: Finding) -> str:
     n = f.numbers
     foreign = "which the motion does not excite" if n["foreign"] else "which the motion excites"
+    if n["multiple"] > 1:
+        foreign = f"{n['multiple']} times that of the motion: not a disturbance, but a nonlinear law"
     size = format_quantity(n["amplitude"], "N", 3)
     return f"the misfit is a line of {size} at {n['frequency']:.4g} Hz, {foreign}"
 
@@ -136,7 +138,10 @@ def _instants(f: Finding) -> str:
     times = ", ".join(f"{t:.4g}" for t in n["times"])
     more = ", ..." if n["count"] > len(n["times"]) else ""
     where = "one instant" if n["count"] == 1 else f"{n['count']} instants"
-    return f"the misfit sits at {where}, of up to {format_quantity(n['largest'], 'N', 3)}: at {times}{more} s"
+    lasting = "one sample" if n["longest"] == 1 else f"up to {n['longest']} samples"
+    leaps = ", where the force leaps from sample to sample" if n["leaps"] else ""
+    size = format_quantity(n["largest"], "N", 3)
+    return f"the misfit sits at {where}, up to {size} for {lasting}: at {times}{more} s{leaps}"
 
 
 _TEXTS: Mapping[MisfitPattern, Callable[[Finding], str]] = {

@@ -82,9 +82,11 @@ def residual_samples(c: RecordFit, place: Localisation) -> ResidualSamples:
     used = c.fitted | c.checked
     motion = c.experiment.motion
     lines = [float(f.numbers["frequency"]) for f in place.patterns if f.kind is MisfitPattern.LINE]
+    instants = next((f.numbers for f in place.patterns if f.kind is MisfitPattern.INSTANTS), None)
     return ResidualSamples(
         c.record.time[used], c.residual[used], motion.displacement[used], motion.velocity[used],
         (c.model - c.offset)[used], c.draws[:, used], c.record.interval, place.changes[:2], lines,
+        None if instants is None else instants["at"],
     )  # fmt: skip
 
 
@@ -170,8 +172,8 @@ _PROFILES = (
 )
 _SCALED = " Intervals are wider than the curves by the uncertainty of the scales, which no record shows."
 _MISFIT = (
-    "The residual is the measured force less that of the model. (a) over time, with the times at which it changes; (b) "
-    "amplitude spectrum, with the lines that stand out of it; (c) to (e) over displacement, velocity and model force, "
-    "with means of bins (their axes leave out the most extreme 0.6 % of the samples, which (a) shows); (f) mean over "
-    "displacement and velocity (restoring-force surface)."
+    "The residual is the measured force less that of the model. (a) over time, with the times at which it changes, or "
+    "the largest of single samples in a window; (b) amplitude spectrum, with the lines that stand out of it; (c) to "
+    "(e) over displacement, velocity and model force, with means of bins (their axes leave out the most extreme 0.6 % "
+    "of the samples, which (a) shows); (f) mean over displacement and velocity (restoring-force surface)."
 )

@@ -281,6 +281,32 @@ def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(session:
     assert "J_friction" in said
 
 
+def test_a_task_is_worked_on_and_told_as_our_own(session: Session, place: Path, tmp_path: Path) -> None:
+    text = BASE.replace('["norm", "quadrature", "statistical-linearisation"]', '["norm"]').replace(', "T1", "W1"', "")
+    moment = '{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }'
+    text = text.replace(f"moment = {moment}", 'moment = "1e-4 kg m^2"')
+    text = text.replace('weighting_corner = "0.5 Hz"\n', "").replace('[methods.quadrature]\nmiddle = "3 Hz"\n', "")
+    text += 'catalogue_of = "c"\ncatalogue = ["1 kN s/m", "2 kN s/m", "4 kN s/m"]\n'
+    (tmp_path / "bought.toml").write_text(text, encoding="utf-8")
+    assert "and 2 catalogues." in " ".join(session.command("check", "bought.toml", cwd=tmp_path)[0].split())
+    assert "values that are sold" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
+    said = json.loads(inerter(place, "run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path).stdout)
+    by = {one["layout"]: one for one in said["catalogues"]}
+    assert set(by) == {"S1", "S3"}
+    for design in said["designs"]:
+        assert by[design["layout"]]["value"] >= design["value"] * (1.0 - 1e-9)  # of free values is the best the best
+        assert by[design["layout"]]["status"] == "ok"
+    with (tmp_path / "out" / "catalogues.csv").open(encoding="utf-8") as stream:
+        assert [row["best"] for row in csv.DictReader(stream)] == [by[name]["best"] for name in ("S1", "S3")]
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert ">From the catalogue</h2>" in page
+    journal = (tmp_path / "out" / "journal.jsonl").read_text(encoding="utf-8")
+    assert journal.count('"task": "catalogues"') == 2
+    text = text.replace('catalogue_of = "c"', 'catalogue_of = "d"')
+    (tmp_path / "wrong.toml").write_text(text, encoding="utf-8")
+    assert "study.catalogue_of" in session.command("check", "wrong.toml", cwd=tmp_path, code=2)[1]
+
+
 STOPPED = """title = "Onto the bump stop"
 [vehicle]
 model = "quarter-car"
@@ -467,7 +493,7 @@ def test_the_page_shows_every_file_whole() -> None:
     page = (HERE.parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
     shown = {block.partition("\n")[2] for block in page.split("```")[1::2]}
     files = [path for path in (HERE / "src").rglob("*.py") if path.name != "__init__.py"]
-    assert len(files) == 8
+    assert len(files) == 9
     for path in (HERE / "pyproject.toml", *files):
         assert path.read_text(encoding="utf-8") in shown, path.name
 

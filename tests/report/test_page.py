@@ -15,10 +15,10 @@ from synthetic import LONG, designs, judged, sweep, with_value
 import inerter as it
 from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.loading import load_study
 from inerter.report.page import environment, report, write_report
-from inerter.report.tables import Cell, Row, Table
+from inerter.table import Cell, Row, Table
+from inerter.tasks.budgets import BudgetAnswer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 VOID = {"meta", "wbr", "br"}
@@ -74,8 +74,13 @@ def test_the_answer_is_on_the_page(study, tmp_path):
 
 
 def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
-    found = BudgetOutcome(
-        *("S2", "J1", "f", "N", "expected-value", True),
+    found = BudgetAnswer(
+        layout="S2",
+        index="J1",
+        parameter="f",
+        unit="N",
+        method="expected-value",
+        at_most=True,
         value=280.5,
         standard_error=6.6,
         interval=(265.3, 296.7),

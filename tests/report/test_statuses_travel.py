@@ -15,22 +15,18 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import Status, StatusKind
-from inerter.files.study.budgets import budget_cases
+from inerter.figures.labels import with_unit
 from inerter.files.study.cases import cases, run_case
-from inerter.files.study.fronts import front_cases, with_fronts
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
-from inerter.files.study.tolerances import tolerance_cases
+from inerter.files.study.tasks import TaskResults, answer_part, by_task, parts_of
 from inerter.methods.compare import compare
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, statement, within
 from inerter.report.answers import answers
-from inerter.report.budgets import budget_lines
-from inerter.report.fronts import front_sentences
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.text import summary_table
-from inerter.report.tolerances import tolerance_lines
 from inerter.scatter.spread import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -132,18 +128,23 @@ def judged_study(tmp_path, text=TEXT):
     path.write_text(text, encoding="utf-8")
     study = load_study(path)
     outcomes = {case: run_case(study, case) for case in cases(study)}
-    budgets, fronts, tolerances = (
-        tuple(case.run(study, outcomes) for case in of(study)) for of in (budget_cases, front_cases, tolerance_cases)
-    )
-    data = with_fronts(study, dataset(study, outcomes), fronts)
-    result = StudyResult(tmp_path, study, data, len(outcomes), budgets, fronts, tolerances, False)
-    answer = re.search(r'<ul class="answer">(.*?)</ul>', report(data, study, tmp_path, budgets, tolerances), re.DOTALL)
+    found = tuple(answer_part(study, outcomes, part) for part in parts_of(study))
+    data = dataset(study, outcomes)
+    for task, own in by_task(found).items():
+        data = task.add_to_dataset(study, data, own)
+    result = StudyResult(tmp_path, study, data, len(outcomes), found, False)
+    answer = re.search(r'<ul class="answer">(.*?)</ul>', report(data, study, tmp_path, found), re.DOTALL)
+    told = {task.key: (task, TaskResults(study, data, own)) for task, own in by_task(found).items()}
+    lines = {
+        key: " ".join(line.strip() for line in list(t.lines(results, 400))[2:]) for key, (t, results) in told.items()
+    }
+    sentences = {key: next(task.sentences(results, with_unit), "") for key, (task, results) in told.items()}
     return {
-        "headline": answers(data, study, budgets)[0],
+        "headline": answers(data, study, found)[0],
         "answer box": answer[1].replace("<li>", "").strip(),
-        "front": (front_sentences(data) or [""])[0],
-        "budget": " ".join(line.strip() for line in list(budget_lines(budgets, study, 200))[2:]).partition("  S2")[2],
-        "tolerance": " ".join(line.strip() for line in list(tolerance_lines(tolerances, 400))[2:]).partition(": ")[2],
+        "front": sentences.get("fronts", ""),
+        "budget": lines.get("budgets", "").partition("  S2")[2],
+        "tolerance": lines.get("tolerances", "").partition(": ")[2],
         "table": summary_table(data),
         "json": json.loads("".join(as_text(result))),
     }

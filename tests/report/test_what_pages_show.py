@@ -15,7 +15,6 @@ import inerter as it
 from inerter.figures.study import study_figures
 from inerter.figures.style import styled
 from inerter.files.common.roads import MeasuredLine
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.loading import load_study
@@ -30,6 +29,7 @@ from inerter.report.question import vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables
 from inerter.report.text import WIDTH, summary_table
 from inerter.signals.road import ROAD_CLASSES
+from inerter.tasks.budgets import BudgetAnswer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KEYS = re.compile("|".join(rf"\b{key}\b" for key in METHODS))  # "norms" is another word
@@ -274,11 +274,20 @@ def test_a_weighted_output_is_called_after_its_lever_or_what_it_is_compared_with
     ]
 
 
+def budget_answer(index, *, value, **others):
+    """Of b in S3."""
+    error, interval = (None, None) if value is None else (0.0, (value, value))
+    return BudgetAnswer(
+        layout="S3", index=index, parameter="b", unit="kg", method="norm", value=value, standard_error=error,
+        interval=interval, **others,
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("reasons", [["x", "x", "x"], ["x", "y", "x"], ["x", "y", "z"]])
 def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
     data = designs()
     outcomes = [
-        BudgetOutcome("S3", index, "b", "kg", "norm", False, None, None, None, [], "unbounded", f"{reason} it is.")
+        budget_answer(index, at_most=False, value=None, crossings=[], status="unbounded", message=f"{reason} it is.")
         for index, reason in zip(("J1", "J3", "J5"), reasons, strict=True)
     ]
     told = " ".join(answers(data, replace(study, budgets=("b",)), outcomes)[3:])
@@ -299,7 +308,7 @@ def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
     ],
 )
 def test_a_budget_is_told_with_both_ends_of_the_range_that_it_is_the_end_of(study, at_most, crossings, told):
-    found = BudgetOutcome("S3", "J1", "b", "kg", "norm", at_most, 20.0, 0.0, (20.0, 20.0), crossings, "ok", "")
+    found = budget_answer("J1", at_most=at_most, value=20.0, crossings=crossings, status="ok")
     assert (
         f"S3 is better than S1 {told} in ride comfort."
         in answers(designs(), replace(study, budgets=("b",)), [found])[3]

@@ -12,14 +12,16 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import StudyError
+from inerter.figures.labels import with_unit
 from inerter.figures.study import study_figures
 from inerter.figures.style import styled
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import TaskResults
 from inerter.files.study.written import write_resolved
-from inerter.report.fronts import front_lines, front_sentences
 from inerter.report.page import report
+from inerter.tasks.fronts import Fronts
 
 FREE = """k = "30 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -72,10 +74,11 @@ def test_the_table_has_a_row_a_point_that_is_its_design(found: StudyResult) -> N
 
 
 def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
-    sentence = front_sentences(found.data)[0]
+    results = TaskResults(found.study, found.data, found.answers)
+    (sentence,) = Fronts().sentences(results, with_unit)
     assert sentence.startswith("Trade-off between ride comfort and dynamic tyre load, at the knee: S1 ")
     assert "designs of S1" in sentence
-    lines = list(front_lines(found.data, 80))
+    lines = list(Fronts().lines(results, 80))
     assert max(map(len, lines)) <= 80
     assert [line.strip().partition(":")[0] for line in lines if ":" in line][1:4] == [
         "least J1",
@@ -85,7 +88,7 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
     with styled():
         figure.draw().draw_without_rendering()
-    page = report(found.data, found.study, tmp_path)
+    page = report(found.data, found.study, tmp_path, found.answers)
     assert ">Trade-off</h2>" in page
     assert "S2, knee" in page
 
@@ -106,9 +109,9 @@ def test_an_interrupted_front_goes_on_to_the_same_bytes(found: StudyResult, tmp_
 def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> None:
     study = study_of(tmp_path, ASK + 'subject_to = { J3 = { at_most = "1 N" } }')
     result = run_study(study, tmp_path / "out")
-    assert [front.status for front in result.fronts] == ["infeasible"] * 2
+    assert [front.status for front in result.answers] == ["infeasible"] * 2
     assert any(line.startswith("front of S1: infeasible") for line in result.failures)
-    assert "infeasible" in "\n".join(front_lines(result.data, 80))
+    assert "infeasible" in "\n".join(Fronts().lines(TaskResults(study, result.data, result.answers), 80))
     assert "front" not in [figure.name for figure in study_figures(result.data)]
     assert report(result.data, study, tmp_path)
 

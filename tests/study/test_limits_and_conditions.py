@@ -313,7 +313,7 @@ def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study
     over = run_study(load(settings, one, elements, layouts=layouts), tmp_path / "over")
     study = load(settings, "", elements, layouts=layouts)
     alone = run_study(replace(study, vehicle={**study.vehicle, "sprung_mass": 320.0}), tmp_path / "alone")
-    (found,), (expected,) = over.budgets, alone.budgets
+    (found,), (expected,) = over.answers, alone.answers
     assert found.status == expected.status
     assert found.value == pytest.approx(expected.value, rel=1e-9)
     assert found.value > 5.0

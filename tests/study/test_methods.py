@@ -11,19 +11,20 @@ import pytest
 
 from inerter.errors import PerformanceIndexError, StudyError
 from inerter.files.common.layouts import StrutLayout
-from inerter.files.study.budgets import BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
-from inerter.files.study.running import StudyResult, run_study
+from inerter.files.study.running import StudyResult, csv_text, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import answer_of, journal_entry, parts_of
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import budget
 from inerter.optimisation.optimise import optimise
+from inerter.tasks.budgets import BudgetAnswer, Budgets
 
 TEXT = """
 title = "Friction on both sides"
@@ -131,7 +132,7 @@ def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(resu
 @pytest.mark.campaign
 def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyResult) -> None:
     study = budgeted.study
-    (found,) = budgeted.budgets
+    (found,) = budgeted.answers
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
     c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
     designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
@@ -142,9 +143,14 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyR
 
 
 @pytest.mark.parametrize("at_most", [True, False])
-def test_a_budget_without_a_value_has_no_better_side(at_most: bool) -> None:
-    ended = BudgetOutcome(
-        *("serial", "J1", "h", "N", "norm", at_most),
+def test_a_budget_without_a_value_has_no_better_side(study: Study, at_most: bool) -> None:
+    ended = BudgetAnswer(
+        layout="serial",
+        index="J1",
+        parameter="h",
+        unit="N",
+        method="norm",
+        at_most=at_most,
         value=280.5,
         standard_error=6.6,
         interval=(265.3, 296.7),
@@ -154,22 +160,22 @@ def test_a_budget_without_a_value_has_no_better_side(at_most: bool) -> None:
     )
     none = {"value": None, "standard_error": None, "interval": None, "status": "unbounded"}
     endless = replace(ended, **none, crossings=[], message="the design is better for no h from 1 N to 2 N")
-    told = list(csv.DictReader(budgets_csv([ended, endless]).splitlines()))
+    told = list(csv.DictReader(csv_text(Budgets().csv(study, [ended, endless])).splitlines()))
     assert [row["better"] for row in told] == ["below" if at_most else "above", ""]
     assert told[1]["status"] == "unbounded: the design is better for no h from 1 N to 2 N"
 
 
 @pytest.mark.campaign
 def test_budgets_and_outcomes_survive_the_journal_and_are_not_computed_again(budgeted: StudyResult) -> None:
-    for found in budgeted.budgets:
-        again = BudgetOutcome(**json.loads(json.dumps(found.to_json())))
-        assert again.case == found.case
+    for found in budgeted.answers:
+        again = answer_of(json.loads(json.dumps(journal_entry(found))))
+        assert again.part == found.part
         assert again.value == found.value
     journal, before = budgeted.folder / "journal.jsonl", (budgeted.folder / "budgets.csv").read_bytes()
     lines = journal.read_text().splitlines(keepends=True)
-    assert len(lines) == 1 + 2 + len(budget_cases(budgeted.study))
+    assert len(lines) == 1 + 2 + len(parts_of(budgeted.study))
     again = run_study(budgeted.study, budgeted.folder, resume=True)
-    assert (again.computed, again.budgets[0].value) == (0, budgeted.budgets[0].value)
+    assert (again.computed, again.answers[0].value) == (0, budgeted.answers[0].value)
     assert journal.read_text().splitlines(keepends=True) == lines
     journal.write_text("".join(lines[:-1]) + lines[-1][:40])  # ended while the budget was written down
     assert run_study(budgeted.study, budgeted.folder, resume=True).computed == 0

@@ -13,9 +13,10 @@ from inerter.errors import StudyError
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import TaskResults
 from inerter.files.study.written import write_resolved
 from inerter.report.page import report
-from inerter.report.tolerances import tolerance_lines
+from inerter.tasks.tolerances import Tolerances
 
 FREE = """k = "30 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -37,7 +38,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
 
 
 def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
-    (first, second) = found.tolerances
+    (first, second) = found.answers
     assert (first.layout, second.layout) == ("S1", "S2")
     best = found.data.sel(layout="S2", index="J1").squeeze("method")
     values = dict(zip(("c", "b"), best["parameter_value"].values.tolist(), strict=True))
@@ -60,10 +61,10 @@ def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
 
 
 def test_a_tolerance_is_told(found: StudyResult, tmp_path: Path) -> None:
-    lines = list(tolerance_lines(found.tolerances, 80))
+    lines = list(Tolerances().lines(TaskResults(found.study, found.data, found.answers), 80))
     assert max(map(len, lines)) <= 80
     assert "due to c" in " ".join(" ".join(lines).split())
-    page = report(found.data, found.study, tmp_path, (), found.tolerances)
+    page = report(found.data, found.study, tmp_path, found.answers)
     assert ">When values scatter</h2>" in page
 
 
@@ -114,7 +115,7 @@ def test_a_tied_value_scatters_by_its_own_name(tmp_path: Path) -> None:
         strut = it.Spring(values["k1"]) - it.Spring(k2, "k2") | it.Damper(values["c"])
         car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
         by_hand = it.tolerance(car, it.RideComfort(study.road), it.Norm(), spread={"k2": 0.2}, seed=0)
-        (one,) = found.tolerances
+        (one,) = found.answers
         assert one.numbers["mean"] == pytest.approx(by_hand.mean, rel=1e-9)
         if line:
             assert float(found.data["value"].squeeze()) == pytest.approx(by_hand.quantile(0.9), rel=1e-3)

@@ -73,7 +73,7 @@ def at(study, factor):
 @pytest.mark.parametrize("number", range(6))
 def test_the_answer_tells_what_designs_of_half_cars_become_at_other_speeds(number, tmp_path):
     study, results = found(tmp_path, half_car(number))
-    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3, (), (), (), False))))["designs"]
+    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3))))["designs"]
     values = {}
     for i, factor in enumerate((0.8, 1.0, 1.2)):
         there = at(study, factor)
@@ -198,7 +198,7 @@ def test_what_cannot_be_computed_at_another_speed_is_said(why, factor, tmp_path,
     assert sentence.startswith("Not certain away from ")
     assert f"could not be computed: at {3.6 * factor * own.road.speed:.4g} km/h" in sentence
     assert words in sentence
-    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3, (), (), (), False))))["designs"]
+    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3))))["designs"]
     for design in told:
         values = [one["value"] for one in design["at_speeds"]]
         assert [value is None for value in values] == [factor == 0.8, factor == 1.2]

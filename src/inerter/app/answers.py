@@ -19,7 +19,6 @@ from inerter.errors import OK, DesignError, Status, StatusKind, StudyError, wors
 from inerter.fields import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
-from inerter.files.study.method_problems import budget_method
 from inerter.files.study.responses import responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
@@ -33,6 +32,7 @@ from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
+from inerter.tasks.budgets import budget_method
 from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]

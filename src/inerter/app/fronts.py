@@ -10,10 +10,11 @@ from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.errors import Status, StudyError
-from inerter.files.study.fronts import FrontCase, FrontOutcome, fronts_csv
-from inerter.files.study.running import FRONTS
+from inerter.files.study.running import csv_of, csv_text
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import answer_part
 from inerter.methods.registry import methods_that, searches
+from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 from inerter.writing import write_text
 
 _POINTS = 15
@@ -27,18 +28,18 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
         raise StudyError(f"A trade-off is one between two or three indices, got {len(indices)}.")
     method = body.get("method") or study.optimise or methods_that(searches)[0]
     asked = replace(study, trade_off=tuple(indices), optimise=method, points=body.get("points") or _POINTS)
-    found: list[FrontOutcome] = []
+    found: list[FrontAnswer] = []
     for number, layout in enumerate(layouts):
         tell(number, len(layouts), layout)
-        found.append(FrontCase(layout).run(asked, {}))
+        found.append(answer_part(asked, {}, FrontPart(layout)))
     (folder / RESULTS).mkdir(exist_ok=True)
-    write_text(folder / RESULTS / FRONTS, fronts_csv(asked, found))
+    write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(Fronts().csv(asked, found)))
     tell(len(layouts), len(layouts), "")
     told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
     return {"indices": told, "fronts": [_told(asked, one) for one in found]}
 
 
-def _told(study: Study, found: FrontOutcome) -> dict[str, Any]:
+def _told(study: Study, found: FrontAnswer) -> dict[str, Any]:
     points = []
     for values, parameters, said in zip(found.values, found.parameters, found.statuses, strict=True):
         status, message = Status.parts(said)

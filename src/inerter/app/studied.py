@@ -19,9 +19,9 @@ from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.cases import Outcome
 from inerter.files.study.checking import check_study
-from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import Answer
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 
@@ -62,11 +62,11 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
         draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
+        write_report(result.data, study, into / FIGURES, into / REPORT, result.answers)
 
-    def told(count: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
+    def told(count: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
         done[0] = count
-        tell(count, total, f"{last.layout} {last.index}" if last else "")
+        tell(count, total, last.name if isinstance(last, Answer) else f"{last.layout} {last.index}" if last else "")
 
     def preparing(count: int, total: int) -> None:
         tell(0, 0, f"preparing {count} of {total}")

@@ -25,15 +25,13 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import TaskResults, by_task, tasks
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.answers import answers
-from inerter.report.budgets import budget_lines
-from inerter.report.fronts import front_lines
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrapped
-from inerter.report.tolerances import tolerance_lines
 
 _MOST = 20  # designs that are told one by one
 
@@ -56,11 +54,10 @@ def run(
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
         draw_layouts(loaded, into / FIGURES)
-        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.budgets, result.tolerances)
+        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
 
     kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    asked = {"budgets": loaded.budgets, "fronts": loaded.trade_off, "tolerances": loaded.tolerance}
-    items = " and ".join(["designs", *(kind for kind, some in asked.items() if some)])
+    items = " and ".join(["designs", *(task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
@@ -85,15 +82,11 @@ def run(
         road = roads_sentence(loaded)
         head = [*wrapped(loaded.title), *(wrapped(f"{road}.") if road else []), ""]
         print("\n".join([*head, summary_table(result.data)]))
-        lines = (
-            *front_lines(result.data, WIDTH),
-            *tolerance_lines(result.tolerances, WIDTH),
-            *budget_lines(result.budgets, loaded, WIDTH),
-        )
-        print("".join(f"{line}\n" for line in lines), end="")
+        for task, own in by_task(result.answers).items():
+            print("\n".join(task.lines(TaskResults(loaded, result.data, own), WIDTH)))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
-        told = answers(result.data, loaded, result.budgets, tolerances=result.tolerances)
+        told = answers(result.data, loaded, result.answers)
         print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
     return _judge(result)
 

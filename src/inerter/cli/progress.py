@@ -25,8 +25,8 @@ from rich.progress import (
 from inerter.cli.pace import Pace
 from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
-from inerter.files.study.journal import Further
 from inerter.files.study.running import Progress as Report
+from inerter.files.study.tasks import Answer
 from inerter.kernels.prepare import Told
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
@@ -54,13 +54,13 @@ class _Study:
     begun: float | None = None
     compiling: str = ""
 
-    def count(self, done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
+    def count(self, done: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
         """Take note of what is done."""
         if self.begun is None:
             self.begun, self.kept = time.monotonic(), done
             self.pace.begin(done)
         elif last is not None:
-            self.pace.finish(last.layout, last.index, done - self.done)
+            self.pace.finish(last.layout, last.index if isinstance(last, Outcome) else "", done - self.done)
         self.done, self.total, self.not_ok, self.compiling = done, total, not_ok, ""
 
     def begin_kernel(self, title: str, number: int, total: int) -> None:
@@ -105,7 +105,7 @@ def _in_lines(study: _Study) -> Iterator[Shown]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
     with pulse(study.words, study.pace.take) as printer:
 
-        def show(done: int, total: int, last: Outcome | Further | None, not_ok: int) -> None:
+        def show(done: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
             study.count(done, total, last, not_ok)
             if last is None and done < total:
                 kept = f", {done} of them done before" if done else ""

@@ -6,13 +6,16 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from inerter.errors import Status, StatusKind
 from inerter.units import digits_at, format_number, format_quantity, headed, is_prefixed, parse_quantity, places_borne
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _POWER = re.compile(r"\^(-?\d)")
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
@@ -131,7 +134,7 @@ def infeasible(results: xr.Dataset) -> xr.DataArray:
 def held_back(results: xr.Dataset) -> xr.DataArray:
     """Where a limit holds the best design back; nowhere in a study without limits."""
     if "limit_active" not in results:
-        return xr.zeros_like(results["status"], dtype=bool)
+        return results["status"].copy(data=np.zeros(results["status"].shape, dtype=bool))
     return results["limit_active"].any("limit") & ~infeasible(results)
 
 

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from math import nan
 
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import capital, index_title, infeasible, layouts, listed, one_method, swept_words, with_unit
-from inerter.files.study.budgets import BudgetOutcome
+from inerter.figures.labels import infeasible, layouts, listed, one_method, swept_words, with_unit
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
-from inerter.files.study.tolerances import ToleranceOutcome
-from inerter.report.budgets import end_of_range
-from inerter.report.findings import Wording, Writer, best_layouts, headlines
-from inerter.report.fronts import front_sentences
+from inerter.files.study.tasks import Answer, TaskResults, by_task
+from inerter.report.findings import Wording, headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.question import limit_words, of_each
 from inerter.report.speeds import speed_sentences
-from inerter.report.tolerances import tolerance_sentences
+from inerter.table import Writer
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
@@ -28,11 +25,10 @@ _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on whic
 def answers(
     results: xr.Dataset,
     study: Study,
-    budgets: Sequence[BudgetOutcome] = (),
+    found: Sequence[Answer] = (),
     write: Writer = with_unit,
-    tolerances: Sequence[ToleranceOutcome] = (),
 ) -> list[str]:
-    """Warnings, a sentence for each index, with and without scatter, and for each budget of a layout that is best."""
+    """Warnings, a sentence for each index, and what the answers `found` to the tasks of the study come to."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     at_speeds = speed_sentences(results, write)
     return [
@@ -42,9 +38,11 @@ def answers(
         *(() if study.line is None else study.line.warnings),
         *headlines(results, Wording(write, static)),
         *at_speeds.others,
-        *tolerance_sentences(results, tolerances, write),
-        *front_sentences(results, write),
-        *_of_budgets(results, study, budgets, write),
+        *(
+            sentence
+            for task, own in by_task(found).items()
+            for sentence in task.sentences(TaskResults(study, results, own), write)
+        ),
         *_of_limits(results, study, write),
     ]
 
@@ -100,30 +98,3 @@ def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
 
 def _number(value: float, unit: str, write: Writer) -> str:
     return write(value, unit, nan).strip()
-
-
-def _of_budgets(results: xr.Dataset, study: Study, budgets: Sequence[BudgetOutcome], write: Writer) -> Iterator[str]:
-    """For which values of an element each of the best layouts is better; what is not certain says so first."""
-    best = {name for index in study.indices for name in best_layouts(results, index)} if budgets else set()
-    for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
-        own = [found for found in budgets if (found.parameter, found.layout) == (element, layout)]
-        if layout in best:
-            what = capital(f"{study.elements[element].key} {element}")
-            sound = [found for found in own if not found.doubt]
-            ends = [f"{end} in {index_title(results, o.index)}" for o in sound if (end := end_of_range(o, write))]
-            told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
-            others = [found for found in sound if not end_of_range(found, write)]
-            for message, of in _alike(results, others, lambda found: found.message):
-                told.append(f"{what}, {layout}, {of}: {message}.")
-            for message, of in _alike(results, own, lambda found: found.doubt):
-                told.append(f"Not certain for {what[0].lower()}{what[1:]}, {layout}, {of}: {message}.")
-            yield " ".join(told)
-
-
-def _alike(
-    results: xr.Dataset, found: Sequence[BudgetOutcome], said: Callable[[BudgetOutcome], str]
-) -> Iterator[tuple[str, str]]:
-    """Each sentence once, with the indices of which it is said."""
-    for message in dict.fromkeys(said(one).rstrip(".") for one in found):
-        if message:
-            yield message, listed([index_title(results, o.index) for o in found if said(o).rstrip(".") == message])

@@ -34,7 +34,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.report.findings import extremes, place_text
-from inerter.report.tables import Cell, Row, Table
+from inerter.table import Cell, Row, Table
 
 _LONGEST_NAME = 20
 _LONGEST_METHOD = 18  # longer words are cut in two

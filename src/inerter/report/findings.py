@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
-import xarray as xr
 
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
@@ -39,14 +38,10 @@ from inerter.figures.labels import (
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import deciding
 from inerter.methods.ties import equally_least
+from inerter.table import Writer
 
-
-class Writer(Protocol):
-    """A function that turns a number, its unit, its standard error and its relative error bound into text."""
-
-    def __call__(self, value: float, unit: str, error: float = ..., bound: float = ...) -> str:
-        """The number for people."""
-        ...
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 _UNSURE = StatusKind.INACCURATE.value

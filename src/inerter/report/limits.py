@@ -25,9 +25,8 @@ from inerter.figures.labels import (
     typeset,
     with_unit,
 )
-from inerter.report.findings import Writer
 from inerter.report.question import of_each
-from inerter.report.tables import Cell, Row, Table
+from inerter.table import Cell, Row, Table, Writer
 
 _MOST_RANGES = 3  # of swept values, in a remark
 

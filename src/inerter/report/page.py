@@ -15,18 +15,15 @@ from markupsafe import Markup, escape
 from inerter.figures.labels import capital, printed, swept_places, together, typeset
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.place import Sweep
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
-from inerter.files.study.tolerances import ToleranceOutcome
+from inerter.files.study.tasks import Answer, TaskResults, by_task
 from inerter.files.study.written import write_resolved
 from inerter.report.answers import answers
-from inerter.report.budgets import budget_tables
 from inerter.report.by_method import method_tables
 from inerter.report.findings import over_the_sweep
-from inerter.report.fronts import front_tables
 from inerter.report.limits import limit_tables
 from inerter.report.question import (
     computation,
@@ -38,7 +35,6 @@ from inerter.report.question import (
     vehicle_rows,
 )
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
-from inerter.report.tolerances import tolerance_tables
 from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -64,11 +60,10 @@ def write_report(
     study: Study,
     figures: Path,
     path: Path,
-    budgets: Sequence[BudgetOutcome] = (),
-    tolerances: Sequence[ToleranceOutcome] = (),
+    found: Sequence[Answer] = (),
 ) -> Path:
     """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    write_text(path, report(results, study, figures, budgets, tolerances))
+    write_text(path, report(results, study, figures, found))
     return path
 
 
@@ -76,8 +71,7 @@ def report(
     results: xr.Dataset,
     study: Study,
     figures: Path,
-    budgets: Sequence[BudgetOutcome] = (),
-    tolerances: Sequence[ToleranceOutcome] = (),
+    found: Sequence[Answer] = (),
 ) -> str:
     """The page as text."""
     swept = swept_places(results)
@@ -89,7 +83,7 @@ def report(
             swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[
-                *map(printed_sentence, answers(results, study, budgets, printed, tolerances)),
+                *map(printed_sentence, answers(results, study, found, printed)),
                 *([f"{road}."] if (road := roads_sentence(study)) else []),
             ],
             vehicle=vehicle_rows(study),
@@ -102,9 +96,10 @@ def report(
             tables=tables_of(results),
             by_method=method_tables(results),
             remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
-            budgets=budget_tables(budgets, study),
-            fronts=front_tables(results),
-            tolerances=tolerance_tables(tolerances),
+            tasks=[
+                (task.title, task.introduction(), task.tables(TaskResults(study, results, own)))
+                for task, own in by_task(found).items()
+            ],
             limits=limit_tables(results),
             conditions=condition_rows(study),
             trade_offs=[] if swept or study.optimise is None else trade_off_tables(results),

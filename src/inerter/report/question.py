@@ -16,6 +16,7 @@ from inerter.files.study.limits import StudyLimit, each_of
 from inerter.files.study.places import places
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import tasks
 from inerter.files.study.ways import ways
 from inerter.files.study.written import as_written
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
@@ -108,15 +109,10 @@ def element_rows(study: Study) -> list[tuple[str, str, str]]:
 
 
 def further_rows(study: Study) -> list[tuple[str, str]]:
-    """What is asked beyond the least value of each index: limits, a trade-off, tolerances, budgets."""
-    spread = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
-    given = {
-        "Limits": [f"{limit_words(study, limit)} {_given(study, limit.value, limit.unit)}" for limit in study.limits],
-        "Trade-off": [" against ".join(map(spoken, study.trade_off))] if study.trade_off else [],
-        "Tolerances": spread,
-        "Best at": [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else [],
-        "Budgets of": list(study.budgets),
-    }
+    """What is asked beyond the least value of each index: limits, and what tasks describe."""
+    given = {"Limits": [f"{limit_words(study, one)} {_given(study, one.value, one.unit)}" for one in study.limits]}
+    for task in tasks():
+        given |= task.description(study)
     return [(what, ", ".join(told)) for what, told in given.items() if told]
 
 

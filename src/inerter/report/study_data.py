@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from textwrap import indent
 from typing import Any
 
@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import decimals_of
-from inerter.files.study.journal import Further
 from inerter.files.study.running import StudyResult
+from inerter.files.study.tasks import by_task, to_json
 from inerter.report.json_data import json_data
 from inerter.report.speeds import at_speeds
 
@@ -22,12 +22,7 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces: a list of a million designs is never held."""
-    kinds: dict[str, Sequence[Further]] = {
-        "budgets": result.budgets,
-        "fronts": result.fronts,
-        "tolerances": result.tolerances,
-    }
-    further = {kind: [found.to_json() for found in several] for kind, several in kinds.items() if several}
+    further = {task.key: list(map(to_json, own)) for task, own in by_task(result.answers).items()}
     whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 
@@ -40,47 +38,12 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.report.findings import best_layout, place_text
+from inerter.table import Cell, Row, Table
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
 _MOST_ACROSS = 9  # columns of a map
 _MOST_BETWEEN = 100  # swept values between two of them
 _MOST_FAILURES = 20
-
-
-@dataclass(frozen=True)
-class Cell:
-    """A value, and a remark below it; `prose` is words, which may go over several lines."""
-
-    text: str
-    remark: str = ""
-    strong: bool = False
-    prose: bool = False
-
-
-@dataclass(frozen=True)
-class Row:
-    """A row of a table; `status` is empty or what is wrong with its numbers."""
-
-    label: str
-    cells: list[Cell]
-    strong: bool = False
-    status: str = ""
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table with its caption; the first column holds the labels of the rows."""
-
-    caption: str
-    header: list[str]
-    rows: list[Row]
-    swept: bool = False
-    failures: tuple[str, ...] = ()
-
-    @property
-    def judged(self) -> bool:
-        """Whether the last column is a verdict on the others: it stays in sight."""
-        return any(row.cells[-1].prose for row in self.rows if row.cells)
 
 
 def tables_of(results: xr.Dataset) -> list[Table]:

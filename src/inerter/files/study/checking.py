@@ -14,15 +14,13 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
-from inerter.files.study.budgets import budget_cases
 from inerter.files.study.cases import Cases, cases, design_notes
-from inerter.files.study.fronts import front_cases
 from inerter.files.study.limits import limits_in, questions_limited
 from inerter.files.study.loading import load_study
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.tolerances import tolerance_cases
+from inerter.files.study.tasks import tasks
 from inerter.methods.asking import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled, Refusing, asked_of
@@ -45,11 +43,7 @@ def check_lines(path: Path) -> Iterator[str]:
     """
     study = load_study(path)
     check_study(study)
-    counts = {
-        "budgets": len(budget_cases(study)),
-        "fronts": len(front_cases(study)),
-        "tolerances": len(tolerance_cases(study)),
-    }
+    counts = {task.key: len(task.parts(study)) for task in tasks()}
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
     swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
     yield (

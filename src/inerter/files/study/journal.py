@@ -1,4 +1,4 @@
-"""The journal of a study: one line a finished case, budget or front, and lines of searches that they came to before."""
+"""The journal of a study: a line for each finished case and part of a task, and lines of searches under way."""
 
 from __future__ import annotations
 
@@ -8,22 +8,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from inerter.errors import StudyError
-from inerter.files.study.budgets import BudgetOutcome
 from inerter.files.study.cases import Outcome
-from inerter.files.study.fronts import FrontOutcome
 from inerter.files.study.study import Study
-from inerter.files.study.tolerances import ToleranceOutcome
+from inerter.files.study.tasks import Answer, answer_of
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept
 
 NAME = "journal.jsonl"
-Further = BudgetOutcome | FrontOutcome | ToleranceOutcome
-_FURTHER: dict[str, type[Further]] = {  # by a key that others lack
-    "parameter": BudgetOutcome,
-    "jumps": FrontOutcome,
-    "effects": ToleranceOutcome,
-}
-_KINDS: dict[str, type[Further | Kept]] = {**_FURTHER, "rows": Kept}
 
 
 def journal_of(study: Study, path: Path) -> Journal:
@@ -32,14 +23,13 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
-def outcomes(journal: Journal) -> Iterator[Outcome | Further | Kept]:
+def outcomes(journal: Journal) -> Iterator[Outcome | Answer | Kept]:
     """What is finished, and searches of what is not, one by one.
 
     Raises `StudyError` for an entry that is none of a study.
     """
     for entry in journal.read():
-        kind = next((kind for key, kind in _KINDS.items() if key in entry), Outcome)
         try:
-            yield kind(**entry)
+            yield answer_of(entry) if "task" in entry else Kept(**entry) if "rows" in entry else Outcome(**entry)
         except TypeError:
             raise StudyError(f"{journal.path}: not the journal of a study. Choose another folder with -o.") from None

@@ -19,17 +19,17 @@ from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.named import name_problems
 from inerter.files.study.own_indices import bare_index_problems, own_index_problems
+from inerter.files.study.scatter import tolerance_of
 from inerter.files.study.sections import ROAD_EXAMPLE, study_codec
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
-from inerter.files.study.tolerances import tolerance_of
+from inerter.files.study.tasks import tasks
 from inerter.files.study.written import texts_of
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Element, Free
 from inerter.units import shown
 from inerter.writing import characters
 
-_LEAST_OF_THREE = 6  # points of a front of three indices
 WHAT = "a study file"
 
 
@@ -76,8 +76,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
         *spread_problems,
         *_setting_problems(study, tables["study"]),
         *own_index_problems(study.indices, study.own_indices, [*study.trade_off, *(limit.of for limit in limits)]),
-        *_front_problems(study, tables["study"]),
-        *_scatter_problems(study),
+        *(problem for task in tasks() for problem in task.problems(study, tables["study"])),
         *method_problems(study),
     ]
     if not problems:
@@ -135,32 +134,6 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
         hint = nearest(study.baseline, study.layouts)
         wanted = f"a layout, one of {known}"
         yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
-
-
-def _scatter_problems(study: Study) -> Iterator[Problem]:
-    if study.quantile is not None and not study.tolerance:
-        yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
-    if study.tolerance and study.sweeps:
-        yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
-
-
-def _front_problems(study: Study, given: Collection[str]) -> Iterator[Problem]:
-    place = ("study", "trade_off")
-    if "points" in given and not study.trade_off:
-        yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
-    if not study.trade_off:
-        return
-    several = len({study.index(name) for name in study.trade_off})  # which may be one by two names
-    if several not in (2, 3) or several < len(study.trade_off):
-        got = f"{len(study.trade_off)} indices" if several == len(study.trade_off) else "the same index twice"
-        yield at(place, got=got, expected="two or three that differ")
-    if several == 3 and study.points < _LEAST_OF_THREE:
-        few = f"at least {_LEAST_OF_THREE} points for three indices"
-        yield at(("study", "points"), got=str(study.points), expected=few)
-    if study.sweeps:
-        yield at(place, fault="given beside a sweep", expected="one of the two")
-    if study.optimise is None:
-        yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:

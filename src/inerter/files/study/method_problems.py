@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from inerter.errors import with_article
 from inerter.fields import Field, fields_of
 from inerter.files.common.problem import Problem, at
-from inerter.files.common.suggest import nearest, some
+from inerter.files.common.suggest import some
 from inerter.files.study.study import Study, elements_used
 from inerter.indices.registry import INDICES, amplitude_of, as_line, index_settings
 from inerter.methods.registry import (
@@ -19,25 +19,19 @@ from inerter.methods.registry import (
     needs_amplitude,
     refuses_gaps,
 )
-from inerter.networks.elements import Element, Tied
+from inerter.networks.elements import Element
 from inerter.systems.graph import switching_parts
 from inerter.units import shown
 
 
 def method_problems(study: Study) -> Iterator[Problem]:
     """One line for each; a setting that is swept counts as given."""
-    yield from _budget_problems(study)
     study = study.at([sweep.values[0] for sweep in study.sweeps])
     yield from _road_problems(study)
     yield from _index_problems(study)
     yield from _own_problems(study)
     yield from _force_problems(study)
     yield from _gap_problems(study)
-
-
-def budget_method(study: Study) -> str:
-    """The first method of `evaluate` that sees friction, else the first."""
-    return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
 def _road_problems(study: Study) -> Iterator[Problem]:
@@ -118,7 +112,7 @@ def _gap_problems(study: Study) -> Iterator[Problem]:
             ("study", "optimise" if study.optimise == refusing else "evaluate"),
             got=shown(refusing),
             fault=f"it has no answer for {' or '.join(map(with_article, kinds))}, as in {some(layouts)}",
-            expected=f"another method, such as {shown(_simulating())}, or layouts without",
+            expected=f"another method, such as {shown(simulating_method())}, or layouts without",
         )
 
 
@@ -127,34 +121,9 @@ def _is_refused(part: Element) -> bool:
     return part.acts and not part.is_damped
 
 
-def _simulating() -> str:
+def simulating_method() -> str:
     """The first method that sees friction and gaps alike."""
     return next(name for name in METHODS if not is_blind(name) and not refuses_gaps(name))
-
-
-def _budget_problems(study: Study) -> Iterator[Problem]:
-    place = ("study", "budgets")
-    if study.budgets and study.sweeps:
-        yield at(place, fault="given beside a sweep", expected="one of the two")
-    if study.budgets and study.baseline is None:
-        yield at(place, fault="there is but one layout", expected="another to compare it with, or no budgets")
-        return
-    used = elements_used(study)
-    for name in study.budgets:
-        if name not in study.elements:
-            missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
-            yield at(place, fault=missing, hint=nearest(name, study.elements))
-        elif isinstance(study.elements[name].value, Tied):
-            yield at(place, fault=f"{name} is tied to others", expected="an element with a value of its own")
-        elif not set(used.get(name, ())) - {study.baseline}:
-            only = f"no layout but the baseline has {name}"
-            yield at(place, fault=only, expected="an element of a layout that is compared")
-        elif study.elements[name].switch is not None and is_blind(budget_method(study)):
-            yield at(
-                place,
-                fault=f"{name} is a {study.elements[name].key}, which linear analysis does not see",
-                expected=f"a method that does in evaluate, such as {shown(_simulating())}",
-            )
 
 
 def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,14 +19,22 @@ import xarray as xr
 from inerter.errors import StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
 from inerter.files.study import journal as journals
-from inerter.files.study.budgets import BudgetCase, BudgetOutcome, budget_cases, budgets_csv
 from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.fronts import FrontCase, FrontOutcome, front_cases, fronts_csv, with_fronts
 from inerter.files.study.results import Gathered, Pending
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
-from inerter.files.study.tolerances import ToleranceCase, ToleranceOutcome, tolerance_cases, tolerances_csv
+from inerter.files.study.task_rows import TASKS
+from inerter.files.study.tasks import (
+    Answer,
+    Designs,
+    Part,
+    answer_part,
+    by_task,
+    journal_entry,
+    lost_part,
+    parts_of,
+)
 from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
@@ -35,12 +45,10 @@ from inerter.work.progress import logged, within
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-BUDGETS, FRONTS, TOLERANCES = "budgets.csv", "fronts.csv", "tolerances.csv"
-NAMES = (journals.NAME, RESOLVED, SUMMARY, DATASET, BUDGETS, FRONTS, TOLERANCES, VERSIONS, f"{FIGURES}/", REPORT)
-_FurtherCase = BudgetCase | FrontCase | ToleranceCase
 _Known = Mapping[str, Sequence[Row]]  # searches of cases that have not ended, by the names of those
-_Done = dict[_FurtherCase, journals.Further]
-Progress = Callable[[int, int, Outcome | journals.Further | None, int], None]
+_AnyPart = Part[Any]
+_Done = dict[_AnyPart, Answer]
+Progress = Callable[[int, int, Outcome | Answer | None, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +59,8 @@ class StudyResult:
     study: Study
     data: xr.Dataset
     computed: int  # cases that this run computed; the others were there already
-    budgets: tuple[BudgetOutcome, ...] = ()
-    fronts: tuple[FrontOutcome, ...] = ()
-    tolerances: tuple[ToleranceOutcome, ...] = ()
-    failed: bool = False  # whether a case, a budget or a front has no number at all
+    answers: tuple[Answer, ...] = ()  # to the parts of its tasks
+    failed: bool = False  # whether a case or a part has no number at all
 
     @property
     def failures(self) -> list[str]:
@@ -65,12 +71,7 @@ class StudyResult:
     def not_ok(self) -> int:
         """How many lines `failures` has."""
         designs = int(np.count_nonzero(self.data.status.values != StatusKind.OK.value))
-        return designs + sum(not found.ok for found in self.further)
-
-    @property
-    def further(self) -> tuple[journals.Further, ...]:
-        """Budgets, fronts and tolerances."""
-        return (*self.budgets, *self.fronts, *self.tolerances)
+        return designs + sum(not answer.ok for answer in self.answers)
 
     def failing(self) -> Iterator[str]:
         """The lines of `failures`, one by one."""
@@ -79,9 +80,9 @@ class StudyResult:
         for place in np.argwhere(status.values != StatusKind.OK.value):
             names = (str(column[i]) for column, i in zip(labels, place, strict=True))
             yield f"{' '.join(names)}: {status.values[tuple(place)]}"
-        for found in self.further:
-            if not found.ok:
-                yield f"{found.name}: {found.status}: {found.message}"
+        for answer in self.answers:
+            if not answer.ok:
+                yield f"{answer.name}: {answer.status}: {answer.message}"
 
 
 def run_study(
@@ -102,7 +103,7 @@ def run_study(
     than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
     afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
     goes on afterwards. Results do not depend on it. `progress` is told whenever some are done how many designs and
-    budgets are, how many there are, the last one, and how many have a status that is not ok. `finish` may add files to
+    parts are, how many there are, the last one, and how many have a status that is not ok. `finish` may add files to
     the results, in the folder that it is given. What the work needs of compiled code is compiled first, if it is not
     yet; `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
@@ -118,26 +119,41 @@ def run_study(
     check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
         gathered, done, computed = _computed(study, results, pool, progress, compiling)
-        budgets = tuple(one for case in budget_cases(study) if isinstance(one := done[case], BudgetOutcome))
-        fronts = tuple(one for case in front_cases(study) if isinstance(one := done[case], FrontOutcome))
-        tolerances = tuple(one for case in tolerance_cases(study) if isinstance(one := done[case], ToleranceOutcome))
-        data = with_fronts(study, gathered.dataset(), fronts)
+        answers = tuple(done[part] for part in parts_of(study))
+        data = gathered.dataset()
         write_text(results.draft / RESOLVED, write_resolved(study))
         write_text(results.draft / VERSIONS, json.dumps(_origins(study), indent=2) + "\n")
-        if budgets:
-            write_text(results.draft / BUDGETS, budgets_csv(budgets))
-        if fronts:
-            write_text(results.draft / FRONTS, fronts_csv(study, fronts))
-        if tolerances:
-            write_text(results.draft / TOLERANCES, tolerances_csv(tolerances))
+        for task, own in by_task(answers).items():
+            data = task.add_to_dataset(study, data, own)
+            write_text(results.draft / csv_of(task.key), csv_text(task.csv(study, own)))
         write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
         kinds = {*gathered.kinds, *(one.status for one in done.values())}
         failed = StatusKind.FAILED in kinds
-        result = StudyResult(results.folder, study, data, computed, budgets, fronts, tolerances, failed)
+        result = StudyResult(results.folder, study, data, computed, answers, failed)
         finish(result, results.draft)
     return result
+
+
+def csv_of(key: str) -> str:
+    """The name of the file with the answers to the task of that key."""
+    return f"{key}.csv"
+
+
+def result_names() -> tuple[str, ...]:
+    """What a folder of results may hold."""
+    tables = map(csv_of, TASKS)
+    return (journals.NAME, RESOLVED, SUMMARY, DATASET, *tables, VERSIONS, f"{FIGURES}/", REPORT)
+
+
+def csv_text(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as CSV: numbers with all their digits, nothing for None."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    for row in rows:
+        writer.writerow("" if one is None else repr(one) if isinstance(one, float) else one for one in row)
+    return text.getvalue()
 
 
 def _origins(study: Study) -> dict[str, Any]:
@@ -151,24 +167,24 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
     if isinstance(folder, Results):
         yield folder
         return
-    with claimed(Intent(Path(folder), "run", NAMES, study.inputs, resume, force)) as results:
+    with claimed(Intent(Path(folder), "run", result_names(), study.inputs, resume, force)) as results:
         yield results
 
 
 def _computed(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
 ) -> tuple[Gathered, _Done, int]:
-    """All cases, budgets and fronts, and how many cases were not in the journal."""
+    """All cases and parts of tasks, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
     found = Gathered(study)
     done, known = _read(journal, found) if results.resume else ({}, {})
-    further: list[_FurtherCase] = [*budget_cases(study), *front_cases(study), *tolerance_cases(study)]
+    parts = parts_of(study)
     pending = found.pending()
     if pending:
         _prepare(pool, study, compiling)
-    total = len(found.cases) + len(further)
+    total = len(found.cases) + len(parts)
 
-    def tell(last: Outcome | journals.Further | None) -> None:
+    def tell(last: Outcome | Answer | None) -> None:
         troubled = sum(not one.ok for one in done.values())
         progress(found.count + len(done), total, last, found.not_ok + troubled)
 
@@ -184,11 +200,11 @@ def _computed(
             for outcome in several:
                 found.enter(outcome)
             tell(several[-1])
-        for ready in _further(study, found, [case for case in further if case not in done], pool, known):
-            append(*(one.to_json() for one in ready))
-            done |= {one.case: one for one in ready}
+        for ready in _answers(study, found, [part for part in parts if part not in done], pool, known):
+            append(*map(journal_entry, ready))
+            done |= {one.part: one for one in ready}
             tell(ready[-1])
-        lost = len(found.pending()) + len(set(further) - set(done))
+        lost = len(found.pending()) + len(set(parts) - set(done))
         if lost:
             raise WorkError(f"the executor has given no result for {lost} of {total}, and others in their place.")
     return found, done, len(pending)
@@ -205,7 +221,7 @@ def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
             found.enter(one)
             searches.pop(one.case.name, None)
         else:
-            done[one.case] = one
+            done[one.part] = one
             searches.pop(one.name, None)
     return done, {name: joined(several) for name, several in searches.items()}
 
@@ -221,23 +237,18 @@ def _run_case(study: Study, known: _Known, case: Case, threads: int = 1) -> Outc
         return run_case(study, case, threads)
 
 
-def _further(
-    study: Study, found: Gathered, pending: list[_FurtherCase], pool: Pool, known: _Known
-) -> Iterator[list[journals.Further]]:
-    """Budgets and fronts as they are done, those that come together in one list."""
-    run = partial(_run_further, portable(study), found.designs, known)
-    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(_lost_further, study))
+def _answers(
+    study: Study, found: Gathered, pending: list[_AnyPart], pool: Pool, known: _Known
+) -> Iterator[list[Answer]]:
+    """Answers as they are done, those that come together in one list."""
+    run = partial(_resumed_answer, portable(study), found.designs, known)
+    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, study))
 
 
-def _run_further(
-    study: Study, designs: Mapping[Case, Outcome], known: _Known, case: _FurtherCase, threads: int = 1
-) -> journals.Further:
-    with within(case.name), resuming(case.name, known):
-        return case.run(study, designs, threads)
-
-
-def _lost_further(study: Study, case: _FurtherCase) -> journals.Further:
-    return case.lost(study)
+def _resumed_answer(study: Study, designs: Designs, known: _Known, part: _AnyPart, threads: int = 1) -> Answer:
+    with within(part.name), resuming(part.name, known):
+        answer: Answer = answer_part(study, designs, part, threads)
+    return answer
 
 
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:

@@ -48,6 +48,7 @@ from inerter.files.common.vehicles import models
 from inerter.files.study.limits import LimitsCodec, StudyLimit
 from inerter.files.study.own_indices import indices_of, own_indices_codec
 from inerter.files.study.place import Sweep
+from inerter.files.study.task_rows import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
@@ -239,17 +240,24 @@ def _of_a_trade_off(table: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _settings(**values: Any) -> dict[str, Any]:
-    """The arguments of a study that its section [study] gives; those of indices are together in one."""
+    """The arguments of a study that its section [study] gives; those of indices, and of tasks, are together in one."""
     shared = index_settings()
     own = {name: value for name, value in values.items() if name not in shared}
-    return {**own, "settings": without_none(**{name: value for name, value in values.items() if name in shared})}
+    tasks = {
+        row.key: row.keys(**{one.attribute: own.pop(one.attribute) for one in keys_in(row.keys)})
+        for row in TASKS.values()
+        if row.keys is not None
+    }
+    settings = without_none(**{name: value for name, value in values.items() if name in shared})
+    return {**own, "settings": settings, "tasks": tasks}
 
 
 def _settings_in(study: Any) -> dict[str, Any]:
     """The section [study] of a study, by attributes; what has no effect is left out."""
     silent = {"over": not study.conditions, "points": not study.trade_off}
     own = {one.attribute: getattr(study, one.attribute) for one in keys_in(Settings)}
-    return {**{name: value for name, value in own.items() if not silent.get(name)}, **study.settings}
+    tasks = {name: value for asked in study.tasks.values() for name, value in vars(asked).items()}
+    return {**{name: value for name, value in own.items() if not silent.get(name)}, **study.settings, **tasks}
 
 
 @made_of_rows
@@ -258,7 +266,7 @@ def study_codec() -> TableCodec:
 
     Raises `RowError` if an index has a setting whose key is one of the section's own.
     """
-    own = keys_in(Settings)
+    own = [*keys_in(Settings), *(one for row in TASKS.values() if row.keys for one in keys_in(row.keys))]
     taken = sorted(index_settings().keys() & {one.name for one in own})
     if taken:
         raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")

@@ -49,6 +49,7 @@ class Study(Settings):
     layouts: dict[str, StrutLayout]
     coherence: dict[str, float] = field(default_factory=dict)  # of the road, as the file says it
     line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
+    tasks: dict[str, Any] = field(default_factory=dict)  # what is said of those with keys of their own, by their keys
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
     conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
     texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities

@@ -13,7 +13,7 @@ import xarray as xr
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
-from inerter.files.study.running import NAMES, StudyResult, run_study
+from inerter.files.study.running import StudyResult, result_names, run_study
 from inerter.kernels.prepare import prepare
 from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
@@ -44,10 +44,6 @@ _ORDER = (
 TABLES = (
     *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
     *("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins"),
-)
-_OWN = (
-    *(JOURNAL, f"{FIGURES}/", REPORT, *(f"{name}.csv" for name in TABLES)),
-    *(f"{folder}/{name}" for folder in linear.STUDIES for name in ("", *NAMES)),
 )
 Numbers = dict[str, Any]
 Progress = Callable[[str, int, int], None]
@@ -139,7 +135,7 @@ def reproduce(
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
-    intent = Intent(folder, "reproduce", _OWN, resume=resume, force=force)
+    intent = Intent(folder, "reproduce", _result_names(), resume=resume, force=force)
     with claimed(intent) as results, pooled(jobs, executor) as pool:
         if needed and wanted > {"linear"} and not resume and not pool.on_each_node(_warm_up):
             pool.begin(_warm_up)
@@ -160,6 +156,12 @@ def reproduce(
         )
         finish(found, results.draft, pool)
     return found
+
+
+def _result_names() -> tuple[str, ...]:
+    """What a folder of results may hold."""
+    studies = (f"{folder}/{name}" for folder in linear.STUDIES for name in ("", *result_names()))
+    return (JOURNAL, f"{FIGURES}/", REPORT, *(f"{name}.csv" for name in TABLES), *studies)
 
 
 def _warm_up() -> None:

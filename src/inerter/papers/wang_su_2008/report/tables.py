@@ -10,7 +10,7 @@ from inerter.papers.wang_su_2008.report.data import reason
 from inerter.papers.wang_su_2008.report.text import budget_value, digits, rig_value, share, signed, with_error
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
-from inerter.report.tables import Cell, Row, Table
+from inerter.table import Cell, Row, Table
 
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 

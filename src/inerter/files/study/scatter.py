@@ -1,0 +1,44 @@
+"""By what part of itself each number of a study scatters, by its place in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from inerter.errors import InerterError
+from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.suggest import some
+from inerter.files.study.conditions import what_of
+from inerter.files.study.place import element_at, place_of
+from inerter.files.study.places import number_at
+from inerter.files.study.study import Study, scattering
+from inerter.files.study.sweeps import unknown_place
+from inerter.networks.elements import Tied
+from inerter.units import shown
+
+_PLACE = ("study", "tolerance")
+
+
+def tolerance_of(study: Study, entries: Mapping[str, float]) -> tuple[dict[str, float], list[Problem]]:
+    """By what part of itself each number scatters, by its label, and what is wrong with that."""
+    spread, problems = {}, []
+    for label, part in entries.items():
+        try:
+            place = place_of(label)
+            if number_at(study, place) is None or what_of(study, place) is None or place.section == "road":
+                raise unknown_place(study, place)
+            _check_is_part(study, element_at(place))
+            spread[place.label] = part
+        except EntryError as error:
+            problems.append(replace(error.problem, place=(*_PLACE, label)))
+        except InerterError as error:
+            problems.append(at((*_PLACE, label), str(error)))
+    return spread, problems
+
+
+def _check_is_part(study: Study, name: str) -> None:
+    """Raises `EntryError` for an element that no layout has, of which nothing is made that could scatter."""
+    if name and not any(name in scattering(study, layout) for layout in study.layouts):
+        tied = [other for other, e in study.elements.items() if isinstance(e.value, Tied) and name in e.value.names]
+        hint = f"; {some(tied)} follows from it, and scatters by its own name" if tied else ""
+        raise EntryError(got=shown(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout")

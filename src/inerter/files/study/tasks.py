@@ -1,0 +1,203 @@
+"""Tasks: what a study asks of its best designs besides their values, in parts that are answered one by one.
+
+All of a task is in one file: the keys that ask for it, its parts, how one is answered, what is known of one that
+failed, and how answers are written as CSV, on a terminal, on a page. The journal, processes, executors, progress,
+`--json` and exit codes are the same for all.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+
+from inerter.errors import StatusKind
+from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
+from inerter.files.study.task_rows import TASKS
+from inerter.optimisation.threads import one_blas_thread
+from inerter.rows import made_of_rows
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from inerter.files.common.problem import Problem
+    from inerter.files.study.study import Study
+    from inerter.table import Table, Writer
+
+Designs = Mapping[Case, Outcome]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(ABC):
+    """The answer to a part of a task, in SI units; all of it survives JSON, with `answer_of`."""
+
+    sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # statuses that answer the question
+
+    layout: str
+    status: str
+    message: str = ""
+
+    @property
+    @abstractmethod
+    def part(self) -> Part[Any]:
+        """What it answers."""
+
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return self.part.name
+
+    @property
+    def ok(self) -> bool:
+        """Whether the question is answered."""
+        return self.status in self.sure
+
+    @property
+    def status_text(self) -> str:
+        """The status with its reason."""
+        return f"{self.status}: {self.message}" if self.message else self.status
+
+    @property
+    def doubt(self) -> str:
+        """Why the answer is not certain; empty if it is."""
+        return "" if self.ok else self.status_text
+
+
+AnswerT = TypeVar("AnswerT", bound=Answer)
+
+
+class Part(ABC, Generic[AnswerT]):
+    """A part of a task: a frozen dataclass of its labels, which survives JSON."""
+
+    layout: str
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What it is, in messages."""
+
+    @abstractmethod
+    def answer(self, study: Study, designs: Designs, threads: int) -> AnswerT:
+        """The answer, from the best designs. What it raises of `FAILURES` becomes that of `failed`."""
+
+    @abstractmethod
+    def failed(self, study: Study, message: str) -> AnswerT:
+        """The answer without numbers, for this reason."""
+
+
+class Task(ABC, Generic[AnswerT]):
+    """A kind of question about the best designs of a study."""
+
+    key: ClassVar[str]  # of its answers in the journal and in --json, and of their file
+    title: ClassVar[str]  # of its section in a report
+    answer: type[AnswerT]
+
+    @abstractmethod
+    def parts(self, study: Study) -> Sequence[Part[AnswerT]]:
+        """Its parts in the order of the results; none if it is not asked for."""
+
+    def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
+        """What is wrong with how a study asks for it; `given` are the keys that its section [study] has."""
+        yield from ()
+
+    @abstractmethod
+    def description(self, study: Study) -> Mapping[str, list[str]]:
+        """What is asked, as a report lists it: items by their heading."""
+
+    @abstractmethod
+    def csv(self, study: Study, answers: Sequence[AnswerT]) -> Iterator[Sequence[object]]:
+        """Rows of its file, the header first."""
+
+    def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[AnswerT]) -> xr.Dataset:
+        """The dataset of the study with those answers that belong in it; there are some."""
+        return data
+
+    @abstractmethod
+    def lines(self, results: TaskResults[AnswerT], width: int) -> Iterator[str]:
+        """All answers for a terminal."""
+
+    @abstractmethod
+    def tables(self, results: TaskResults[AnswerT]) -> list[Table]:
+        """All answers for a page."""
+
+    def introduction(self) -> str:
+        """What stands before these tables."""
+        return ""
+
+    @abstractmethod
+    def sentences(self, results: TaskResults[AnswerT], write: Writer) -> Iterator[str]:
+        """What follows, for who decides; what is not certain says so first."""
+
+
+@dataclass(frozen=True, eq=False)
+class TaskResults(Generic[AnswerT]):
+    """The answers to one task, with the study and the dataset of its designs."""
+
+    study: Study
+    data: xr.Dataset
+    answers: Sequence[AnswerT]
+
+
+@made_of_rows
+def tasks() -> tuple[Task[Any], ...]:
+    """All tasks, in the order in which they are done and told."""
+    return tuple(_task(row.home) for row in TASKS.values())
+
+
+def _task(home: str) -> Task[Any]:
+    module, _, name = home.partition(":")
+    made: Task[Any] = getattr(import_module(module), name)()
+    return made
+
+
+def parts_of(study: Study) -> list[Part[Any]]:
+    """All parts of all tasks of a study."""
+    return [part for task in tasks() for part in task.parts(study)]
+
+
+def answer_part(study: Study, designs: Designs, part: Part[AnswerT], threads: int = 1) -> AnswerT:
+    """The answer to a part. A failure is an answer with a status and a sentence."""
+    try:
+        with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            return part.answer(study, designs, threads)
+    except FAILURES as error:
+        return part.failed(study, str(error))
+
+
+def lost_part(study: Study, part: Part[AnswerT]) -> AnswerT:
+    """What is known of a part whose processes have ended, each time that it was tried."""
+    return part.failed(study, ENDED)
+
+
+def by_task(answers: Iterable[Answer]) -> dict[Task[Any], list[Any]]:
+    """The answers by their tasks, of which only those that have some."""
+    every = list(answers)
+    found = {task: [one for one in every if isinstance(one, task.answer)] for task in tasks()}
+    return {task: own for task, own in found.items() if own}
+
+
+def to_json(answer: Answer) -> dict[str, Any]:
+    """A plain dictionary of what an answer holds."""
+    return {field.name: getattr(answer, field.name) for field in fields(answer)}
+
+
+def journal_entry(answer: Answer) -> dict[str, Any]:
+    """The same with the key of its task, for a journal; `answer_of` undoes it."""
+    (task,) = (one for one in tasks() if isinstance(answer, one.answer))
+    return {"task": task.key, **to_json(answer)}
+
+
+def answer_of(entry: Mapping[str, Any]) -> Answer:
+    """The answer of an entry that `journal_entry` made.
+
+    Raises `TypeError` for an entry that is none.
+    """
+    makers: dict[str, Callable[..., Answer]] = {one.key: one.answer for one in tasks()}
+    maker = makers.get(entry["task"])
+    if maker is None:
+        raise TypeError(entry["task"])
+    return maker(**{name: value for name, value in entry.items() if name != "task"})

@@ -1,0 +1,209 @@
+"""Tolerances: how the index of each best design scatters with its values, and which value matters most."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inerter.errors import StatusKind
+from inerter.figures.labels import index_title, printed, with_unit
+from inerter.files.common.problem import Problem, at
+from inerter.files.study.cases import Case
+from inerter.files.study.study import Study
+from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.methods.registry import deciding
+from inerter.scatter.tolerance import tolerance
+from inerter.table import Cell, Row, Table, Writer
+
+if TYPE_CHECKING:
+    pass
+
+SHARE = 0.95  # of cases, of the quantile that is told
+_NUMBERS = ("nominal", "mean", "standard_deviation", "quantile", "worst")
+_SCATTERED = _NUMBERS[1:]
+_HEADER = ("Mean", "Standard deviation", f"{100 * SHARE:g} % of cases below", "Worst", "Due to")
+
+
+@dataclass(frozen=True)
+class TolerancePart(Part["ToleranceAnswer"]):
+    """What becomes of the index of the design that is best for it?"""
+
+    layout: str
+    index: str
+
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"tolerance of {self.layout} {self.index}"
+
+    def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
+        """The tolerance of the design that was found."""
+        method = study.evaluate[0]
+        found = tolerance(
+            study.design(self.layout).with_values(designs[Case(self.layout, self.index)].parameters),
+            study.over_conditions(self.index),
+            study.method(method, threads),
+            spread=study.spread(self.layout),
+            seed=study.seed,
+        )
+        numbers = found.nominal.value, found.mean, found.standard_deviation, found.quantile(SHARE), found.worst
+        return ToleranceAnswer(
+            layout=self.layout,
+            index=self.index,
+            method=method,
+            unit=study.unit(self.index),
+            numbers=dict(zip(_NUMBERS, numbers, strict=True)),
+            effects={name: [found.main[name], found.total[name]] for name in found.main},
+            status=found.status.kind.value,
+            message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
+        )
+
+    def failed(self, study: Study, message: str) -> ToleranceAnswer:
+        """The answer without numbers."""
+        return ToleranceAnswer(
+            layout=self.layout,
+            index=self.index,
+            method=study.evaluate[0],
+            unit=study.unit(self.index),
+            numbers={},
+            effects={},
+            status=StatusKind.FAILED.value,
+            message=message,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToleranceAnswer(Answer):
+    """The distribution of an index, and which values it is due to."""
+
+    index: str
+    method: str
+    unit: str
+    numbers: dict[str, float]  # nominal, mean, standard_deviation, quantile, worst
+    effects: dict[str, list[float]]  # by what scatters: its part of the variance by itself, and in all
+
+    @property
+    def part(self) -> TolerancePart:
+        """What it answers."""
+        return TolerancePart(self.layout, self.index)
+
+
+class Tolerances(Task[ToleranceAnswer]):
+    """How each index scatters at its best design."""
+
+    key = "tolerances"
+    title = "When values scatter"
+    answer = ToleranceAnswer
+
+    def parts(self, study: Study) -> list[TolerancePart]:
+        """In the order of indices, layouts; those of which something scatters."""
+        layouts = [layout for layout in study.layouts if study.spread(layout)]
+        return [TolerancePart(layout, index) for index in study.indices for layout in layouts]
+
+    def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
+        """A quantile without tolerances, a sweep beside them."""
+        if study.quantile is not None and not study.tolerance:
+            yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
+        if study.tolerance and study.sweeps:
+            yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
+
+    def description(self, study: Study) -> Mapping[str, list[str]]:
+        """By what part each value scatters, and the quantile that is made best."""
+        quantile = [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else []
+        parts = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
+        return {"Tolerances": parts, "Best at": quantile}
+
+    def csv(self, study: Study, answers: Sequence[ToleranceAnswer]) -> Iterator[Sequence[object]]:
+        """One row a design; the effects are parts of the variance."""
+        names = list(dict.fromkeys(name for one in answers for name in one.effects))
+        effects = [f"{kind} effect of {name}" for name in names for kind in ("main", "total")]
+        header = [f"quantile_{SHARE:g}" if name == "quantile" else name for name in _NUMBERS]
+        yield ["layout", "index", "method", *header, "unit", *effects, "status"]
+        for one in answers:
+            parts = [part for name in names for part in one.effects.get(name, (None, None))]
+            numbers = map(one.numbers.get, _NUMBERS)
+            yield [one.layout, one.index, one.method, *numbers, one.unit, *parts, one.status_text]
+
+    def lines(self, results: TaskResults[ToleranceAnswer], width: int) -> Iterator[str]:
+        """A paragraph for each design."""
+        yield from ("", "when values scatter:")
+        for one in results.answers:
+            mean, deviation, quantile, worst = _texts(one, with_unit)
+            sentence = (
+                f"mean {mean}, standard deviation {deviation}, {100 * SHARE:g} % of cases below {quantile}, worst "
+                f"{worst}; due to {_due(one)}"
+            )
+            doubt = "" if one.ok else f"not certain ({one.status_text}): "
+            text = f"{one.layout} {one.index}: {doubt + sentence if one.numbers else one.status_text}"
+            yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
+
+    def tables(self, results: TaskResults[ToleranceAnswer]) -> list[Table]:
+        """One table, a row for each design."""
+        rows = []
+        for one in results.answers:
+            cells = [Cell(text) for text in _texts(one, printed)]
+            rows.append(Row(f"{one.layout}, {one.index}", [*cells, Cell(_due(one), prose=True)], status=one.doubt))
+        return [Table("Best designs when values scatter", ["Design", *_HEADER], rows)]
+
+    def introduction(self) -> str:
+        """What scatters, and what the last column is."""
+        return (
+            "What becomes of each best design when values lie anywhere within their tolerances, all equally likely. "
+            "The last column tells by how much the variance would be less if a value did not scatter."
+        )
+
+    def sentences(self, results: TaskResults[ToleranceAnswer], write: Writer) -> Iterator[str]:
+        """For each index that scatters the layout with the lowest quantile, and those of which there is none."""
+        data, answers = results.data, results.answers
+        for index in dict.fromkeys(one.index for one in answers):
+            own = [one for one in answers if one.index == index]
+            title = index_title(data, index)
+            known = [one for one in own if np.isfinite(one.numbers.get("quantile", np.nan))]
+            told = [_best_sentence(title, known, data.attrs["baseline"], write)] if known else []
+            told += [
+                f"No answer for {title} of {one.layout} when values scatter: {one.message.rstrip('.')}."
+                for one in own
+                if one not in known
+            ]
+            yield " ".join(told)
+
+
+def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None, write: Writer) -> str:
+    """The layout with the lowest quantile, compared with the baseline, and with the order of nominal designs."""
+    by_quantile = sorted(known, key=lambda one: one.numbers["quantile"])
+    best, nominal = by_quantile[0], min(known, key=lambda one: one.numbers["nominal"])
+    _, deviation, quantile, worst = _texts(best, write)
+    base = next((one for one in known if one.layout == baseline), None)
+    compared = ""
+    if base is not None and base is not best and base.numbers["quantile"] > 0.0:
+        part = 100.0 * (1.0 - best.numbers["quantile"] / base.numbers["quantile"])
+        compared = f", {part:.3g} % better than {base.layout}, which scatters too"
+    elif base is best and len(known) > 1:
+        compared = "; no other layout is better than this baseline"
+    due = f", mostly due to {next(iter(_shares(best)))[1]}" if best.effects else ""
+    order = f" Without scatter {nominal.layout} is best." if nominal is not best else ""
+    doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
+    certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
+    return (
+        f"{certain}Best {title} when values scatter, by what {100 * SHARE:g} % of cases stay below: {best.layout}, "
+        f"{quantile.strip()}{compared}; standard deviation {deviation.strip()}{due}, worst {worst.strip()}.{order}"
+    )
+
+
+def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
+    """Parts of the variance with the values that they are due to, the largest first."""
+    return sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
+
+
+def _texts(one: ToleranceAnswer, write: Writer) -> list[str]:
+    nan = float("nan")
+    return [write(one.numbers.get(name, nan), one.unit, nan) for name in _SCATTERED]
+
+
+def _due(one: ToleranceAnswer) -> str:
+    """What the scatter is due to, the largest part first."""
+    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or "–"

@@ -1,0 +1,138 @@
+"""A task: which value of a catalogue is best for an element, with everything else optimised for it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import inerter as it
+from inerter.figures.labels import with_unit
+from inerter.files.common.codec import declared, key
+from inerter.files.common.entries import SWEEP_LIST, TEXT
+from inerter.files.common.problem import Problem, at
+from inerter.files.study.cases import Case, run_case
+from inerter.files.study.study import Study, elements_used
+from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.table import Cell, Row, Table, Writer
+from inerter.units import parse_quantity
+
+
+@declared
+class CatalogueKeys:
+    """What [study] says of it."""
+
+    catalogue_of: str | None = key(TEXT, "The element that is bought.", 'catalogue_of = "c"', default=None)
+    catalogue: tuple[str, ...] = key(
+        SWEEP_LIST, "The values that are sold.", 'catalogue = ["1 kN s/m", "2 kN s/m"]', default=()
+    )
+
+
+it.TASKS.add(it.TaskRow("catalogues", "inerter_extending.catalogue:Catalogues", CatalogueKeys))
+
+
+@dataclass(frozen=True)
+class CataloguePart(Part["CatalogueAnswer"]):
+    """Which value of the catalogue is best for an index of a layout?"""
+
+    layout: str
+    index: str
+
+    @property
+    def name(self) -> str:
+        """What it is, in messages."""
+        return f"catalogue for {self.layout} {self.index}"
+
+    def answer(self, study: Study, designs: Designs, threads: int) -> CatalogueAnswer:
+        """The value with the least index."""
+        keys = study.tasks["catalogues"]
+        element = study.elements[keys.catalogue_of]
+        found = {}
+        for text in keys.catalogue:
+            bought = type(element)(parse_quantity(text, element.unit), keys.catalogue_of)
+            fixed = replace(study, elements={**study.elements, keys.catalogue_of: bought})
+            outcome = run_case(fixed, Case(self.layout, self.index), threads)
+            found[text] = outcome.values.get(study.evaluate[0], {}).get(self.index, float("inf")), outcome
+        best = min(found, key=lambda text: found[text][0])
+        value, outcome = found[best]
+        return CatalogueAnswer(
+            layout=self.layout,
+            index=self.index,
+            element=keys.catalogue_of,
+            best=best,
+            value=value,
+            unit=study.unit(self.index),
+            status=outcome.kind,
+            message=outcome.message,
+        )
+
+    def failed(self, study: Study, message: str) -> CatalogueAnswer:
+        """The answer without numbers."""
+        nothing = {"element": "", "best": "", "value": float("nan"), "unit": ""}
+        return CatalogueAnswer(layout=self.layout, index=self.index, **nothing, status="failed", message=message)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CatalogueAnswer(Answer):
+    """The value that is best."""
+
+    index: str
+    element: str
+    best: str
+    value: float
+    unit: str
+
+    @property
+    def part(self) -> CataloguePart:
+        """What it answers."""
+        return CataloguePart(self.layout, self.index)
+
+
+class Catalogues(Task[CatalogueAnswer]):
+    """Which of the values that are sold is best."""
+
+    key = "catalogues"
+    title = "From the catalogue"
+    answer = CatalogueAnswer
+
+    def parts(self, study: Study) -> list[CataloguePart]:
+        """In the order of indices, layouts; those that have the element."""
+        having = elements_used(study).get(study.tasks["catalogues"].catalogue_of, ())
+        return [CataloguePart(layout, index) for index in study.indices for layout in having]
+
+    def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
+        """An element that there is not."""
+        element = study.tasks["catalogues"].catalogue_of
+        if element is not None and element not in study.elements:
+            yield at(("study", "catalogue_of"), got=element, expected="an element")
+
+    def description(self, study: Study) -> Mapping[str, list[str]]:
+        """The values that are sold."""
+        return {"Catalogue": list(study.tasks["catalogues"].catalogue)}
+
+    def csv(self, study: Study, answers: Sequence[CatalogueAnswer]) -> Iterator[Sequence[object]]:
+        """One row a design."""
+        yield ["layout", "index", "element", "best", "value", "unit", "status"]
+        for one in answers:
+            yield [one.layout, one.index, one.element, one.best, one.value, one.unit, one.status_text]
+
+    def lines(self, results: TaskResults[CatalogueAnswer], width: int) -> Iterator[str]:
+        """A line for each design."""
+        yield from ("", "from the catalogue:")
+        for one in results.answers:
+            yield f"  {one.layout} {one.index}: {one.element} = {one.best}, {with_unit(one.value, one.unit)}"
+
+    def tables(self, results: TaskResults[CatalogueAnswer]) -> list[Table]:
+        """One table."""
+        rows = [
+            Row(f"{one.layout}, {one.index}", [Cell(one.best), Cell(with_unit(one.value, one.unit))], status=one.doubt)
+            for one in results.answers
+        ]
+        return [Table("Best of the catalogue", ["Design", "Value that is sold", "Index"], rows)]
+
+    def sentences(self, results: TaskResults[CatalogueAnswer], write: Writer) -> Iterator[str]:
+        """The best value for each index."""
+        for index in results.study.indices:
+            own = [one for one in results.answers if one.index == index]
+            best = min(own, key=lambda one: one.value)
+            doubt = "" if best.ok else f"Not certain ({best.status_text}). "
+            yield f"{doubt}From the catalogue, {best.element} = {best.best} in {best.layout} is best for {index}."

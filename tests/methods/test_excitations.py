@@ -128,6 +128,14 @@ def test_a_single_mass_in_closed_form():
     assert "white noise passes straight" in below.status.message
 
 
+def test_a_push_on_moving_ground_is_that_on_ground_at_rest():
+    """Motions relative to the ground answer a force in the same way, whether the ground may move or not."""
+    one = single(3.0, 0.7, 50.0)
+    moving = it.GroundAcceleration(4.0).driven(one)
+    found = it.h2_norm(it.assemble(moving, "push", "mass_relative_displacement"))
+    assert found == pytest.approx(it.h2_norm(it.assemble(one, "push", "mass_displacement")), rel=1e-12)
+
+
 def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
     quake = it.RandomResponse({"mass_displacement": 1.0}, it.GroundAcceleration(1.0))
     with pytest.raises(PerformanceIndexError, match=r"no bounds.*mass_relative_displacement"):

@@ -11,6 +11,7 @@ from nodal import Nodal
 
 import inerter as it
 from inerter.errors import PerformanceIndexError
+from inerter.indices.measured_road import _alternating
 from inerter.roads.spectrum import RoadSpectrum
 from inerter.signals.road import RoadShape
 
@@ -155,3 +156,16 @@ BAD = {
 def test_bad_requests(make, sentence):
     with pytest.raises(PerformanceIndexError, match=sentence):
         make()
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+@pytest.mark.parametrize("power", [0.3, -0.7])
+def test_the_filter_of_a_line_is_as_far_from_both_ends_of_its_band(power: float, count: int) -> None:
+    """Poles and zeros lie evenly over the logarithm of the frequency, so that gains mirror in the middle of the band."""
+    ends, unit = (0.4, 90.0), 2.0
+    centre, away = math.sqrt(ends[0] * ends[1]), np.geomspace(1.0, 1e3, 13)
+    found = _alternating(power, ends, unit, count)
+    above, below = (np.abs(found.response(centre * ratio)) for ratio in (away, 1.0 / away))
+    middle = (centre / unit) ** power
+    np.testing.assert_allclose(above * below, middle**2, rtol=1e-9)
+    assert above[0] == pytest.approx(middle, rel=1e-12)

@@ -25,6 +25,7 @@ from inerter import (
 )
 from inerter.errors import LinearSystemError
 from inerter.norms.delay import pade, transfer
+from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import h2
 
 k, c, b = Spring(60e3), Damper(3000.0), Inerter(150.0)
@@ -159,6 +160,17 @@ def test_two_pade_delays_in_a_chain(order):
     delays = [0.0, 0.3, 0.75]
     expected = by_kronecker(with_chain(system, order, delays))
     np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_the_norm_without_rounding_has_the_pade_delays_too(order):
+    """A half car's road at two axles, from its transfer functions against the states of the approximant."""
+    car = paper_half_car(STRUTS["S1"], STRUTS["S3"])
+    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    delays = [0.0, 2.04 / 25.0]
+    found, status = h2_exactly(system.delayed("road", delays), order)
+    assert status.ok
+    np.testing.assert_allclose(found, by_kronecker(with_chain(system, order, delays)), rtol=1e-8)
 
 
 @pytest.mark.parametrize("order", range(1, 11))

@@ -52,6 +52,16 @@ def random(seed, device=DEVICE, samples=20000, force=0.0, displacement=0.0):
     return noisy(it.Record(np.arange(samples) / RATE, x, f), seed, force, displacement)
 
 
+@pytest.mark.parametrize(("samples", "enough"), [(16, True), (15, False)])
+def test_the_shortest_segment_has_sixteen_samples(samples, enough):
+    segment = samples / RATE
+    if enough:
+        it.frequency_response(random(0, force=0.5), segment=segment)
+    else:
+        with pytest.raises(RecordError, match="at least 16 samples"):
+            it.frequency_response(random(0, force=0.5), segment=segment)
+
+
 WEIGHTS = np.abs(np.fft.fft(signal.windows.hann(64, sym=False))[[-1, 0, 1]]) ** 2  # of a line and its neighbours
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +103,7 @@ def _by_source(
 def _approximated(response: Transfer, order: int) -> Transfer:
     """With a Pade approximant for the time between one arrival and the next: they become one."""
     denominator, total, factor = response.denominator, response.numerators[0], [1]
-    for before, time, numerator in zip(response.times, response.times[1:], response.numerators[1:], strict=False):
+    for (before, time), numerator in zip(pairwise(response.times), response.numerators[1:], strict=True):
         bottom = _pade(time - before, order)
         factor = multiply(factor, mirrored(bottom))
         total = add(multiply(total, bottom), multiply(numerator, factor))

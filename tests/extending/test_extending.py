@@ -302,6 +302,10 @@ def test_a_task_is_worked_on_and_told_as_our_own(session: Session, place: Path, 
     assert ">From the catalogue</h2>" in page
     journal = (tmp_path / "out" / "journal.jsonl").read_text(encoding="utf-8")
     assert journal.count('"task": "catalogues"') == 2
+    resolved = (tmp_path / "out" / "study.resolved.toml").read_text(encoding="utf-8").replace("'", '"')
+    assert 'catalogue = ["1 kN s/m", "2 kN s/m", "4 kN s/m"]' in resolved
+    again = "a = it.load_study('bought.toml'); print(a == it.load_study('out/study.resolved.toml'), a.tasks != {})"
+    assert session.python(f"import inerter as it; {again}", tmp_path) == "True True\n"
     text = text.replace('catalogue_of = "c"', 'catalogue_of = "d"')
     (tmp_path / "wrong.toml").write_text(text, encoding="utf-8")
     assert "study.catalogue_of" in session.command("check", "wrong.toml", cwd=tmp_path, code=2)[1]

@@ -161,7 +161,7 @@ def test_bad_requests(make, sentence):
 @pytest.mark.parametrize("count", [1, 2, 5])
 @pytest.mark.parametrize("power", [0.3, -0.7])
 def test_the_filter_of_a_line_is_as_far_from_both_ends_of_its_band(power: float, count: int) -> None:
-    """Poles and zeros lie evenly over the logarithm of the frequency, so that gains mirror in the middle of the band."""
+    """Poles and zeros lie evenly over the logarithm of the frequency: gains mirror in the middle of the band."""
     ends, unit = (0.4, 90.0), 2.0
     centre, away = math.sqrt(ends[0] * ends[1]), np.geomspace(1.0, 1e3, 13)
     found = _alternating(power, ends, unit, count)

@@ -40,7 +40,7 @@ from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.over_stiffness import Curves
 from inerter.papers.wang_su_2008.report.data import reason
 from inerter.papers.wang_su_2008.report.text import reproduction_text
-from inerter.papers.wang_su_2008.reproduce import JOURNAL, Reproduction, Task, work
+from inerter.papers.wang_su_2008.reproduce import JOURNAL, PaperItem, Reproduction, work
 from inerter.papers.wang_su_2008.rig import Found, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
@@ -435,7 +435,7 @@ def test_a_budget_is_where_the_difference_vanishes() -> None:
 
 
 def test_tasks_give_numbers_that_json_has() -> None:
-    key, numbers = work(Task("table1", "J1 4"))
+    key, numbers = work(PaperItem("table1", "J1 4"))
     assert key == ("table1", "J1 4")
     assert json.loads(json.dumps(numbers)) == numbers
     assert numbers["seconds"] > 0.0

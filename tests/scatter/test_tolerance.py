@@ -315,3 +315,43 @@ def test_designs_within_double_precision_keep_their_sample_over_conditions(sprea
     found = it.tolerance(car, use.mean(J1), NORM, spread=spread, samples=512)
     assert found.values.size == 2 * 512
     assert found.status.ok
+
+
+def rubbing(**values: float) -> it.QuarterCar:
+    """A friction beside an inerter, and a damper that friction alone loads."""
+    inside = it.Inerter(50.0) - (it.Spring(1e6) | it.Damper(values.get("c2", 300.0), "c2") | it.Friction(20.0, "f"))
+    strut = it.Spring(22e3) | it.Damper(1500.0, "c") | inside | it.Damper(900.0, "d") - it.Friction(30.0, "g")
+    return it.QuarterCar(250.0, 35.0, 150e3, strut)
+
+
+@pytest.mark.parametrize(
+    ("spread", "unseen"),
+    [
+        ({"c": 0.1}, ""),
+        ({"c": 0.1, "f": 0.2}, "of f,"),
+        ({"d": 0.1, "c": 0.1}, "of d,"),
+        ({"f": 0.1, "g": 0.1}, "f and g"),
+    ],
+)
+def test_what_linear_analysis_leaves_out_does_not_scatter_in_silence(spread: dict[str, float], unseen: str) -> None:
+    """The friction itself, and a damper in series with it, which carries no force without it."""
+    found = it.tolerance(rubbing(), J1, it.Norm(), spread=spread, samples=64)
+    quantile = it.evaluate(rubbing(), it.Quantile(J1, scatter_of(spread, "uniform"), samples=64), it.Norm())
+    assert found.status.ok == (not unseen)
+    assert unseen in found.status.message
+    assert quantile.status.ok == (not {"f", "g"} & set(spread))
+
+
+def test_a_method_that_simulates_sees_friction_scatter() -> None:
+    method = it.ExpectedValue(realisations=2, seed=1)
+    found = it.tolerance(rubbing(), J1, method, spread={"f": 0.5}, samples=16)
+    assert found.status.ok
+    assert found.standard_deviation > 0.0
+
+
+def test_a_value_without_effect_in_a_linear_design_is_no_fault() -> None:
+    """Where damping is high, load carrying is that of the springs at rest."""
+    car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(22e3, "k") | it.Damper(2e4, "c"))
+    found = it.tolerance(car, J5, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    assert found.status.ok
+    assert found.total["c"] == pytest.approx(0.0, abs=1e-6)

@@ -15,7 +15,7 @@ from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encoded
-from inerter.errors import OK, DesignError, Status, StatusKind, StudyError, worst_of
+from inerter.errors import DesignError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
@@ -23,7 +23,7 @@ from inerter.files.study.responses import responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
-from inerter.methods.registry import DEFAULT, is_blind, methods_that, searches
+from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import budget as find_budget
@@ -234,7 +234,6 @@ def scatter(study: Study, body: Body) -> Answer:
         samples=body.get("samples") or _SAMPLES,
         seed=body.get("seed") or 0,
     )
-    status = worst_of((found.status, _seen(study, method, body["spread"])))
     counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
     return {
         **design.told(),
@@ -250,22 +249,9 @@ def scatter(study: Study, body: Body) -> Answer:
         "main": found.main,
         "total": found.total,
         "histogram": {"edges": edges, "counts": counts},
-        "status": status.kind.value,
-        "message": status.message,
+        "status": found.status.kind.value,
+        "message": found.status.message,
     }
-
-
-def _seen(study: Study, method: str, spread: Mapping[str, float]) -> Status:
-    """Whether a method sees all that scatters: what it leaves out would seem not to matter."""
-    switching = {name for name, element in study.elements.items() if element.acts}
-    unseen = [name for name in spread if name in switching]
-    if not unseen or not is_blind(method):
-        return OK
-    return Status(
-        StatusKind.INACCURATE,
-        f"{method} leaves out what {' and '.join(unseen)} {'does' if len(unseen) == 1 else 'do'}, "
-        "so that its scatter seems not to matter; take a method that sees it",
-    )
 
 
 def needed(body: Body, key: str) -> Any:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isclose, pi
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from inerter.fields import Field, fields_of
 from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
@@ -25,6 +25,9 @@ from inerter.methods.registry import brief_words_of, is_blind, method_settings, 
 from inerter.networks.elements import Free, Tied
 from inerter.signals.road import Road
 from inerter.units import format_quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _ROUGHNESS = "m^3/cycle"
 _ALSO = {  # the same value in the unit in which it is usually told

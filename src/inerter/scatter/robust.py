@@ -14,14 +14,14 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import OK, DesignError, ErrorSource, Status, StatusKind, worst_of
+from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.scatter.spread import Scatter, elements_scatter, followed, loosened, nominal, scatter_of
+from inerter.scatter.spread import Scatter, elements_scatter, followed, loosened, nominal, scatter_left_out, scatter_of
 from inerter.scatter.tolerance import quantile_error, rank_weights, scattered
 from inerter.vehicle.vehicle import Vehicle
 
@@ -96,7 +96,8 @@ class Quantile(OfIndex):
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
         error, interval = quantile_error(values, self.share)
         sources = (ErrorSource("values of the sample", getattr(method, "promise", np.nan)),)
-        return Estimate(value, self.unit, OK, error, interval, values.size, error_sources=sources)
+        status = scatter_left_out(vehicle, method, self.scatter)
+        return Estimate(value, self.unit, status, error, interval, values.size, error_sources=sources)
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The quantiles (designs,) at many values of the free values, nan where one is not known."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import DesignError
+from inerter.errors import OK, DesignError, Status, StatusKind
+from inerter.methods.method import Method, Sees
 from inerter.networks.elements import Element, Free, Tied
 from inerter.vehicle.changed import changed, labelled, masses, opened, quantities, with_elements
 from inerter.vehicle.vehicle import Vehicle
@@ -114,6 +115,25 @@ def _number(name: str, value: float | Free) -> float:
     if isinstance(value, Free):
         raise DesignError(f"{name!r} is free by the name of {value.name!r}; name that.")
     return value
+
+
+def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> Status:
+    """Whether a method sees all that scatters: what linear analysis leaves out would seem not to matter.
+
+    `idle` names values that turned out to have no effect: with friction left out, what carries no force then has none.
+    """
+    if method.sees is not Sees.NEITHER:
+        return OK
+    elements = [element for strut in vehicle.mechanism().struts for element in strut.network.elements()]
+    switching = {element.label for element in elements if element.acts}
+    unseen = [name for name in scatter.names if name in switching or (switching and name in idle)]
+    if not unseen:
+        return OK
+    return Status(
+        StatusKind.INACCURATE,
+        "linear analysis leaves friction out and closes gaps, and so does not see the scatter of "
+        f"{' and '.join(unseen)}, which seems not to matter; take a method that simulates",
+    )
 
 
 def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:

@@ -14,12 +14,12 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.checks import is_number
-from inerter.errors import DesignError, Status, StatusKind
+from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.asking import Asked, estimate_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
-from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_of
+from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_left_out, scatter_of
 from inerter.vehicle.changed import changed
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on
@@ -168,6 +168,9 @@ def _found(
         lost = int(np.sum(~np.isfinite(values)))
         status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value that is sure")
     names = scatter.names
+    same = np.all(mixed_values == both[:samples], axis=1)
+    idle = [name for name, is_same in zip(names, same.tolist(), strict=True) if is_same]
+    status = worst_of((status, scatter_left_out(design, method, scatter, idle)))
     main, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
     top = int(np.argmax(extreme)) if known else 0
     own = nominal(design, scatter)

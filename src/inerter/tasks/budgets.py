@@ -16,7 +16,7 @@ from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import brief_words_of, deciding, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import Budget, budget
@@ -31,7 +31,7 @@ _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many time
 
 
 @dataclass(frozen=True)
-class BudgetPart(Part["BudgetAnswer"]):
+class BudgetPart(TaskPart["BudgetAnswer"]):
     """For which values of an element is a layout better than the baseline, each with its best design for the index?"""
 
     layout: str

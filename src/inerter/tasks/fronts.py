@@ -23,7 +23,7 @@ from inerter.figures.labels import (
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
 from inerter.methods.registry import deciding
 from inerter.report.question import spoken
@@ -41,7 +41,7 @@ _SAME = 1e-9  # relative; a point that is as good as another in all indices does
 
 
 @dataclass(frozen=True)
-class FrontPart(Part["FrontAnswer"]):
+class FrontPart(TaskPart["FrontAnswer"]):
     """What is the trade-off of a layout?"""
 
     layout: str

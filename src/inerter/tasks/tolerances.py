@@ -14,7 +14,7 @@ from inerter.figures.labels import index_title, printed, with_unit
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import deciding
 from inerter.scatter.tolerance import tolerance
 from inerter.table import Cell, Row, Table, Writer
@@ -29,7 +29,7 @@ _HEADER = ("Mean", "Standard deviation", f"{100 * SHARE:g} % of cases below", "W
 
 
 @dataclass(frozen=True)
-class TolerancePart(Part["ToleranceAnswer"]):
+class TolerancePart(TaskPart["ToleranceAnswer"]):
     """What becomes of the index of the design that is best for it?"""
 
     layout: str

@@ -131,7 +131,7 @@ def _toml(value: object) -> str:
     match value:
         case dict():
             return "{ " + ", ".join(as_line(key, item) for key, item in value.items()) + " }"
-        case list():
+        case list() | tuple():
             return "[" + ", ".join(_toml(item) for item in value) + "]"
         case bool():
             return str(value).lower()

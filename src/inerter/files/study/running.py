@@ -28,7 +28,7 @@ from inerter.files.study.task_rows import TASKS
 from inerter.files.study.tasks import (
     Answer,
     Designs,
-    Part,
+    TaskPart,
     answer_part,
     by_task,
     journal_entry,
@@ -46,7 +46,7 @@ from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 _Known = Mapping[str, Sequence[Row]]  # searches of cases that have not ended, by the names of those
-_AnyPart = Part[Any]
+_AnyPart = TaskPart[Any]
 _Done = dict[_AnyPart, Answer]
 Progress = Callable[[int, int, Outcome | Answer | None, int], None]
 

@@ -253,10 +253,15 @@ def _settings(**values: Any) -> dict[str, Any]:
 
 
 def _settings_in(study: Any) -> dict[str, Any]:
-    """The section [study] of a study, by attributes; what has no effect is left out."""
+    """The section [study] of a study, by attributes; what has no effect, or is not said of a task, is left out."""
     silent = {"over": not study.conditions, "points": not study.trade_off}
     own = {one.attribute: getattr(study, one.attribute) for one in keys_in(Settings)}
-    tasks = {name: value for asked in study.tasks.values() for name, value in vars(asked).items()}
+    tasks = {
+        one.attribute: value
+        for asked in study.tasks.values()
+        for one in keys_in(asked)
+        if (value := getattr(asked, one.attribute)) != one.default
+    }
     return {**{name: value for name, value in own.items() if not silent.get(name)}, **study.settings, **tasks}
 
 

@@ -43,7 +43,7 @@ class Answer(ABC):
 
     @property
     @abstractmethod
-    def part(self) -> Part[Any]:
+    def part(self) -> TaskPart[Any]:
         """What it answers."""
 
     @property
@@ -70,7 +70,7 @@ class Answer(ABC):
 AnswerT = TypeVar("AnswerT", bound=Answer)
 
 
-class Part(ABC, Generic[AnswerT]):
+class TaskPart(ABC, Generic[AnswerT]):
     """A part of a task: a frozen dataclass of its labels, which survives JSON."""
 
     layout: str
@@ -97,7 +97,7 @@ class Task(ABC, Generic[AnswerT]):
     answer: type[AnswerT]
 
     @abstractmethod
-    def parts(self, study: Study) -> Sequence[Part[AnswerT]]:
+    def parts(self, study: Study) -> Sequence[TaskPart[AnswerT]]:
         """Its parts in the order of the results; none if it is not asked for."""
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
@@ -154,12 +154,12 @@ def _task(home: str) -> Task[Any]:
     return made
 
 
-def parts_of(study: Study) -> list[Part[Any]]:
+def parts_of(study: Study) -> list[TaskPart[Any]]:
     """All parts of all tasks of a study."""
     return [part for task in tasks() for part in task.parts(study)]
 
 
-def answer_part(study: Study, designs: Designs, part: Part[AnswerT], threads: int = 1) -> AnswerT:
+def answer_part(study: Study, designs: Designs, part: TaskPart[AnswerT], threads: int = 1) -> AnswerT:
     """The answer to a part. A failure is an answer with a status and a sentence."""
     try:
         with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -168,7 +168,7 @@ def answer_part(study: Study, designs: Designs, part: Part[AnswerT], threads: in
         return part.failed(study, str(error))
 
 
-def lost_part(study: Study, part: Part[AnswerT]) -> AnswerT:
+def lost_part(study: Study, part: TaskPart[AnswerT]) -> AnswerT:
     """What is known of a part whose processes have ended, each time that it was tried."""
     return part.failed(study, ENDED)
 

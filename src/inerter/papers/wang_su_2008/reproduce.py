@@ -50,7 +50,7 @@ Progress = Callable[[str, int, int], None]
 
 
 @dataclass(frozen=True)
-class Task:
+class PaperItem:
     """One small piece of work: a row of a table, a point of a curve, a crossing, an optimum, a budget."""
 
     part: str
@@ -63,7 +63,7 @@ class Task:
         return self.part, self.name
 
 
-def work(task: Task) -> tuple[tuple[str, str], Numbers]:
+def work(task: PaperItem) -> tuple[tuple[str, str], Numbers]:
     """The numbers of one task, and how many `seconds` they took."""
     begin = time.perf_counter()
     with one_blas_thread():
@@ -71,7 +71,7 @@ def work(task: Task) -> tuple[tuple[str, str], Numbers]:
     return task.key, {**numbers, "seconds": round(time.perf_counter() - begin, 3)}
 
 
-def _numbers(task: Task) -> Numbers:
+def _numbers(task: PaperItem) -> Numbers:
     match task.part:
         case "table1" | "table2" | "table3":
             return rows.compute(int(task.part[-1]), task.name)
@@ -144,12 +144,14 @@ def reproduce(
             for name in needed
         }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
-        tasks = [Task("rig", rig.NAME)] if "rig" in wanted else []
-        tasks += [Task(part, name) for part, names in listed.items() if part in wanted for name in names()]
-        tasks += [Task(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)]
+        tasks = [PaperItem("rig", rig.NAME)] if "rig" in wanted else []
+        tasks += [PaperItem(part, name) for part, names in listed.items() if part in wanted for name in names()]
+        tasks += [
+            PaperItem(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)
+        ]
         figure11 = _figure11(studies)
         if figure11 is not None and "linear" in wanted:
-            tasks += [Task("between", name) for name in between.names(figure11)]
+            tasks += [PaperItem("between", name) for name in between.names(figure11)]
         tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
         found = _put_together(
             tuple(part for part in PARTS if part in wanted), studies, _run(tasks, results, pool, progress)
@@ -168,7 +170,7 @@ def _warm_up() -> None:
     """Go through some quick tasks, which compile what simulations need, while others compile what the studies do."""
     prepare(KERNELS)  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
-        work(Task(part, name))
+        work(PaperItem(part, name))
 
 
 def _put_together(
@@ -218,15 +220,15 @@ def _rows(part: str) -> list[str]:
     return rows.names(int(part[-1]))
 
 
-def _curve(name: str, studies: dict[str, StudyResult]) -> Task:
+def _curve(name: str, studies: dict[str, StudyResult]) -> PaperItem:
     """A point of Figure 13 or 14 with the parameters of its linear optimum, which Figure 11 has found."""
     layout, index, point = name.split()
     best = studies["figure11"].data.sel({"layout": curves.linear_twin(layout), "index": index}).isel(k=int(point))
     values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
-    return Task("curves", name, tuple((p, value) for p, value in values if value == value))
+    return PaperItem("curves", name, tuple((p, value) for p, value in values if value == value))
 
 
-def _run(tasks: list[Task], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:
+def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:
     """The numbers of all tasks; each is in the journal as soon as it is there."""
     journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
     before = journal.read() if results.resume else ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import inerter as it
 from inerter.figures.labels import with_unit
@@ -12,7 +12,7 @@ from inerter.files.common.entries import SWEEP_LIST, TEXT
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case, run_case
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.tasks import Answer, Designs, Part, Task, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.table import Cell, Row, Table, Writer
 from inerter.units import parse_quantity
 
@@ -31,7 +31,7 @@ it.TASKS.add(it.TaskRow("catalogues", "inerter_extending.catalogue:Catalogues", 
 
 
 @dataclass(frozen=True)
-class CataloguePart(Part["CatalogueAnswer"]):
+class CataloguePart(TaskPart["CatalogueAnswer"]):
     """Which value of the catalogue is best for an index of a layout?"""
 
     layout: str
@@ -48,8 +48,7 @@ class CataloguePart(Part["CatalogueAnswer"]):
         element = study.elements[keys.catalogue_of]
         found = {}
         for text in keys.catalogue:
-            bought = type(element)(parse_quantity(text, element.unit), keys.catalogue_of)
-            fixed = replace(study, elements={**study.elements, keys.catalogue_of: bought})
+            fixed = study.with_values({keys.catalogue_of: parse_quantity(text, element.unit)})
             outcome = run_case(fixed, Case(self.layout, self.index), threads)
             found[text] = outcome.values.get(study.evaluate[0], {}).get(self.index, float("inf")), outcome
         best = min(found, key=lambda text: found[text][0])
@@ -67,8 +66,16 @@ class CataloguePart(Part["CatalogueAnswer"]):
 
     def failed(self, study: Study, message: str) -> CatalogueAnswer:
         """The answer without numbers."""
-        nothing = {"element": "", "best": "", "value": float("nan"), "unit": ""}
-        return CatalogueAnswer(layout=self.layout, index=self.index, **nothing, status="failed", message=message)
+        return CatalogueAnswer(
+            layout=self.layout,
+            index=self.index,
+            element=study.tasks["catalogues"].catalogue_of,
+            best="",
+            value=float("nan"),
+            unit=study.unit(self.index),
+            status="failed",
+            message=message,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -375,7 +375,7 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     table = client.post("/api/export/csv", json={"panel": "tolerance", "request": body}).text
     rows = dict(list(csv.reader(io.StringIO(table)))[1:])
     assert (float(rows["mean"]), float(rows["quantile 0.95"])) == (found.mean, found.quantile(0.95))
-    assert float(rows["variance from c, in all"]) == found.total["c"]
+    assert float(rows["variance from c, total effect"]) == found.total["c"]
 
 
 def test_tables_read_back_as_the_same(client: TestClient) -> None:

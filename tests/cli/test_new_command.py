@@ -67,7 +67,7 @@ def test_it_can_be_printed(tmp_path, monkeypatch, capsys):
     [
         (["rig"], "inerter simulate"),
         (["half_car"], 'Did you mean "half-car"?'),
-        (["half-car", "-o", "none/car.toml"], "no such folder"),
+        (["half-car", "-o", "none/car.toml"], "folder not found"),
         (["half-car", "-o", "."], "."),
     ],
 )

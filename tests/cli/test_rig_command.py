@@ -107,7 +107,7 @@ def test_only_a_record_of_its_own_is_replaced(config: Path, tmp_path: Path, caps
     for options in ([], ["--force"]):
         assert call(["rig", str(config), "-o", str(file), *options]) == 2
         message = capsys.readouterr().err
-        assert "so it stays" in message
+        assert "was not replaced" in message
         assert "--force" not in message
     assert file.read_text() == "measured"
 
@@ -118,7 +118,7 @@ def test_a_record_never_replaces_what_it_is_made_from(
     other = tmp_path / "config.txt"
     other.hardlink_to(config)
     assert call(["rig", str(config), "-o", str(other), "--force"]) == 2
-    assert "so it stays" in capsys.readouterr().err
+    assert "was not replaced" in capsys.readouterr().err
     assert config.read_text(encoding="utf-8") == other.read_text(encoding="utf-8") == SHORT
 
 
@@ -126,7 +126,7 @@ def test_a_suffix_and_a_folder_are_needed(config: Path, tmp_path: Path, capsys: 
     before = sorted(tmp_path.rglob("*"))
     for name, words in (
         ("bench.xlsx", ".tdms"),
-        ("no/bench.csv", "no such folder"),
+        ("no/bench.csv", "folder not found"),
         ("", "is a folder"),
     ):
         assert call(["rig", str(config), "-o", str(tmp_path / name)]) == 2

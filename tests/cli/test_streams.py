@@ -72,7 +72,7 @@ POOR = {
 }
 SAID = {  # the exit code, and what is in the text
     "inerter run study.toml -j 1 -o out": (0, "Gr\\xf6\\xdfe"),
-    "inerter check 'ü.toml'": (2, "no such file"),
+    "inerter check 'ü.toml'": (2, "file not found"),
     "inerter run --help": (0, "Usage"),
 }
 

@@ -41,7 +41,7 @@ class Bush:
 class Mounting:
     """A made-up file with an entry of every sort."""
 
-    name: str = key(TEXT, "What it is called.", 'name = "engine"')
+    name: str = key(TEXT, "Name.", 'name = "engine"')
     mass: float = key(positive("kg"), "Of the engine.", 'mass = "200 kg"')
     side: str = key(word("a side", ("left", "right")), "Where it is.", 'side = "left"', default="left")
     orders: tuple[str, ...] = key(some_of("an order", ("2", "4")), "Orders.", 'orders = ["2"]', default=("2",))

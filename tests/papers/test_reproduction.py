@@ -301,7 +301,7 @@ def test_what_rests_on_a_doubtful_estimate_is_undetermined() -> None:
     status.loc[{"layout": "S2-10N", "index": "J1", "k": K[3]}] = "inaccurate: the motion does not repeat"
     claim = claim_of(8, judge(Evidence(curves=data.assign(status=status))))
     assert claim.verdict is UNDETERMINED
-    assert "not to be relied on (inaccurate: the motion does not repeat" in claim.evidence
+    assert "unreliable (inaccurate: the motion does not repeat" in claim.evidence
 
 
 def made_row(table: int, name: str, paper2008: float, exact: float) -> SimulatedRow:

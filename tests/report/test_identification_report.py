@@ -165,8 +165,8 @@ def test_a_warned_fit_shows_no_value_as_a_result(found: Identified, verdict: Ver
     for said in (text, page, elements_block(warned)):
         assert not any(part in said for value in shown for part in value), said
         assert "confidence" not in said
-    assert "interval of 95 %" not in text
-    assert "interval of 95 %" not in page
+    assert "95 % interval" not in text
+    assert "95 % interval" not in page
     assert "withheld" in text
     assert "withheld" in page
     assert ("131.5 kg if explained so" in text.replace("132", "131.5")) == (verdict is Verdict.CONDITIONAL)

@@ -190,4 +190,4 @@ def test_a_claim_that_rests_on_a_doubtful_estimate_is_undetermined_and_says_why_
         for one in (measured, measured.minus(Measured(0.5)), Measured(9.0).minus(measured), measured.times(1.0)):
             assert within(one, 1.0, 9.0) is verdict
     said = statement("5 %", within(doubtful, 1.0, 9.0), by=[doubtful])
-    assert said.found == "not to be relied on (inaccurate: it is so so): 5 %"
+    assert said.found == "unreliable (inaccurate: it is so so): 5 %"

@@ -55,7 +55,7 @@ def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
     with open(tmp_path / "out" / "tolerances.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     best = min(rows, key=lambda row: float(row["quantile_0.95"]))
-    said = f"Best ride comfort when values scatter, by what 95 % of cases stay below: {best['layout']}, "
+    said = f"Best ride comfort when values scatter, by what 95 % of cases are below: {best['layout']}, "
     assert said in text
     told = float(text.partition(said)[2].split(" m/s^2")[0])
     assert told == pytest.approx(float(best["quantile_0.95"]), rel=5e-4)

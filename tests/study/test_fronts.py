@@ -142,7 +142,7 @@ BAD: dict[str, tuple[str, str, list[str]]] = {
         ["at least 6"],
     ),
     "points of nothing": ('indices = ["J1"]\noptimise = "norm"\npoints = 7', "study.points", ["no front"]),
-    "over a sweep": (ASK + 'sweep = { k = ["1 N/m", "2 N/m"] }', "study.trade_off", ["beside a sweep"]),
+    "over a sweep": (ASK + 'sweep = { k = ["1 N/m", "2 N/m"] }', "study.trade_off", ["together with a sweep"]),
 }
 
 

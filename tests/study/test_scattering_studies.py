@@ -65,7 +65,7 @@ def test_a_tolerance_is_told(found: StudyResult, tmp_path: Path) -> None:
     assert max(map(len, lines)) <= 80
     assert "due to c" in " ".join(" ".join(lines).split())
     page = report(found.data, found.study, tmp_path, found.answers)
-    assert ">When values scatter</h2>" in page
+    assert ">Tolerances</h2>" in page
 
 
 def test_a_tolerance_survives_being_written_and_resumed(found: StudyResult, tmp_path: Path) -> None:
@@ -140,7 +140,7 @@ BAD: dict[str, tuple[str, str, list[str]]] = {
     "beside a sweep": (
         ASK + 'tolerance = { c = 0.1 }\nsweep = { k = ["1 N/m", "2 N/m"] }',
         "study.tolerance",
-        ["beside a sweep"],
+        ["together with a sweep"],
     ),
     "quantile alone": (ASK + "quantile = 0.9", "study.quantile", ["nothing scatters"]),
     "quantile of all": (ASK + "tolerance = { c = 0.1 }\nquantile = 1.5", "study.quantile", ["got 1.5"]),

@@ -521,11 +521,11 @@ BAD = {
         "study.budgets",
         ["no layout but the baseline has b"],
     ),
-    "budget alone": ([('S1 = "k | c"', ""), asked('budgets = ["b"]')], "study.budgets", ["but one layout"]),
+    "budget alone": ([('S1 = "k | c"', ""), asked('budgets = ["b"]')], "study.budgets", ["only one layout"]),
     "budget and sweep": (
         [asked('budgets = ["b"]\nbaseline = "S1"\nsweep = { k = ["1 N/m", "2 N/m"] }')],
         "study.budgets",
-        ["beside a sweep"],
+        ["together with a sweep"],
     ),
     "budget that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbudgets = ["f"]')],
@@ -797,7 +797,7 @@ def test_text_that_is_no_study_is_refused(load, text, words):
 
 
 def test_a_missing_file_and_a_folder_are_refused_by_path(tmp_path):
-    with pytest.raises(StudyError, match=r"absent\.toml: there is no such file"):
+    with pytest.raises(StudyError, match=r"absent\.toml: file not found"):
         load_study(tmp_path / "absent.toml")
     with pytest.raises(StudyError, match="this is a folder"):
         load_study(str(tmp_path))

@@ -88,7 +88,7 @@ def test_a_tie_follows_a_condition(tmp_path: Path, tie: str, layouts: str) -> No
 
 def test_a_condition_of_what_a_free_value_follows_from_too_is_refused(tmp_path: Path) -> None:
     condition = ASK + '\n[[conditions]]\nk = "50 kN/m"'
-    with pytest.raises(StudyError, match="k2 follows from it and from what is free"):
+    with pytest.raises(StudyError, match="k2 depends on it and on a design variable"):
         study_of(tmp_path, MADE_UP, 'S1 = "k | c"\nS2 = "k1 - k2 | c"', condition)
 
 

@@ -104,7 +104,7 @@ class PanelRequest(OfDesigns):
     duration: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
     step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
-    spread: Annotated[dict[Name, Number], Field(description="By what part of themselves values scatter.")] = {}
+    spread: Annotated[dict[Name, Number], Field(description="Relative tolerances of the values.")] = {}
     samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
 

@@ -33,7 +33,7 @@ _REFUSALS = {
     "400": "The request is wrong",
     "401": "The token is missing or wrong",
     "403": "Another host or origin",
-    "404": "There is no such thing",
+    "404": "Not found",
     "409": "A newer request has come",
     "413": "The body is too large",
     "500": "The work failed",

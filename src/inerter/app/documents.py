@@ -68,7 +68,7 @@ def _stamp(document: Document) -> _Stamp:
         return None
     if Path(name).name != name or not Path(name).is_file():
         fault = "the page reads only profiles that lie in the folder in which inerter serve was started"
-        hint = "Start it there, or write the roughness that inerter check tells in the place of the profile."
+        hint = "Start it there, or replace the profile by the roughness that inerter check reports."
         raise refusal(PATH, [at(("road", "profile"), got=shown(name), fault=fault, expected="one of them", hint=hint)])
     there = Path(name).stat()
     return there.st_mtime_ns, there.st_size

@@ -94,7 +94,7 @@ class Jobs:
     def get(self, name: str) -> Job:
         """The work of that id; raises `Refused` if there is none."""
         if name not in self.known:
-            raise Refused(404, "There is no such work; perhaps it was forgotten, or the server has begun afresh.")
+            raise Refused(404, "Unknown work: it was removed, or the server was restarted.")
         return self.known[name]
 
     def stop(self, job: Job) -> None:
@@ -145,7 +145,7 @@ class Jobs:
                     return
             self._end(job, future.result())
         except BrokenExecutor:
-            sentence = "The process that did this work has ended, perhaps for want of memory."
+            sentence = "The process of this work ended unexpectedly; memory may have run out."
             self._end(job, {"event": "failed", "sentence": sentence})
         except Exception as error:  # whatever it is, the queue goes on
             self._end(job, {"event": "failed", "sentence": str(error)})

@@ -67,7 +67,7 @@ class Lane:
         try:
             status, body = await self._called(mine)
         except BrokenExecutor:
-            mine.refuse(Refused(500, "The process that worked on this has ended, perhaps for want of memory."))
+            mine.refuse(Refused(500, "The process of this answer ended unexpectedly; memory may have run out."))
         except TimeoutError:  # nobody waits for it
             await asyncio.to_thread(
                 self.worker.shutdown, wait=False, cancel_futures=True

@@ -42,7 +42,7 @@ class Records:
     def get(self, number: str) -> Path:
         """The file of a record; raises `Refused` if there is none of that id."""
         if number not in self.known:
-            raise Refused(404, "There is no such record; perhaps it was deleted, or the server has begun afresh.")
+            raise Refused(404, "Unknown record: it was deleted, or the server was restarted.")
         return self.known[number]
 
     def forget(self, number: str) -> None:

@@ -45,7 +45,7 @@ async def _example(server: Server, request: Request) -> dict[str, Any]:
     found = await asyncio.to_thread(about.examples)
     name = request.path_params["name"]
     if name not in found:
-        raise Refused(404, f"There is no such example; there are {', '.join(found)}.")
+        raise Refused(404, f"Unknown example; available: {', '.join(found)}.")
     return opened(f"{name}.toml", found[name].read_text(encoding="utf-8"))
 
 
@@ -153,7 +153,7 @@ async def _work_files(server: Server, request: Request) -> dict[str, Any]:
 async def _work_file(server: Server, request: Request) -> Response:
     files, name = _job(server, request).files(), request.path_params["name"]
     if name not in files:
-        raise Refused(404, "This work has no such file.")
+        raise Refused(404, "Unknown file of this work.")
     return FileResponse(files[name], media_type=media_type(name), filename=files[name].name)
 
 

@@ -74,7 +74,7 @@ async def _page(request: Request) -> Response:
     """A file of the page, which holds nothing that is not in the package."""
     path = request.path_params["path"] or "index.html"
     if path.startswith("api/") or path == "api" or path not in _files():
-        raise Refused(404, "There is no such page.")
+        raise Refused(404, "Page not found.")
     return FileResponse(_files()[path], media_type=media_type(path))
 
 
@@ -88,7 +88,7 @@ async def _refused(request: Request, refused: Refused) -> Response:
 
 async def _unknown(request: Request, error: Any) -> Response:
     return as_json(
-        encoded({"sentence": "There is no such request; /api/openapi.json describes those that there are."}),
+        encoded({"sentence": "Unknown request; /api/openapi.json describes all requests."}),
         error.status_code,
     )
 

@@ -39,7 +39,7 @@ def run(
 ) -> None:
     """Serve until an interrupt: see `serve`."""
     if min(limits) < 1:
-        raise StudyError(f"A limit is a number of bytes from 1 on, got {min(limits)}.")
+        raise StudyError(f"A limit must be a positive number of bytes, got {min(limits)}.")
     file, token = _text_of(study), _token()
     with _listening(port) as listening, _folder(folder) as root, _ended_gently():
         _many_connections()

@@ -81,8 +81,8 @@ def _tolerance(answer: Mapping[str, Any]) -> Rows:
         yield [name, answer[name]]
     yield from ([f"quantile {share}", value] for share, value in answer["quantiles"].items())
     yield ["worst", answer["worst"]]
-    yield from ([f"variance from {name}, by itself", share] for name, share in answer["main"].items())
-    yield from ([f"variance from {name}, in all", share] for name, share in answer["total"].items())
+    yield from ([f"variance from {name}, main effect", share] for name, share in answer["main"].items())
+    yield from ([f"variance from {name}, total effect", share] for name, share in answer["total"].items())
 
 
 _TABLES: dict[str, Callable[[Mapping[str, Any]], Rows]] = {

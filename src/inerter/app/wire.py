@@ -44,7 +44,7 @@ def refusal_of(error: Exception) -> Refused:
 
 
 def _no_number(text: str) -> Any:
-    raise ValueError(f"{text} is no number of JSON")
+    raise ValueError(f"{text} is not a JSON number")
 
 
 def _shortly(error: Exception) -> str:

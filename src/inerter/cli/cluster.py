@@ -59,7 +59,7 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
     except ValueError as error:
         raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
     if file is not None and not file.is_file():
-        raise WorkError(f"{file}: there is no such file; a scheduler writes one with: dask scheduler --scheduler-file")
+        raise WorkError(f"{file}: file not found; a scheduler writes it with: dask scheduler --scheduler-file")
     security = distributed.Security(require_encryption=True, **tls) if tls else None
     where = {"address": address} if file is None else {"scheduler_file": str(file)}
     for name in tuple(logging.root.manager.loggerDict):

@@ -152,7 +152,7 @@ def _judge(result: StudyResult) -> int:
     for line in islice(result.failing(), _MOST):
         _say(line)
     if result.not_ok > _MOST:
-        _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} tells all")
+        _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} lists all")
     return int(result.failed)
 
 

@@ -64,7 +64,7 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     known = (
         [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
-    return f"There is no key {shown(wanted)} in study files.{nearest(wanted, known)} All keys: inerter explain"
+    return f"Unknown key {shown(wanted)} of study files.{nearest(wanted, known)} All keys: inerter explain"
 
 
 def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:

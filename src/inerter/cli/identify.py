@@ -72,9 +72,7 @@ def identify(
                 found = run_identification(readings, request, callback, executor)
             write_fit(found, results.draft)
             results.publish()
-            kept.append(
-                f"; {folder / FIT} is complete." if results.place == folder else f"; {folder} is as it was before."
-            )
+            kept.append(f"; {folder / FIT} is complete." if results.place == folder else f"; {folder} is unchanged.")
             print(json.dumps(identification_data(found), indent=2) if as_json else identification_text(found))
             sys.stdout.flush()
             with fraction("drawing") as callback:
@@ -107,7 +105,7 @@ def _request(
         if value is not None
     }
     if given.get("seed", 0) < 0:
-        raise StudyError(f"--seed must be a whole number from 0 on, got {given['seed']}.")
+        raise StudyError(f"--seed must be a non-negative integer, got {given['seed']}.")
     request = replace(
         request,
         name=model or request.name,

@@ -296,7 +296,7 @@ def serve(
 app.command(
     "inerter.cli.reproduce:app",
     name="reproduce",
-    help="Recompute the numbers, designs, figures and claims of a paper beside the printed ones.",
+    help="Recompute the numbers, designs, figures and claims of a paper, and compare them with the printed ones.",
 )
 
 

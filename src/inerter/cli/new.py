@@ -34,11 +34,11 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
                 stream.write(text)
     except FileExistsError:
         raise StudyError(
-            f"{path}: file exists and stays as it is. Give another by -o FILE, or replace one that inerter new wrote "
-            "by --force."
+            f"{path}: file exists and was not replaced. Choose another with -o FILE, or use --force for one that "
+            "inerter new wrote."
         ) from None
     except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
-        raise StudyError(f"{path}: there is no such folder to write a file into. Give another file by -o.") from None
+        raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
     print(f"inerter: wrote {path}; run it: inerter run {path}", file=sys.stderr)
     return 0
 
@@ -48,5 +48,6 @@ def _check_own(path: Path) -> None:
     present = path.read_bytes() if path.is_file() else b""
     if all(present != starting_text(model, path.name).encode("utf-8") for model in judged_models()):
         raise StudyError(
-            f"{path}: is not as inerter new wrote it, and stays as it is. Give another by -o FILE, or remove it first."
+            f"{path}: edited since inerter new wrote it, and not replaced. Choose another with -o FILE, or remove it "
+            "first."
         )

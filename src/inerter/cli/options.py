@@ -47,7 +47,7 @@ Force = Annotated[
         negative="",
         show_default=False,
         help="Replace the results in the folder when the new ones are whole. "
-        "What inerter did not write there, or somebody changed since, stays.",
+        "Files that inerter did not write, or that were edited since, are never replaced.",
     ),
 ]
 Json = Annotated[

@@ -33,15 +33,17 @@ class ReadingOptions:
     resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None
     period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None
     force_range: Annotated[str | None, Parameter(help='What the load cell can read: "981 N".')] = None
-    force_bandwidth: Annotated[str | None, Parameter(help='Of the load cell and its amplifier: "300 Hz".')] = None
+    force_bandwidth: Annotated[
+        str | None, Parameter(help='Bandwidth of the load cell and its amplifier: "300 Hz".')
+    ] = None
     force_noise: Annotated[
-        str | None, Parameter(help='Of the load cell, r.m.s.: "0.5 N"; else from the quietest half-octave.')
+        str | None, Parameter(help='Noise of the load cell, r.m.s.: "0.5 N"; estimated from the record if left out.')
     ] = None
     displacement_noise: Annotated[
-        str | None, Parameter(help='Of the displacement, r.m.s.: "1 um"; else as it stands out of its motion.')
+        str | None, Parameter(help='Noise of the displacement, r.m.s.: "1 um"; estimated from the record if left out.')
     ] = None
     fixture_mass: Annotated[
-        str | None, Parameter(help='What moves with the table between load cell and device: "2 kg +- 10 g".')
+        str | None, Parameter(help='Mass that moves with the table between load cell and device: "2 kg +- 10 g".')
     ] = None
 
 

@@ -44,7 +44,7 @@ def reproduce(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Recompute the numbers, designs, figures and claims of a paper beside the printed ones.
+    """Recompute the numbers, designs, figures and claims of a paper, and compare them with the printed ones.
 
     Parameters
     ----------

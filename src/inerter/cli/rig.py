@@ -37,4 +37,4 @@ def _check_output(output: Path) -> None:
     if output.suffix.lower() not in WRITERS:
         raise StudyError(f"{output}: records are written to {', '.join(WRITERS)}. Name a file with such a suffix.")
     if not output.parent.is_dir():
-        raise StudyError(f"{output.parent}: there is no such folder. Make it, or choose another with -o.")
+        raise StudyError(f"{output.parent}: folder not found. Create it, or choose another with -o.")

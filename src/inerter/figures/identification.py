@@ -47,7 +47,7 @@ class MotionCurve:
 
 @dataclass(frozen=True, eq=False)
 class ProfileCurve:
-    """How much worse the best fit gets when one parameter is held at a value, over what an interval of 95 % allows."""
+    """How much worse the best fit gets when one parameter is held at a value, over what an 95 % interval allows."""
 
     label: str
     values: Matrix  # increasing, in the unit
@@ -223,8 +223,8 @@ def profile_figure(curves: Sequence[ProfileCurve]) -> Figure:
 def draw_profile(ax: Axes, curve: ProfileCurve) -> Axes:
     """One profile; between points that were computed its root is taken as a straight line, as that of a parabola is."""
     at, rises = _between(curve)
-    ax.axvspan(*curve.interval, color="#DDE9F3", linewidth=0.0, zorder=0.5, label="interval of 95 %")
-    ax.axhline(1.0, color=colour(1), linewidth=0.9, linestyle="--", label="threshold of 95 %")
+    ax.axvspan(*curve.interval, color="#DDE9F3", linewidth=0.0, zorder=0.5, label="95 % interval")
+    ax.axhline(1.0, color=colour(1), linewidth=0.9, linestyle="--", label="95 % threshold")
     ax.plot(at, rises, **{**_MEASURED, "linewidth": 1.0})
     inside = curve.rises <= _HIGHEST_RISE
     ax.plot(curve.values[inside], curve.rises[inside], linestyle="", marker="o", markersize=2.5, color=colour(0))

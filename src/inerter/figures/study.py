@@ -86,7 +86,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             "front",
             f"{trade_off_title(every)}: no design of a layout is better in all of them. Large open markers: the knee, "
             f"beyond which {'either' if len(criteria(every)) == 2 else 'each'} is bought dearly."
-            + (" Gaps: there the front leaps to another kind of design." if bool(every["front_jump"].any()) else ""),
+            + (" Gaps: the front continues with another kind of design." if bool(every["front_jump"].any()) else ""),
             partial(_front, every),
         )
     linear = "Linear frequency response" if "realisations" in results else "Frequency response"

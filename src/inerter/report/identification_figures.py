@@ -162,18 +162,18 @@ def _response_caption(answered: Responses) -> str:
     assert answered.measured is not None
     size = f"{1e3 * answered.measured.amplitude:.3g} mm"
     model = "" if answered.model is None else f", the model's at the same amplitude ({size} r.m.s.)"
-    return f"Force over displacement: as measured, with the sensors put right as the fit found them{model}, and linear."
+    return f"Force over displacement: measured, corrected for the fitted sensor errors{model}, and linear."
 
 
 _PROFILES = (
-    "Profile likelihoods: how much worse the best fit gets when one parameter is held at a value and all others follow,"
-    " over what an interval of 95 % allows. Dots were computed. A curve that stays below the line on one side has no "
-    "end there."
+    "Profile likelihoods: increase of the cost of the best fit with one parameter fixed and all others fitted, over "
+    "the threshold of a 95 % confidence interval. Dots were computed. A curve that remains below the line on one side "
+    "has no bound there."
 )
 _SCALED = " Intervals are wider than the curves by the uncertainty of the scales, which no record shows."
 _MISFIT = (
     "The residual is the measured force less that of the model. (a) over time, with the times at which it changes, or "
-    "the largest of single samples in a window; (b) amplitude spectrum, with the lines that stand out of it; (c) to "
+    "the largest of single samples in a window; (b) amplitude spectrum, with its isolated lines; (c) to "
     "(e) over displacement, velocity and model force, with means of bins (their axes leave out the most extreme 0.6 % "
     "of the samples, which (a) shows); (f) mean over displacement and velocity (restoring-force surface)."
 )

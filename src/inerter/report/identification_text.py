@@ -91,7 +91,7 @@ def misfit(found: Identified) -> str:
     """What a fit leaves by the measure of the sensors' errors."""
     m = found.fit.misfit
     parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
-    return f"What is left is {' and '.join(parts)} times what the errors of the sensors leave (r.m.s., whitened)."
+    return f"Residual over the expected sensor noise: {' and '.join(parts)} (r.m.s., whitened)."
 
 
 def about(reading: Reading) -> str:
@@ -151,7 +151,7 @@ def behind(candidate: Candidate) -> str:
 def _estimates(found: Identified) -> Iterator[str]:
     rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
     names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
-    yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'interval of 95 %' if found.explains else ''}".rstrip()
+    yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'95 % interval' if found.explains else ''}".rstrip()
     for name, value, interval in rows:
         yield f"  {name:<{names}}  {value:<{values}}  {interval}".rstrip()
     for c in found.fit.comparisons:
@@ -203,9 +203,9 @@ def whiteness(comparison: RecordFit) -> str:
     p = comparison.whiteness
     size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"
     if p >= INDEPENDENT:
-        return f"What is left has no pattern in time that the sensors would not leave (p = {p:.2g})."
+        return f"The residual is no more autocorrelated than sensor noise (p = {p:.2g})."
     return (
-        f"What is left is more autocorrelated than what the sensors leave ({size}): a part of it is no noise. "
+        f"The residual is more autocorrelated than sensor noise ({size}): part of it is not noise. "
         f"Intervals are widened for it."
     )
 

@@ -33,7 +33,7 @@ def known(found: Identified, name: str) -> Known:
 
 
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
-    """The value of a parameter, or that it is not identifiable, and its interval of 95 %, empty if there is none."""
+    """The value of a parameter, or that it is not identifiable, and its 95 % interval, empty if there is none."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
     what = known(found, name)

@@ -167,7 +167,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         yield f"Values{f' {told[name]} (in files: {name})' if told else ''} are {words_of(name)}."
     yield from _of_roads(study, results)
     if study.optimise is None:
-        yield "Every layout was evaluated as it is given; nothing was optimised."
+        yield "Every layout was evaluated with its given values; nothing was optimised."
     else:
         swept = " and of ".join(sweep.words for sweep in study.sweeps)
         again = f", and again for each value of {swept}" if swept else ""
@@ -186,7 +186,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
-        yield f"An index is its {how}; limits hold in each. Frequency responses are those of the vehicle as it stands."
+        yield f"An index is its {how}; limits hold in each. Frequency responses are those outside the conditions."
     if study.road is not None:
         yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."

@@ -129,9 +129,9 @@ class Budgets(Task[BudgetAnswer]):
         """A sweep beside it, no baseline, elements that cannot have one."""
         place = ("study", "budgets")
         if study.budgets and study.sweeps:
-            yield at(place, fault="given beside a sweep", expected="one of the two")
+            yield at(place, fault="given together with a sweep", expected="one of the two")
         if study.budgets and study.baseline is None:
-            yield at(place, fault="there is but one layout", expected="another to compare it with, or no budgets")
+            yield at(place, fault="only one layout is given", expected="another to compare it with, or no budgets")
             return
         used = elements_used(study)
         for name in study.budgets:
@@ -139,7 +139,7 @@ class Budgets(Task[BudgetAnswer]):
                 missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
                 yield at(place, fault=missing, hint=nearest(name, study.elements))
             elif isinstance(study.elements[name].value, Tied):
-                yield at(place, fault=f"{name} is tied to others", expected="an element with a value of its own")
+                yield at(place, fault=f"{name} is tied to others", expected="an element that is not tied")
             elif not set(used.get(name, ())) - {study.baseline}:
                 only = f"no layout but the baseline has {name}"
                 yield at(place, fault=only, expected="an element of a layout that is compared")
@@ -237,7 +237,7 @@ def _caption(name: str, found: BudgetAnswer, study: Study) -> str:
 def _sentence(found: BudgetAnswer, write: Writer) -> str:
     end, remark = _end_of_range(found, write), _remark(found, write)
     if found.doubt:
-        return f"not certain ({remark})" + (f"; taken as it is, {end}" if end else "")
+        return f"not certain ({remark})" + (f"; if accepted, {end}" if end else "")
     return f"{end} ({remark})" if end and remark else end or remark
 
 

@@ -110,7 +110,7 @@ class Fronts(Task[FrontAnswer]):
             few = f"at least {_LEAST_OF_THREE} points for three indices"
             yield at(("study", "points"), got=str(study.points), expected=few)
         if study.sweeps:
-            yield at(place, fault="given beside a sweep", expected="one of the two")
+            yield at(place, fault="given together with a sweep", expected="one of the two")
         if study.optimise is None:
             yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
@@ -160,7 +160,7 @@ class Fronts(Task[FrontAnswer]):
             front_value=(("layout", "front_point", "criterion"), values, attributes),
             front_parameter=(("layout", "front_point", "parameter"), designs, {"long_name": "parameter at that point"}),
             front_knee=(("layout", "front_point"), knees, {"long_name": "whether it is the knee"}),
-            front_jump=(("layout", "front_point"), leaps, {"long_name": "whether the front leaps after it"}),
+            front_jump=(("layout", "front_point"), leaps, {"long_name": "whether the front is interrupted after it"}),
             front_status=("layout", status, {"long_name": "status of the front"}),
         )
 

@@ -96,7 +96,7 @@ class Tolerances(Task[ToleranceAnswer]):
     """How each index scatters at its best design."""
 
     key = "tolerances"
-    title = "When values scatter"
+    title = "Tolerances"
     answer = ToleranceAnswer
 
     def parts(self, study: Study) -> list[TolerancePart]:
@@ -109,7 +109,7 @@ class Tolerances(Task[ToleranceAnswer]):
         if study.quantile is not None and not study.tolerance:
             yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
         if study.tolerance and study.sweeps:
-            yield at(("study", "tolerance"), fault="given beside a sweep", expected="one of the two")
+            yield at(("study", "tolerance"), fault="given together with a sweep", expected="one of the two")
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """By what part each value scatters, and the quantile that is made best."""
@@ -130,7 +130,7 @@ class Tolerances(Task[ToleranceAnswer]):
 
     def lines(self, results: TaskResults[ToleranceAnswer], width: int) -> Iterator[str]:
         """A paragraph for each design."""
-        yield from ("", "when values scatter:")
+        yield from ("", "tolerances:")
         for one in results.answers:
             mean, deviation, quantile, worst = _texts(one, with_unit)
             sentence = (
@@ -147,13 +147,13 @@ class Tolerances(Task[ToleranceAnswer]):
         for one in results.answers:
             cells = [Cell(text) for text in _texts(one, printed)]
             rows.append(Row(f"{one.layout}, {one.index}", [*cells, Cell(_due(one), prose=True)], status=one.doubt))
-        return [Table("Best designs when values scatter", ["Design", *_HEADER], rows)]
+        return [Table("Best designs with tolerances", ["Design", *_HEADER], rows)]
 
     def introduction(self) -> str:
         """What scatters, and what the last column is."""
         return (
-            "What becomes of each best design when values lie anywhere within their tolerances, all equally likely. "
-            "The last column tells by how much the variance would be less if a value did not scatter."
+            "Each best design with values uniformly distributed within their tolerances. "
+            "Last column: share of the variance that would vanish if the value were exact (total effect)."
         )
 
     def sentences(self, results: TaskResults[ToleranceAnswer], write: Writer) -> Iterator[str]:
@@ -165,7 +165,7 @@ class Tolerances(Task[ToleranceAnswer]):
             known = [one for one in own if np.isfinite(one.numbers.get("quantile", np.nan))]
             told = [_best_sentence(title, known, data.attrs["baseline"], write)] if known else []
             told += [
-                f"No answer for {title} of {one.layout} when values scatter: {one.message.rstrip('.')}."
+                f"No answer for {title} of {one.layout} tolerances: {one.message.rstrip('.')}."
                 for one in own
                 if one not in known
             ]
@@ -189,7 +189,7 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
     return (
-        f"{certain}Best {title} when values scatter, by what {100 * SHARE:g} % of cases stay below: {best.layout}, "
+        f"{certain}Best {title} when values scatter, by what {100 * SHARE:g} % of cases are below: {best.layout}, "
         f"{quantile.strip()}{compared}; standard deviation {deviation.strip()}{due}, worst {worst.strip()}.{order}"
     )
 

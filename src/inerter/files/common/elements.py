@@ -190,7 +190,7 @@ def _schema_of(name: str, kind: type[Element]) -> dict[str, Any]:
         field.name: {**quantity_schema(field.unit, least="positive"), "description": field.sentence} for field in more
     }
     keys = {
-        KIND: {"const": name, "description": "What it is, where its unit does not tell."},
+        KIND: {"const": name, "description": "Kind of element, where the unit alone does not determine it."},
         value.name: {**or_range_schema(one), "description": value.sentence},
         **texts,
     }

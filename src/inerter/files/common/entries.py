@@ -193,7 +193,7 @@ AMOUNT = Scalar(
     amount,
     lambda: {
         **quantity_schema(*kinds_by_unit(), least="not negative"),
-        "description": "An element, which the unit tells, with its value; or a table with the ends of a free value.",
+        "description": "Value whose unit determines the element, or a table with the bounds of a design variable.",
         "examples": [kind.example for kind in kinds_by_unit().values()],
     },
 )

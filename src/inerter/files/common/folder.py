@@ -149,7 +149,7 @@ def check_single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) 
         return
     if not _may_replace(path.parent, path.name, listing(path.parent) or Listing(), by, inputs):
         raise StudyError(
-            f"{path}: exists, and is not a file that this command wrote and nobody changed, so it stays. "
+            f"{path}: exists and was not replaced: this command did not write it, or it was edited since. "
             "Choose another name with -o."
         )
     if not force:

@@ -17,8 +17,8 @@ MARK = ".inerter"  # the folder of the list, of the lock, and of what is under w
 _NAME = f"{MARK}/files.json"
 _WHAT = ("journal", "single")  # what a file may be beside one of several results
 _ABOUT = (
-    "What inerter wrote in this folder, with the SHA-256 of each file. --force replaces these files and no others, and "
-    "of these only such as nobody has changed since. The lines of a journal that grows tell whether it was changed."
+    "Files that inerter wrote in this folder, with the SHA-256 of each. --force replaces only these, and only if "
+    "they are unchanged. A journal grows: the number of its lines shows whether it was edited."
 )
 
 

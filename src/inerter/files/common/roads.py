@@ -168,13 +168,13 @@ def road_codec(*, rough: bool = True) -> TableCodec:
             section(
                 "coherence",
                 COHERENCE,
-                "How alike left and right track are, for vehicles on two tracks; the same road if left out.",
+                "Coherence between the left and right tracks of vehicles on two tracks; identical if left out.",
                 'coherence = { track = "1.5 m" }',
                 None,
             ),
         ),
         before=_rough_in_one_way,
-        about="What the vehicle drives on, and how fast.",
+        about="Road and speed.",
     )
 
 
@@ -239,7 +239,7 @@ class MeasuredLine:
         if self.bands < _FEWEST:
             yield (
                 f"Beware: the road stands on {self.bands} bands of {self.source} alone, from {self.lowest:.2g} to "
-                f"{self.highest:.2g} cycle/m; a longer profile, with points closer together, tells more."
+                f"{self.highest:.2g} cycle/m; measure a longer profile with closer points."
             )
 
     @property
@@ -259,8 +259,8 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
     path = (beside.parent / name).absolute()
     try:
         if not path.is_file():
-            place = "beside this file" if Path(name).name == name else "as seen from this file"
-            raise EntryError(got=shown(name), fault=f"there is no such file {place}", expected=_PROFILE)
+            place = "in the folder of this file" if Path(name).name == name else "as seen from this file"
+            raise EntryError(got=shown(name), fault=f"file not found {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, road["columns"], road["units"], road["interval"])
         spectrum = road_spectrum(measured, track=track, sampling=sampling)
@@ -341,8 +341,8 @@ def track_problems(place: tuple[str, ...], tracks: Mapping[str, str] | None) -> 
         return
     loose = [name for name, track in tracks.items() if not track]
     if len(loose) == len(tracks):
-        fault = "this vehicle does not meet the road on a left and a right track"
-        yield at(place, fault=fault, expected='one that does, such as model = "full-car", or none of it')
+        fault = "this vehicle has no left and right track"
+        yield at(place, fault=fault, expected='a vehicle with two tracks, such as model = "full-car", or no coherence')
     elif loose:
         fault = f"{some(loose)} is on neither track"
         yield at(place, fault=fault, expected='track = "left" or "right" for each road of the vehicle')

@@ -106,7 +106,7 @@ def _part(node: ast.expr, text: str, elements: Mapping[str, Element]) -> _Part:
         return _Part(float(node.value), PURE)
     if isinstance(node, ast.Name):
         if node.id not in elements:
-            missing = f"{shown(node.id)} is no element that has a value of its own (there are {some(elements)})"
+            missing = f"unknown element {shown(node.id)}; elements with a value: {some(elements)}"
             raise EntryError(got=shown(text), fault=missing, hint=nearest(node.id, elements))
         return _Part(tied(node.id), elements[node.id].unit)
     if not isinstance(node, ast.BinOp) or type(node.op) not in _SIGNS:

@@ -46,7 +46,7 @@ def read_tables(path: Path, what: str) -> dict[str, Any]:
         with path.open("rb") as stream:
             data = stream.read(_LARGEST + 1)
     except FileNotFoundError:
-        raise StudyError(f"{path}: there is no such file; expected {what}. Check the path.") from None
+        raise StudyError(f"{path}: file not found; expected {what}. Check the path.") from None
     except OSError as error:
         raise StudyError(f"{path}: cannot be read ({error.strerror}); expected {what}.") from None
     return tables_of(data, path, what)

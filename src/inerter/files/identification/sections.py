@@ -56,7 +56,7 @@ def channel_units(value: Any) -> dict[str, str]:
 
 
 def gap_treatment(value: Any) -> str | float:
-    """What is done where samples are missing."""
+    """Treatment of missing samples."""
     if isinstance(value, str) and value in GAPS:
         return value
     try:
@@ -70,12 +70,12 @@ def gap_treatment(value: Any) -> str | float:
 
 
 def longest_delay(value: Any) -> bool | float:
-    """Whether the force may be late, or by how much at most."""
+    """Whether a delay of the force is fitted, or its largest value."""
     return value if isinstance(value, bool) else parse_quantity(value, "s")
 
 
 def check_part(value: Any) -> float:
-    """The part of each record that is kept for the check."""
+    """Share of each record that is held out for validation."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 0.6:
         raise EntryError(got=shown(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
     return float(value)
@@ -96,20 +96,22 @@ class RecordRequest:
     """How files are read, in the words of `read_record`, and what is done to their records then."""
 
     channels: dict[str, str | int] = field(default_factory=dict)  # by role
-    units: dict[str, str] = key(_UNITS, "Of channels, by what they are.", 'units = { force = "kgf" }', default=NO_UNITS)
-    interval: float | None = key(positive("s"), "From sample to sample, where the file has no time.", default=None)
-    gaps: str | float = key(_GAPS, "What is done where samples are missing.", 'gaps = "fill"', default="refuse")
+    units: dict[str, str] = key(
+        _UNITS, "Units of the channels, by their quantity.", 'units = { force = "kgf" }', default=NO_UNITS
+    )
+    interval: float | None = key(positive("s"), "Sampling interval, where the file has no times.", default=None)
+    gaps: str | float = key(_GAPS, "Treatment of missing samples.", 'gaps = "fill"', default="refuse")
     force_range: float | None = key(positive("N"), "The largest force of the load cell.", default=None)
-    force_bandwidth: float | None = key(positive("Hz"), "Of the load cell.", default=None)
-    force_noise: float | None = key(positive("N"), "Of the load cell, r.m.s.", default=None)
-    displacement_noise: float | None = key(positive("m"), "Of the displacement, r.m.s.", default=None)
-    fixture_mass: Uncertain | None = key(_MASS, "Between load cell and device.", default=None)
-    period: float | None = key(positive("s"), "Of a motion that repeats.", default=None)
-    start: float | None = key(_ANY_TIME, "Where the records begin.", default=None)
-    stop: float | None = key(_ANY_TIME, "Where the records end.", default=None)
-    resample: float | None = key(positive("s"), "From sample to sample of a clock of its own.", default=None)
-    repair: bool = key(YES_OR_NO, "Whether faults of the recording are mended.", default=False)
-    detrend: bool = key(YES_OR_NO, "Whether a trend is taken out.", default=False)
+    force_bandwidth: float | None = key(positive("Hz"), "Bandwidth of the load cell.", default=None)
+    force_noise: float | None = key(positive("N"), "Noise of the load cell, r.m.s.", default=None)
+    displacement_noise: float | None = key(positive("m"), "Noise of the displacement, r.m.s.", default=None)
+    fixture_mass: Uncertain | None = key(_MASS, "Mass between load cell and device.", default=None)
+    period: float | None = key(positive("s"), "Period of a periodic motion.", default=None)
+    start: float | None = key(_ANY_TIME, "Start of the part that is used.", default=None)
+    stop: float | None = key(_ANY_TIME, "End of the part that is used.", default=None)
+    resample: float | None = key(positive("s"), "New sampling interval: the record is resampled.", default=None)
+    repair: bool = key(YES_OR_NO, "Whether spikes and held values are interpolated.", default=False)
+    detrend: bool = key(YES_OR_NO, "Whether a linear trend is removed.", default=False)
 
 
 AS_RECORDED = RecordRequest()
@@ -119,24 +121,26 @@ AS_RECORDED = RecordRequest()
 class ModelRequest:
     """The device: one of the catalogue, or a network of the section [elements]."""
 
-    name: str | None = key(word("a model", (*MODELS, CHOOSE)), "One of the catalogue.", default=None)
-    layout: str | None = key(EXPRESSION, "A network of the elements.", default=None)
+    name: str | None = key(word("a model", (*MODELS, CHOOSE)), "A model of the catalogue.", default=None)
+    layout: str | None = key(EXPRESSION, "Network of the elements.", default=None)
 
 
 @declared
 class FitSettings:
     """How it is fitted, as `identify` takes it."""
 
-    seed: int = key(whole(0, 2**63 - 1), "Of the starts.", "seed = 0", default=0)
-    starts: int | None = key(whole(8, _MOST_STARTS), "How many starts.", default=None)
+    seed: int = key(whole(0, 2**63 - 1), "Seed of the starting points.", "seed = 0", default=0)
+    starts: int | None = key(whole(8, _MOST_STARTS), "Number of starting points.", default=None)
     offset: bool = key(YES_OR_NO, "Whether the force may have an offset.", default=True)
     gain: bool = key(YES_OR_NO, "Whether the force may have a gain.", default=False)
-    delay: bool | float | None = key(_DELAY, "Whether the force may be late, or by how much at most.", default=None)
-    check: float = key(_CHECK, "The part of each record that is kept for the check.", default=0.2)
-    bandwidth: float | None = key(positive("Hz"), "Up to which frequency is fitted.", default=None)
-    lead: float | None = key(not_negative("s"), "How much of each record is left out at its beginning.", default=None)
-    force_scale: Uncertain | None = key(_SCALE, "What the force is to be multiplied by.", default=None)
-    displacement_scale: Uncertain | None = key(_SCALE, "What the displacement is to be multiplied by.", default=None)
+    delay: bool | float | None = key(
+        _DELAY, "Whether a delay of the force is fitted, or its largest value.", default=None
+    )
+    check: float = key(_CHECK, "Share of each record that is held out for validation.", default=0.2)
+    bandwidth: float | None = key(positive("Hz"), "Highest frequency that is fitted.", default=None)
+    lead: float | None = key(not_negative("s"), "Initial part of each record that is not fitted.", default=None)
+    force_scale: Uncertain | None = key(_SCALE, "Factor of the force readings.", default=None)
+    displacement_scale: Uncertain | None = key(_SCALE, "Factor of the displacement readings.", default=None)
 
 
 def _record(**values: Any) -> RecordRequest:

@@ -88,7 +88,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
     if signal.unit == "m" and request.speed is None and not kind.needs and _has_delays(request):
         yield at(
             ("road", "speed"),
-            fault="missing, but the rear wheel meets the road later than the front one",
+            fault="missing, but the rear axle needs it: the road arrives there with a delay",
             expected='speed = "25 m/s"',
         )
     yield from _of_tracks(request)

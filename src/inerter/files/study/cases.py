@@ -178,7 +178,7 @@ def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
     left_out = linear_graph(mechanism).notes if blind else ()
     notes = [f"{_prefix(study, method)}{note}" for method in blind for note in left_out]
     if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
-        notes.append("no spring carries the body, which would sink under its own weight")
+        notes.append("no static equilibrium: no spring supports the body")
     return notes
 
 

@@ -39,8 +39,8 @@ def _road_problems(study: Study) -> Iterator[Problem]:
     if len(given) == 2:
         yield at(
             ("study", "relative_error"),
-            got=f"{study.relative_error} beside realisations = {study.realisations}",
-            expected="one of the two: how many roads, or how small an error they must reach",
+            got=f"{study.relative_error} together with realisations = {study.realisations}",
+            expected="one of the two: the number of roads, or the standard error to be reached",
         )
     elif given and not any(map(averages, study.methods)):
         yield at(

@@ -107,9 +107,7 @@ def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex], limite
     """Indices that the file describes and makes no use of, and those that it asks for twice."""
     for name in own:
         if name not in asked and name not in limited:
-            yield at(
-                ("indices", name), fault="nothing asks for it", expected=f"{shown(name)} in indices, or no section"
-            )
+            yield at(("indices", name), fault="not used", expected=f"{shown(name)} in indices, or no section")
     names = [name for name in asked if name not in own]
     for name in names:
         first = next(other for other in names if index_names()[other] == index_names()[name])

@@ -12,5 +12,5 @@ from inerter.rows import made_of_rows
 @made_of_rows
 def study_schema() -> dict[str, Any]:
     """The schema, with what other distributions add."""
-    about = "Vehicle, road, elements, layouts and what is asked of them. Every quantity is text with its unit."
+    about = "Vehicle, road, elements, layouts and indices. Every quantity is text with its unit."
     return json_schema(study_codec().schema(), "A study file of inerter", about)

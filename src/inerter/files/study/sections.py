@@ -73,7 +73,7 @@ class SweepRange:
 
     lower: str = key(SWEPT, "The first value.", 'from = "10 kN/m"', name=LOWER)
     upper: str = key(SWEPT, "The last value.", 'to = "300 kN/m"', name=UPPER)
-    points: int = key(whole(2, MOST_POINTS), "How many values.", "points = 30")
+    points: int = key(whole(2, MOST_POINTS), "Number of values.", "points = 30")
     spacing: str = key(
         word("a spacing", SPACINGS), "Equal steps, or equal ratios.", 'spacing = "log"', default="linear"
     )
@@ -83,8 +83,10 @@ class SweepRange:
 class ConditionEntry:
     """Numbers by their places, and how much of the time they are so."""
 
-    share: float = key(POSITIVE, "How much of the time it is so, beside the others.", "share = 0.3", default=1.0)
-    name: str | None = key(TEXT, "What it is called.", 'name = "loaded"', default=None)
+    share: float = key(
+        POSITIVE, "Share of the operating time, relative to the other conditions.", "share = 0.3", default=1.0
+    )
+    name: str | None = key(TEXT, "Name.", 'name = "loaded"', default=None)
     numbers: Mapping[str, Any]
 
 
@@ -152,84 +154,87 @@ _SCATTER = Scalar(_scatter, lambda: {"anyOf": [SHARE_SCHEMA, {"type": "string", 
 
 @declared
 class Settings:
-    """What is asked of the layouts, and how it is answered."""
+    """Indices to compute, and the methods that compute them."""
 
     indices: tuple[str, ...] = key(
-        _INDICES, "What is asked of each layout.", 'indices = ["J1", "J3", "J5"]', implied=True
+        _INDICES, "Performance indices of each layout.", 'indices = ["J1", "J3", "J5"]', implied=True
     )
     conventions: str = key(
         word("a set of conventions", CONVENTIONS),
-        "How numbers are made: exactly, or as in the paper of 2008.",
+        "Conventions of the numbers: exact, or those of the paper of 2008.",
         'conventions = "paper2008"',
         default="exact",
     )
     optimise: str | None = key(
         _SEARCH,
-        "The method whose value is made smallest; needed if anything is free.",
+        "Method whose value is minimised; required if there are design variables.",
         'optimise = "norm"',
         default=None,
     )
     evaluate: tuple[str, ...] = key(
         some_of("a method", METHODS),
-        "The methods that judge the designs; tables and figures are about the first.",
+        "Methods that evaluate the designs; tables and figures show the first.",
         'evaluate = ["norm", "expected-value"]',
         default=(DEFAULT,),
     )
     baseline: str | None = key(
-        TEXT, "The layout that the others are compared with; the first if left out.", 'baseline = "S1"', default=None
+        TEXT, "Layout that the others are compared with; the first if left out.", 'baseline = "S1"', default=None
     )
     sweeps: tuple[Sweep, ...] = key(
         SweepsCodec(),
-        "Numbers of this file, by their places, that take these values in turn; two make a map.",
+        "Numbers of this file, by place, with the values to step through; two make a map.",
         'sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }',
         default=(),
         name="sweep",
     )
-    seed: int = key(whole(0, 2**63 - 1), "Of the search and of the random roads.", "seed = 1", default=0)
+    seed: int = key(whole(0, 2**63 - 1), "Seed of the search and of the random roads.", "seed = 1", default=0)
     realisations: int | None = key(
         whole(2, _MOST_ROADS),
-        "Random roads of the methods that average; their own choice if left out.",
+        "Number of random roads of methods that average; chosen by the method if left out.",
         "realisations = 20",
         default=None,
     )
     relative_error: float | None = key(
         SHARE,
-        "As many roads as make the standard error that part of the value.",
+        "Relative standard error to be reached by the number of roads.",
         "relative_error = 0.002",
         default=None,
     )
     budgets: tuple[str, ...] = key(
         some_names("f"),
-        "Elements: for which values of each is a layout better than the baseline?",
+        "Elements: range of values in which a layout is better than the baseline.",
         'budgets = ["f"]',
         default=(),
     )
     limits: tuple[StudyLimit, ...] = key(
         LimitsCodec(),
-        "Limits on other indices: what is best is the best that keeps them.",
+        "Constraints on other indices, kept by the optimum.",
         'subject_to = { tyre-load = { at_most = "600 N" } }',
         default=(),
         name="subject_to",
     )
     over: str = key(
         word("a way to take an index over conditions", OVER),
-        "What an index is over the [[conditions]].",
+        "Combination of an index over the [[conditions]].",
         'conditions = "worst"',
         default=OVER[0],
         name="conditions",
     )
     trade_off: tuple[str, ...] = key(
-        _INDICES, "Two indices whose front is sought.", 'trade_off = ["J1", "J3"]', default=()
+        _INDICES, "Two or three indices whose Pareto front is computed.", 'trade_off = ["J1", "J3"]', default=()
     )
-    points: int = key(whole(3, _MOST_OF_FRONT), "How many designs of a front.", "points = 25", default=POINTS)
+    points: int = key(whole(3, _MOST_OF_FRONT), "Number of designs of a front.", "points = 25", default=POINTS)
     tolerance: Mapping[str, float] = key(
         ByPlaceCodec(_SCATTER),
-        "By what part values scatter: what the index then is, and what matters.",
+        "Relative tolerances: distribution of the index, and the values that matter most.",
         'tolerance = { c = "10 %", b = "5 %" }',
         default=_NONE,
     )
     quantile: float | None = key(
-        SHARE, "The part of all scattered designs that is to be at least as good.", "quantile = 0.95", default=None
+        SHARE,
+        "Quantile of the index over the tolerances that is minimised, in place of the nominal value.",
+        "quantile = 0.95",
+        default=None,
     )
 
 
@@ -284,45 +289,45 @@ def study_codec() -> TableCodec:
     )
     *others, last = map(shown, judged_models())
     keys = (
-        section("title", TEXT, "A line for reports; the name of the file if left out.", 'title = "My car"', None),
+        section("title", TEXT, "Title of reports; the name of the file if left out.", 'title = "My car"', None),
         section(
             "vehicle",
             vehicle_codec(judged_models(), _car, free=True),
-            "What the struts are mounted in: its model decides which other keys there are.",
+            "Vehicle model; it determines the other keys of this section.",
             f"a section [vehicle] with model = {', '.join(others)} or {last}",
         ),
-        section("road", road_codec(), "What the vehicle drives on, and how fast.", ROAD_EXAMPLE, None),
+        section("road", road_codec(), "Road and speed.", ROAD_EXAMPLE, None),
         section(
             "elements",
             elements_codec(free=True, tied=True),
-            f"What struts are made of, by names of your own. The unit tells the element: {units_told()}. "
-            "A value is fixed, or free between two bounds.",
+            f"Elements of the struts, by names that you choose. The unit determines the kind: {units_told()}. "
+            "A value is fixed, or a design variable between two bounds.",
             'a section [elements] with lines such as k = "120 kN/m"',
         ),
         section(
             "layouts",
             layouts_codec(),
-            "How elements are joined: | side by side, - end to end.",
+            "Networks of the elements: | in parallel, - in series.",
             'a section [layouts] with lines such as S1 = "k | c"',
         ),
         section(
             "indices",
             own_indices_codec(),
-            "Indices of your own: a kind, with its settings.",
+            "User-defined indices: a kind, with its settings.",
             'a section [indices.comfort] with kind = "ride-comfort"',
             _NONE,
         ),
         section(
             "conditions",
             RowsCodec(_CONDITION),
-            "Numbers of this file, by their places, as they are in one operating condition.",
+            "Numbers of this file, by place, in one operating condition.",
             '[[conditions]] with "road.speed" = "15 m/s"',
             _NO_ROWS,
         ),
         section(
             "study",
             settings,
-            "What is asked of the layouts, and how it is answered.",
+            "Indices to compute, and the methods that compute them.",
             'a section [study] with indices = ["J1", "J3", "J5"]',
         ),
     )

@@ -28,11 +28,11 @@ from inerter.vehicle.vehicle import VehicleModel
 _COLUMN = 42  # where remarks begin
 _FREE = {Spring: ("1 kN/m", "1 MN/m"), Damper: ("100 N s/m", "100 kN s/m"), Inerter: ("1 kg", "2000 kg")}
 _LAYOUTS = {
-    "S1": ("k | c", "the usual one: spring and damper"),
-    "S2": ("k | c | b", "with an inerter beside the damper"),
-    "S3": ("k | c - b", "with an inerter in series with the damper"),
+    "S1": ("k | c", "conventional strut: spring and damper in parallel"),
+    "S2": ("k | c | b", "inerter in parallel with the damper"),
+    "S3": ("k | c - b", "inerter in series with the damper"),
 }
-_JOINED = "# How they are joined: | side by side (parallel), - end to end (series, binds tighter), brackets group."
+_JOINED = "# Networks: | in parallel, - in series (binds tighter), brackets group."
 _MOST_ASKED = 3
 _PARTS = (  # a quarter car, part by part
     "",
@@ -58,8 +58,8 @@ _PARTS = (  # a quarter car, part by part
     'load_output = "body_displacement"',
 )
 _ELEMENTS = (
-    "# What networks are made of, by names of your own. The unit of a value tells what it is:",
-    "# A value is fixed, or free between two bounds; then the optimiser chooses it, for each layout and index anew.",
+    "# Elements, by names that you choose. The unit determines the kind:",
+    "# A value is fixed, or a design variable between two bounds, optimised for each layout and index separately.",
 )
 
 
@@ -71,7 +71,7 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
     if model not in judged_models():
         hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
         known = " or ".join(map(shown, judged_models()))
-        raise StudyError(f"{shown(model)} is no vehicle of study files; expected {known}.{hint}")
+        raise StudyError(f"unknown vehicle {shown(model)} in study files; expected {known}.{hint}")
     kind = _Quarter if model == MECHANISM else VEHICLES[model]
     car = model.replace("-", " ")
     blocks = [
@@ -128,7 +128,7 @@ def _mounts(kind: type[VehicleModel]) -> Iterator[str]:
     mounts = needed_mounts_of(kind)
     if len(mounts) > 1:
         table = ", ".join(f'{mount} = "k | c"' for mount in mounts)
-        yield f"# One text is for {' and '.join(mounts)} alike; a table has one for each: S1 = {{ {table} }}"
+        yield f"# One network serves {' and '.join(mounts)}; a table gives one for each: S1 = {{ {table} }}"
 
 
 def _settings(kind: type[VehicleModel]) -> Iterator[str]:
@@ -142,7 +142,7 @@ def _settings(kind: type[VehicleModel]) -> Iterator[str]:
     yield from ("[study]", f"# {titles}")
     for name, value in given.items():
         yield _line(as_line(name, value), sentences[name])
-    yield from ("", "# What else can be asked (take the # away):")
+    yield from ("", "# Further keys (remove the # to use one):")
     yield from [f"# More indices: {', '.join(possible[_MOST_ASKED:])}"] if possible[_MOST_ASKED:] else []
     for key in keys:
         if key.name not in given and key.example is not None:

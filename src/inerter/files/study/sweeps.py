@@ -153,8 +153,8 @@ def _not_followed(study: Study, where: tuple[str, ...], number: Mapping[str, flo
     """That what follows from a number of a condition follows from free values too."""
     for name, element in following(study, number).items():
         if isinstance(element.value, Tied):
-            fault = f"{name} follows from it and from what is free"
-            yield at(where, fault=fault, expected="an element from which no such value follows")
+            fault = f"{name} depends on it and on a design variable"
+            yield at(where, fault=fault, expected="an element on which no tied value depends")
 
 
 def _number(study: Study, place: Place, given: Any) -> float:

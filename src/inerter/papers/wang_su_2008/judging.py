@@ -153,7 +153,7 @@ def statement(
     """A statement judged by quantities in `unit`; `at_once` are those compared for one verdict."""
     power = max((one.detectable(at_once) for one in by), default=0.0)
     doubts = dict.fromkeys(one.doubt for one in by if one.doubt)
-    said = f"not to be relied on ({'; '.join(doubts)}): {found}" if doubts else found
+    said = f"unreliable ({'; '.join(doubts)}): {found}" if doubts else found
     kept = number if verdict is ClaimVerdict.SHOWN else None
     return Statement(said, verdict, kept, f"{power:.2g} {unit}" if power > 0.0 else "")
 

@@ -123,7 +123,7 @@ BAD = {
         ["has already"],
     ),
     "no name": ('[indices."a b"]\nkind = "tyre-load"\n', '"J1"', 'indices."a b"', ["not a layout name"]),
-    "not asked": ('[indices.grip]\nkind = "tyre-load"\n', '"J1"', "indices.grip", ["nothing asks", "no section"]),
+    "not asked": ('[indices.grip]\nkind = "tyre-load"\n', '"J1"', "indices.grip", ["not used", "no section"]),
     "no section": ("", '"grip"', "study.indices", ['"grip"', "not an index"]),
     "twice": ("", '"J1", "ride-comfort"', "study.indices", ["the same index", "at most once"]),
     "not tables": ('[indices]\ngrip = "tyre-load"\n', '"grip"', "indices.grip", ["not a table"]),

@@ -309,7 +309,7 @@ BAD = {
             (SEED, 'kind = "step"\nheight = "1 mm"'),
         ],
         "road.speed",
-        ["rear wheel", '"25 m/s"'],
+        ["rear axle", '"25 m/s"'],
     ),
     "duration": (CAR, [('duration = "0.5 s"', "")], "simulation.duration", ["missing", '"10 s"']),
     "steps": (CAR, [('"0.5 s"', '"0.50001 s"')], "simulation.step", ["whole number of steps"]),
@@ -334,7 +334,7 @@ def test_one_sentence_names_the_place_and_what_to_do(load, text, changes, place,
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(StudyError, match=r"no such file; expected a simulation file"):
+    with pytest.raises(StudyError, match=r"file not found; expected a simulation file"):
         load_simulation(tmp_path / "none.toml")
     with pytest.raises(StudyError, match="this is a folder"):
         load_simulation(tmp_path)

@@ -527,6 +527,16 @@ BAD = {
         "study.budgets",
         ["together with a sweep"],
     ),
+    "sweep that norm cannot see": (
+        [*FRICTION, (INDICES, INDICES + '\nsweep = { f = ["10 N", "20 N"] }')],
+        "study.sweep.f",
+        ["f is a friction", '"expected-value"'],
+    ),
+    "condition that norm cannot see": (
+        [*FRICTION, ("[study]", '[[conditions]]\nf = "20 N"\n[study]')],
+        '"conditions[1]".f',
+        ["f is a friction", '"expected-value"'],
+    ),
     "budget that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbudgets = ["f"]')],
         "study.budgets",

@@ -120,7 +120,7 @@ BAD: dict[str, tuple[str, list[str]]] = {
     "nothing": ("", ["quotients"]),
     "no name": ("2 * 3", ["names no element"]),
     "unknown": ("0.8 * cc", ['"cc"', 'Did you mean "c"?']),
-    "a tied one": ("0.8 * x", ['"x"', "value of its own"]),
+    "a tied one": ("0.8 * x", ['"x"', "elements with a value"]),
     "half of it": ("0.8 *", ["cannot be read"]),
     "a power": ("c ** 2", ["cannot be read"]),
     "a call": ("abs(c)", ["cannot be read"]),

@@ -14,7 +14,7 @@ from inerter.figures.labels import capital, index_title, listed, printed, with_u
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, Outcome
-from inerter.files.study.method_problems import simulating_method
+from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import brief_words_of, deciding, is_blind
@@ -143,12 +143,8 @@ class Budgets(Task[BudgetAnswer]):
             elif not set(used.get(name, ())) - {study.baseline}:
                 only = f"no layout but the baseline has {name}"
                 yield at(place, fault=only, expected="an element of a layout that is compared")
-            elif study.elements[name].switch is not None and is_blind(budget_method(study)):
-                yield at(
-                    place,
-                    fault=f"{name} is a {study.elements[name].key}, which linear analysis does not see",
-                    expected=f"a method that does in evaluate, such as {shown(simulating_method())}",
-                )
+            else:
+                yield from unseen_problem(study, place, name)
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """The elements."""

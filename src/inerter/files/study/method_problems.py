@@ -8,6 +8,7 @@ from inerter.errors import with_article
 from inerter.fields import Field, fields_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import some
+from inerter.files.study.place import element_at, place_of
 from inerter.files.study.study import Study, elements_used
 from inerter.indices.registry import INDICES, amplitude_of, as_line, index_settings
 from inerter.methods.registry import (
@@ -26,6 +27,7 @@ from inerter.units import shown
 
 def method_problems(study: Study) -> Iterator[Problem]:
     """One line for each; a setting that is swept counts as given."""
+    yield from _unseen_numbers(study)
     study = study.at([sweep.values[0] for sweep in study.sweeps])
     yield from _road_problems(study)
     yield from _index_problems(study)
@@ -119,6 +121,26 @@ def _gap_problems(study: Study) -> Iterator[Problem]:
 def _is_refused(part: Element) -> bool:
     """Whether statistical linearisation has no answer for what switches."""
     return part.acts and not part.is_damped
+
+
+def _unseen_numbers(study: Study) -> Iterator[Problem]:
+    """Swept numbers and those of conditions that change nothing in linear analysis."""
+    for sweep in study.sweeps:
+        yield from unseen_problem(study, ("study", "sweep", sweep.label), element_at(sweep.place))
+    for number, condition in enumerate(study.conditions, start=1):
+        for label in condition.numbers:
+            yield from unseen_problem(study, (f"conditions[{number}]", label), element_at(place_of(label)))
+
+
+def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[Problem]:
+    """An element whose value is asked about, but which no method of `evaluate` sees."""
+    element = study.elements.get(name)
+    if element is not None and element.switch is not None and all(map(is_blind, study.evaluate)):
+        yield at(
+            place,
+            fault=f"{name} is a {element.key}, which linear analysis does not see",
+            expected=f"a method that does in evaluate, such as {shown(simulating_method())}",
+        )
 
 
 def simulating_method() -> str:

@@ -127,7 +127,7 @@ def explaining(seconds: float) -> None:
     rig = it.VirtualRig(it.Rig(MODEL).with_values(values).device, sampling=1000.0)
     motion = it.cosine(3e-3, 1.3) + it.cosine(8e-4, 3.1) + it.cosine(2e-4, 7.9)
     late = it.VirtualRig(rig.device, force_delay=2e-3).run(motion, duration=seconds)
-    troubled = late.noted(force=late.force + 20.0 * (late.time / seconds) ** 2)
+    troubled = late.with_notes(force=late.force + 20.0 * (late.time / seconds) ** 2)
     it.identify(rig.run(motion, duration=2.0), MODEL, seed=0, delay=False)  # compiles
     for name, record in (("sound", rig.run(motion, duration=seconds)), ("troubled", troubled)):
         begun = time.process_time()

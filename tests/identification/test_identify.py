@@ -208,6 +208,6 @@ def test_requests_that_cannot_be(change, sentence):
 def test_constant_channels_are_refused():
     record = fit_test(duration=1.0)
     for name in ("displacement", "force"):
-        flat = record.noted(**{name: np.full(record.time.size, 2.0)})
+        flat = record.with_notes(**{name: np.full(record.time.size, 2.0)})
         with pytest.raises(it.InerterError, match="constant"):
             it.identify([flat], BALL_SCREW)

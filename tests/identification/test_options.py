@@ -14,8 +14,8 @@ from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.kinds import _TEXTS, FitFinding
 from inerter.identification.options import FitOptions, OptionChanges
 from inerter.identification.suspects import _REMEDIES, _SENTENCES, Suspect
-from inerter.records.kinds import _TEXTS as OF_RECORDS
-from inerter.records.kinds import RecordFinding
+from inerter.records.finding_texts import _TEXTS as OF_RECORDS
+from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy
 from inerter.report.options import _OPTIONS
 

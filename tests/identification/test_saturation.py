@@ -8,7 +8,7 @@ from campaigns import sampled
 from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
-from inerter.records.saturation import plateaus, saturated
+from inerter.records.saturation import plateaus, saturated_samples
 
 MODEL = (it.Spring(1e6) | it.Damper(3200.0)) - (
     it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
@@ -32,7 +32,7 @@ def test_a_force_that_is_cut_off_gives_the_same_device(seed: int, known: bool) -
     record = it.Record(
         time, displacement, read, force_bandwidth=300.0, force_range=limit if known else None, source="clipped"
     )
-    cut = saturated(record)
+    cut = saturated_samples(record)
     assert np.all(cut[force != read])
     assert np.count_nonzero(cut & (force == read)) <= 0.002 * force.size
     assert len(plateaus(record)) >= 1

@@ -53,6 +53,6 @@ def test_where_a_table_starts_is_as_uncertain_as_the_encoder_reads(seed: int) ->
     motion, wait = starting(random)
     given = experiment(motion, step, noise, random)
     drawn = [shaken(given, repeated(given), given.record.force, random).motion.displacement for _ in range(READINGS)]
-    true = [given.motion.smoothed(read(motion, step, noise, random))[0] for _ in range(READINGS)]
+    true = [given.motion.smooth(read(motion, step, noise, random))[0] for _ in range(READINGS)]
     among = slice(wait + 3, wait + 40)
     assert since_the_start(drawn, among) == pytest.approx(since_the_start(true, among), rel=0.25)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 import inerter as it
 from inerter.identification.virtual_rig import VirtualRig, highest_frequency
-from inerter.records.findings import findings
-from inerter.records.kinds import RecordFinding
+from inerter.records.finding_texts import RecordFinding
+from inerter.records.inspection import findings
 
 DEVICE = it.Inerter(50.0) | it.Friction(5.0)
 

@@ -25,7 +25,7 @@ from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability
 from inerter.identification.kinds import FitFinding
 from inerter.identification.suspects import Suspect
-from inerter.records.kinds import RecordFinding
+from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Remedy
 from inerter.records.writers import write_record
 from inerter.report import identified_values

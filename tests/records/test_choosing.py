@@ -38,7 +38,7 @@ def test_without_units_no_channel_is_proposed(tmp_path: Path) -> None:
     path = write_csv(
         tmp_path / "a.csv", [["Tiempo", "Recorrido", "Fuerza"]], [record.time, record.displacement, record.force]
     )
-    with pytest.raises(RecordError, match=r"there are Tiempo .*Name it: displacement='name'\."):
+    with pytest.raises(RecordError, match=r"available: Tiempo .*Name it: displacement='name'\."):
         it.read_record(path)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.errors import RecordError
-from inerter.records.findings import findings
+from inerter.records.inspection import findings
 
 NAMES = {
     "time": ("time", "Time", "t", "Zeit", "ZEIT", "temps", "Temps"),
@@ -153,7 +153,10 @@ def test_rows_that_are_left_out_beyond_the_limit_are_named(tmp_path):
     time = np.delete(2e-3 * np.arange(100), slice(40, 60))
     rows = [f"{t:.4f},{np.cos(t):.6f},{np.sin(t):.6f}" for t in time]
     (tmp_path / "a.csv").write_text("\n".join(["time [s],x [mm],F [N]", *rows]), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"leave out 20 samples after 0\.078 s, too many to put in .* gaps='longest'"):
+    with pytest.raises(
+        RecordError,
+        match=r"20 samples are missing in the times after 0\.078 s, too many to interpolate .* gaps='longest'",
+    ):
         it.read_record(tmp_path / "a.csv", gaps="fill")
     assert it.read_record(tmp_path / "a.csv", gaps=0.05).uniform
     uneven = np.cumsum(np.random.default_rng(0).uniform(1e-3, 9e-3, 80))
@@ -167,14 +170,13 @@ def test_a_choice_is_said_and_two_of_a_kind_are_not_chosen_between(tmp_path):
     (tmp_path / "a.csv").write_text(f"Zeit [s],Weg vorn [mm],Kraft vorn [N],U [V]\n{rows}", encoding="utf-8")
     record = it.read_record(tmp_path / "a.csv")
     assert record.notes[0] == (
-        "Channels were chosen by their names: time from Zeit [s], displacement from Weg vorn [mm], force from Kraft "
-        "vorn [N]."
+        "Channels selected by name: time from Zeit [s], displacement from Weg vorn [mm], force from Kraft vorn [N]."
     )
     (tmp_path / "b.csv").write_text(f"Zeit [s],Weg vorn [mm],Kraft vorn [N],Kraft hinten [N]\n{rows}", encoding="utf-8")
-    with pytest.raises(RecordError, match=r"no channel has an obvious name for the force .* Name it: force='Kraft v"):
+    with pytest.raises(RecordError, match=r"force channel not found by an obvious name .* Name it: force='Kraft v"):
         it.read_record(tmp_path / "b.csv")
     (tmp_path / "c.csv").write_text(f"Zeit [s],Weg [mm],Kraft [N],force [N]\n{rows}", encoding="utf-8")
-    with pytest.raises(RecordError, match=r"'Kraft' \(number 2\) and 'force' \(number 3\) may all be the force"):
+    with pytest.raises(RecordError, match=r"ambiguous force channel: 'Kraft' \(number 2\) and 'force' \(number 3\)"):
         it.read_record(tmp_path / "c.csv")
 
 

@@ -10,7 +10,7 @@ from bench import KGF, bench
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from inerter.records.findings import findings
+from inerter.records.inspection import findings
 from inerter.records.record import Record
 
 GOOD = bench(5000, 1000.0)

@@ -9,7 +9,7 @@ import pytest
 from campaigns import sampled
 from numpy.typing import NDArray
 
-from inerter.records.findings import findings
+from inerter.records.inspection import findings
 from inerter.records.instants import held_values, spikes
 from inerter.records.record import Record
 from inerter.records.repair import repair

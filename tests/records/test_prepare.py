@@ -83,14 +83,14 @@ def test_uneven_times_become_even():
 
 def test_gaps_in_the_times_are_filled():
     kept = np.delete(np.arange(2000), [50, 700, 701, 702])
-    record = SMOOTH.noted(**{role: values[kept] for role, values in SMOOTH.channels().items()})
+    record = SMOOTH.with_notes(**{role: values[kept] for role, values in SMOOTH.channels().items()})
     done = prepare.fill_gaps(record, 0.01)
     assert done.time == pytest.approx(T)
     assert done.displacement == pytest.approx(SMOOTH.displacement, abs=1e-9)
-    assert done.notes[-1] == "Samples that the times leave out and were interpolated: 4, up to 3 in a row."
-    with pytest.raises(RecordError, match=r"gap of 0\.004 s after 0\.699 s, longer than the 0\.003 s"):
+    assert done.notes[-1] == "Samples missing in the times, interpolated: 4, up to 3 in a row."
+    with pytest.raises(RecordError, match=r"gap of 0\.004 s after 0\.699 s, longer than the limit of 0\.003 s"):
         prepare.fill_gaps(record, 0.003)
-    assert prepare.fill_gaps(SMOOTH, 0.01).notes[-1].startswith("There were no gaps")
+    assert prepare.fill_gaps(SMOOTH, 0.01).notes[-1].startswith("The times have no gaps")
 
 
 def test_what_cannot_be_prepared():
@@ -124,3 +124,10 @@ def test_a_delay_may_leave_four_samples_and_no_fewer(sign):
     assert prepare.shift_force(record, sign * 16e-3).time.size == 4
     with pytest.raises(RecordError, match="fewer than 4 samples"):
         prepare.shift_force(record, sign * 17e-3)
+
+
+def test_the_old_name_of_with_notes_works_with_a_warning():
+    with pytest.warns(DeprecationWarning, match="`noted` is now `with_notes`"):
+        noted = SMOOTH.noted("Checked.", force_noise=0.5)
+    assert noted.notes[-1] == "Checked."
+    assert noted.force_noise == 0.5

@@ -126,7 +126,7 @@ def test_tdms_of_several_groups(tmp_path):
     with TdmsWriter(str(path)) as writer:
         writer.write_segment([*group("up", 1.0), *group("down", -1.0)])
     alike(it.read_record(path, displacement="up/x", force="up/F"))
-    with pytest.raises(RecordError, match=r"'down/x' \(number 0\) and 'up/x' \(number 2\) may all be the displacement"):
+    with pytest.raises(RecordError, match=r"displacement channel: 'down/x' \(number 0\) and 'up/x' \(number 2\)"):
         it.read_record(path)
 
 
@@ -151,7 +151,7 @@ def test_mdf_of_several_rasters(tmp_path):
     assert record.time == pytest.approx(T[inside])
     assert record.force == pytest.approx(F[inside])
     assert record.displacement == pytest.approx(1e-3 * np.cos(2 * np.pi * 3.0 * T[inside]), abs=1e-12)
-    assert "interpolated to those of the force, every 0.002 s" in record.notes[0]
+    assert "interpolated to the times of the force, every 0.002 s" in record.notes[0]
 
 
 @pytest.mark.parametrize("write", [write_mat, write_mat73])
@@ -185,7 +185,7 @@ def test_gaps_are_filled_or_cut_away(tmp_path):
     filled = it.read_record(path, gaps="fill")
     assert filled.time == pytest.approx(T[1:])
     assert filled.displacement == pytest.approx(smooth[1:], abs=1e-9)
-    assert filled.notes[0] == "Missing samples of the displacement that were interpolated: 4, up to 3 in a row."
+    assert filled.notes[0] == "Missing samples of the displacement, interpolated: 4, up to 3 in a row."
     assert filled.meta["filled"] == {"displacement": (4, 3)}
     longest = it.read_record(path, gaps="longest")
     assert longest.time == pytest.approx(T[301:])
@@ -197,7 +197,7 @@ def test_gaps_in_the_first_rows_and_a_blank_end(tmp_path):
     (tmp_path / "a.csv").write_text("time [s],x [mm],F [N]\n" + rows)
     record = it.read_record(tmp_path / "a.csv", gaps="longest")
     assert record.force == pytest.approx(-np.arange(3.0, 20.0))
-    assert record.notes[0] == "Samples at the end that no channel has, cut off: 2."
+    assert record.notes[0] == "Empty samples at the end, cut off: 2."
 
 
 def test_what_was_decided_is_noted(tmp_path):
@@ -206,8 +206,8 @@ def test_what_was_decided_is_noted(tmp_path):
     alike(record)
     assert record.velocity is None
     assert record.notes == (
-        "The force 'F' was taken in kg (1 kg = 9.80665 N), where the file says kg.",
-        "The channel vel [V] was left out, since its unit is none of velocity.",
+        "The force 'F' was read in kg (1 kg = 9.80665 N), instead of kg in the file.",
+        "The channel vel [V] was left out: its unit is not a unit of velocity.",
     )
     assert record.meta["channels"] == {"time": "time", "displacement": "x", "force": "F"}
 
@@ -218,5 +218,5 @@ def test_a_file_that_was_cut_short(tmp_path):
     path = write_tdms(tmp_path / "a.tdms", {"x": X, "F": F}, **units)
     path.write_bytes(path.read_bytes()[:-2000])
     record = it.read_record(path)
-    assert record.notes == (f"The file is cut short; the first {record.time.size} samples are complete and were kept.",)
+    assert record.notes == (f"The file is truncated: the first {record.time.size} samples are complete and were kept.",)
     assert record.displacement == pytest.approx(X[: record.time.size])

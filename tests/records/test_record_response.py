@@ -11,7 +11,7 @@ from scipy import signal
 import inerter as it
 from inerter.errors import LinearSystemError, RecordError
 from inerter.records.periods import period_of
-from inerter.records.response import ESTIMATORS, _blurred
+from inerter.records.response import ESTIMATORS, _resolution_notes
 from inerter.records.smoothing import resolution
 
 RATE = 500.0
@@ -35,7 +35,7 @@ def multisine(seed, device=DEVICE, period=2.0, count=40, periods=5, rate=RATE, s
 
 def noisy(record, seed, force, displacement=0.0):
     rng = np.random.default_rng([seed, 7])
-    return record.noted(
+    return record.with_notes(
         displacement=record.displacement + displacement * rng.normal(size=record.time.size),
         force=record.force + force * rng.normal(size=record.time.size),
     )
@@ -76,7 +76,9 @@ def test_a_bend_that_a_window_levels_by_more_than_the_band_is_told(share, told):
         band=gain + share * shift * np.array([[-1.0], [1.0]]), phase_band=np.zeros((2, 20)),
         averages=np.full(20, 9.0), amplitude=1.0, estimator="H1", source="parabola",
     )  # fmt: skip
-    assert [note.partition(" the ")[0] for note in _blurred(found)] == ["At 18 frequencies"] * told
+    assert [note.partition(":")[0].partition("response at ")[2] for note in _resolution_notes(found)] == [
+        "18 frequencies"
+    ] * told
 
 
 # --- periodic -----------------------------------------------------------------------------------------------------
@@ -110,7 +112,7 @@ def test_the_band_of_periodic_records_holds_the_truth_in_95_of_100(records, know
     hits, count = np.zeros(2), 0
     for seed in range(40 // records):
         parts = [noisy(multisine(10 * seed + i, periods=4), 10 * seed + i, 0.5, 1e-6) for i in range(records)]
-        found = it.frequency_response([part.noted(period=2.0 if known else None) for part in parts])
+        found = it.frequency_response([part.with_notes(period=2.0 if known else None) for part in parts])
         truth = response_of(DEVICE, found.omega)
         for i, (value, band) in enumerate(((np.abs(truth), found.band), (np.angle(truth), found.phase_band))):
             hits[i] += np.sum((band[0] <= value) & (value <= band[1]))
@@ -121,7 +123,7 @@ def test_the_band_of_periodic_records_holds_the_truth_in_95_of_100(records, know
 
 def test_noise_in_the_displacement_does_not_bias_the_mean_over_periods():
     record = noisy(multisine(1, periods=400, count=5), 1, 0.0, 3e-4)
-    found = it.frequency_response(record.noted(period=2.0))
+    found = it.frequency_response(record.with_notes(period=2.0))
     truth = response_of(DEVICE, found.omega)
     assert np.all(np.abs(np.abs(found.value / truth) - 1.0) < 0.01)
     assert found.coherence.max() > 0.9
@@ -136,7 +138,7 @@ def test_a_sine_of_any_frequency_is_one_line(frequency, amplitude, phase, seed):
     found = it.frequency_response(noisy(record, seed, 1e-9 * amplitude))
     assert found.frequency == pytest.approx([frequency], rel=1e-5)
     assert found.value == pytest.approx(response_of(DEVICE, found.omega), rel=1e-4)
-    assert "A sine" in found.notes[-1]
+    assert "Sinusoidal excitation" in found.notes[-1]
 
 
 @given(st.floats(2.0, 50.0), st.floats(0.5, 5.0), st.integers(75, 1250))
@@ -150,7 +152,7 @@ def test_friction_turns_the_gain_of_a_sine_by_its_describing_function(force, fre
     found = it.frequency_response(record)
     expected = -b * omega**2 + 1j * 4.0 * force / np.pi / amplitude
     assert found.value == pytest.approx([expected], rel=20.0 / samples**2)
-    again = it.frequency_response(record.noted(displacement=2.0 * x, force=record.force - b * omega**2 * x))
+    again = it.frequency_response(record.with_notes(displacement=2.0 * x, force=record.force - b * omega**2 * x))
     assert abs(again.value[0].imag) == pytest.approx(0.5 * abs(found.value[0].imag), rel=0.02)
 
 
@@ -177,9 +179,9 @@ def test_sines_of_several_frequencies_tell_one_response():
 def test_what_has_not_settled_is_left_out():
     record = multisine(3, periods=8)
     start = 200.0 * np.exp(-record.time / 0.7)
-    found = it.frequency_response(noisy(record.noted(force=record.force + start), 3, 0.01))
+    found = it.frequency_response(noisy(record.with_notes(force=record.force + start), 3, 0.01))
     assert found.averages[0] < 8
-    assert any("had not settled" in note for note in found.notes)
+    assert any("transient in the force" in note for note in found.notes)
     assert found.value == pytest.approx(response_of(DEVICE, found.omega), rel=5e-3)
 
 
@@ -199,17 +201,17 @@ def test_only_the_lines_of_the_excitation_are_told():
 def test_noise_far_above_the_excitation_is_none_of_it(periods):
     for seed in range(10):
         record = noisy(multisine(seed, periods=periods, slope=0.0), seed, 1.0, 3e-5)
-        assert it.frequency_response(record.noted(period=2.0)).frequency == pytest.approx(np.arange(1, 41) / 2.0)
+        assert it.frequency_response(record.with_notes(period=2.0)).frequency == pytest.approx(np.arange(1, 41) / 2.0)
 
 
 def test_a_displacement_that_changes_is_told():
     record = multisine(0, periods=12)
     swell = 1.0 + 0.5 * np.sin(0.3 * record.time)
     found = it.frequency_response(
-        record.noted(displacement=swell * record.displacement, force=swell * record.force, period=2.0)
+        record.with_notes(displacement=swell * record.displacement, force=swell * record.force, period=2.0)
     )
     assert found.status.kind is it.StatusKind.INACCURATE
-    assert "is its period right?" in found.status.message
+    assert "check its period" in found.status.message
 
 
 @given(st.floats(0.2, 3.0), st.integers(0, 2**32 - 1))
@@ -283,7 +285,7 @@ def test_coherence_is_the_share_of_the_force_that_follows():
     rng = np.random.default_rng(2)
     same = np.fft.irfft(np.fft.rfft(rng.normal(size=100000)) * np.abs(np.fft.rfft(record.force)) / np.sqrt(1e5))
     same *= record.force.std() / same.std()
-    found = it.frequency_response(record.noted(force=record.force + same), segment=2.0)
+    found = it.frequency_response(record.with_notes(force=record.force + same), segment=2.0)
     assert np.median(found.coherence[found.frequency < 15.0]) == pytest.approx(0.5, abs=0.05)
 
 
@@ -291,7 +293,7 @@ def test_nothing_is_told_where_nothing_moves():
     found = it.frequency_response(random(0, force=1.0, displacement=1e-9))
     assert found.frequency.max() < 150.0
     assert np.all(np.isfinite(found.gain) & np.isfinite(found.band) & np.isfinite(found.phase))
-    assert any("no content" in note for note in found.notes)
+    assert any("no displacement" in note for note in found.notes)
 
 
 def test_a_sweep_tells_the_frequencies_that_it_passed():
@@ -318,7 +320,9 @@ def test_a_resonance_that_the_segments_do_not_resolve_is_told():
 def test_units_scale_the_gain_and_leave_phase_and_coherence(length, force, periodic, seed):
     record = noisy(multisine(seed), seed, 1.0) if periodic else random(seed, samples=4000, force=0.1)
     one = it.frequency_response(record)
-    other = it.frequency_response(record.noted(displacement=length * record.displacement, force=force * record.force))
+    other = it.frequency_response(
+        record.with_notes(displacement=length * record.displacement, force=force * record.force)
+    )
     assert other.omega == pytest.approx(one.omega)
     assert other.band == pytest.approx(one.band * force / length, rel=1e-6)
     assert other.phase == pytest.approx(one.phase, abs=1e-8)
@@ -368,23 +372,25 @@ REFUSED = {
         "displacement of 'record' is constant",
     ),
     "constant force": (lambda: it.frequency_response(of(f=np.ones(1000))), "force of record is constant"),
-    "uneven": (lambda: it.frequency_response(of(time=TIME**1.1)), "resample the record"),
+    "uneven": (lambda: it.frequency_response(of(time=TIME**1.1)), "Resample the record"),
     "four samples": (lambda: it.frequency_response(of(TIME[:4] ** 2, SINE[:4], TIME[:4])), "Too short"),
     "less than a period": (lambda: it.frequency_response(of(period=3.0)), "too few for one period of 3 s"),
     "one period": (lambda: it.frequency_response(of(period=1.5)), "Record two or more"),
-    "a wrong period": (lambda: it.frequency_response(multisine(0).noted(period=1.37)), "is that the period"),
+    "a wrong period": (lambda: it.frequency_response(multisine(0).with_notes(period=1.37)), "Check the period"),
     "an estimator that is none": (lambda: it.frequency_response(of(), estimator="H3"), "H1, H2, Hv, got 'H3'"),
     "no length": (lambda: it.frequency_response(of(), segment=0.0), "positive number of s"),
     "too long": (lambda: it.frequency_response(of(), segment=5.0), "Too short"),
-    "some repeat": (lambda: it.frequency_response([of(), random(0)]), "estimate their responses apart"),
+    "some repeat": (lambda: it.frequency_response([of(), random(0)]), "Estimate their responses separately"),
     "other rates": (
-        lambda: it.frequency_response([random(0), random(1).noted(time=np.arange(20000) / 400.0)]),
-        "resample them",
+        lambda: it.frequency_response([random(0), random(1).with_notes(time=np.arange(20000) / 400.0)]),
+        "Resample them",
     ),
     "frequencies": (lambda: it.frequency_response(of(), [1.0]), "leave out omega"),
     "nothing in common": (
-        lambda: it.frequency_response(random(3).noted(force=np.random.default_rng(5).normal(size=20000)), segment=20.0),
-        "have no more in common",
+        lambda: it.frequency_response(
+            random(3).with_notes(force=np.random.default_rng(5).normal(size=20000)), segment=20.0
+        ),
+        "coherence between force and displacement",
     ),
 }
 
@@ -402,5 +408,5 @@ def test_a_linear_system_is_answered_as_before():
         it.frequency_response(system)
     with pytest.raises(LinearSystemError):
         it.frequency_response("nothing", [1.0])
-    with pytest.raises(RecordError, match="for records"):
+    with pytest.raises(RecordError, match="apply to records"):
         it.frequency_response(system, [1.0], segment=1.0)

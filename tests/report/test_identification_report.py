@@ -27,9 +27,9 @@ from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import Linear
 from inerter.networks.parser import written
-from inerter.records.choosing import ROLES
+from inerter.records.channel_selection import ROLES
 from inerter.records.finding import Finding
-from inerter.records.kinds import RecordFinding
+from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
@@ -102,7 +102,7 @@ def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path
         assert value in page.text
         assert interval in page.text
     assert "a <b>" in page.text
-    assert "hum of the mains: 0.3 N at −50 Hz" in page.text
+    assert "mains hum: 0.3 N at −50 Hz" in page.text
     assert elements_block(found).replace("\n", " ").replace("  ", " ")[:60] in page.text.replace("  ", " ")
     assert page.tags.count("svg") == len(list((tmp_path / "figures").glob("*.svg"))) == 7
     assert all(link.startswith("#") for link in page.links)

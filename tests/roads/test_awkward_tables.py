@@ -156,7 +156,7 @@ def test_bad_opencrg(tmp_path, monkeypatch):
     with pytest.raises(RecordError, match="says itself what is where"):
         it.read_profile(path, interval=0.1)
     path.write_bytes(path.read_bytes()[:1500])
-    with pytest.raises(RecordError, match=r"road\.crg cannot be read as OpenCRG: it is damaged or cut short"):
+    with pytest.raises(RecordError, match=r"road\.crg cannot be read as OpenCRG: the file is damaged or truncated"):
         it.read_profile(path)
     monkeypatch.setitem(sys.modules, "pyopencrg", None)
     with pytest.raises(RecordError, match=r'pip install "inerter\[roads\]"'):

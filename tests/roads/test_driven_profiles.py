@@ -51,12 +51,12 @@ BAD = {
     "a word": (HEADER + "0, 0\n1, 1\n2, 1\n3, one\n", 'line 5: expected a number with a decimal point, got "one"'),
     "not a number": (HEADER + "0, 0\n1, nan\n", "height .* missing or no finite number at 1 points, .* point 1"),
     "an empty cell": (HEADER + "0, 1\n1,\n", "height .* missing or no finite number"),
-    "a third cell": (HEADER + "0, 0, 5\n1, 0, 5\n", "line 1: the header has 2 columns, the rows below it have 3"),
-    "decimal commas among commas": (HEADER + "0,5, 1,2\n1,5, 1,2\n", "needs another delimiter than a comma"),
+    "a third cell": (HEADER + "0, 0, 5\n1, 0, 5\n", "line 1: the header has 2 columns, the rows below have 3"),
+    "decimal commas among commas": (HEADER + "0,5, 1,2\n1,5, 1,2\n", "requires a delimiter other than a comma"),
     "backwards": (HEADER + "0, 0\n\n2, 0\n1, 0\n", "must increase, but point 2 is at 1 m after 2 m"),
     "one point": (HEADER + "0, 0\n", "a vector of two or more real numbers"),
-    "nothing": ("\n\n", "is empty; expected a header"),
-    "an open quote": (HEADER + '"0, 0\n', "no rows of numbers"),
+    "nothing": ("\n\n", "empty file; expected a header"),
+    "an open quote": (HEADER + '"0, 0\n', "rows of numbers in two or more columns not found"),
 }
 
 
@@ -77,7 +77,7 @@ def test_no_file(tmp_path):
 
 def test_not_text(tmp_path):
     (tmp_path / "road.csv").write_bytes(b"\xff\xfe\x00\x81")
-    with pytest.raises(SignalError, match="no rows of numbers in two or more columns were found"):
+    with pytest.raises(SignalError, match="rows of numbers in two or more columns not found"):
         profile(tmp_path / "road.csv", 20.0)
 
 

@@ -27,7 +27,7 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
-from inerter.records.saturation import saturated
+from inerter.records.saturation import saturated_samples
 from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
@@ -86,7 +86,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
 
 def doubt_of(fit: Fit) -> Finding | None:
     """Why a fit is not to be relied on, with the likeliest reason; None if it is."""
-    lost = sum(float(saturated(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
+    lost = sum(float(saturated_samples(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     best = _likeliest(fit)
     if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)

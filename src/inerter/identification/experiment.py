@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
 from inerter.networks.elements.roles import Guard, Linear
-from inerter.records.lost import MAD
+from inerter.records.dropouts import MAD
 from inerter.records.record import Record
-from inerter.records.saturation import saturated
+from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
@@ -143,7 +143,9 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         table = _table(motion)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
-    kept = np.convolve(saturated(record), np.ones(3), "same") == 0.0  # within a sample of one cut off it was too
+    kept = (
+        np.convolve(saturated_samples(record), np.ones(3), "same") == 0.0
+    )  # within a sample of one cut off it was too
     at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
     wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
     if not 0.0 <= wait < record.duration:
@@ -188,7 +190,7 @@ def reading_of(record: Record) -> str:
 
 def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
     """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
-    return experiment.moved(*experiment.motion.smoothed(experiment.record.displacement + noise))
+    return experiment.moved(*experiment.motion.smooth(experiment.record.displacement + noise))
 
 
 def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> int:

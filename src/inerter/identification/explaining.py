@@ -28,7 +28,7 @@ from inerter.identification.search import improve
 from inerter.identification.space import Space, space_of
 from inerter.identification.suspects import Suspect
 from inerter.networks.elements import Free
-from inerter.records.lost import losses, restored
+from inerter.records.dropouts import find_dropouts, insert_samples
 from inerter.vehicle.rig import Rig
 from inerter.work.progress import counter
 from inerter.work.running import over_threads
@@ -125,9 +125,9 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     whole: dict[int, tuple[Experiment, NDArray[np.bool_]]] = {}
     places = []
     for e in experiments:
-        lost = losses(e.record)
+        lost = find_dropouts(e.record)
         if lost:
-            record, measured = restored(e.record, lost)
+            record, measured = insert_samples(e.record, lost)
             whole[id(e.record)] = (replace(experiment_of(record), tally=e.tally), measured)
             places.append(tuple((loss.count, float(e.record.time[loss.after])) for loss in lost))
     if not whole:

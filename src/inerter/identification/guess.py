@@ -102,7 +102,7 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
     velocity, use = experiment.motion.velocity, experiment.kept
     power = force[use] * velocity[use]
     share = float(np.mean(power)) / max(float(np.std(force[use]) * np.std(velocity[use])), 1e-300)
-    record = experiment.record.noted("Force reversed: tension is positive.", force=-experiment.record.force)
+    record = experiment.record.with_notes("Force reversed: tension is positive.", force=-experiment.record.force)
     turned = replace(experiment, record=record)
     if chain is not None and abs(share) < _SLIGHT:
         right = _solved(chain, experiment)[0] <= _solved(chain, turned)[0]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
-from inerter.records.lost import MAD
+from inerter.records.dropouts import MAD
 
 Matrix = NDArray[np.float64]
 _LEAST = 1.0 / 3.0  # of the level, what errors are at least

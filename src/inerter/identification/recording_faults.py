@@ -245,4 +245,4 @@ def _closed(record: Record, joints: Sequence[Instant]) -> Record:
             - record.displacement[joint.start + 1]
         )
         moved[joint.start + 1 :] += jump - usual
-    return record.noted(displacement=record.displacement - moved)
+    return record.with_notes(displacement=record.displacement - moved)

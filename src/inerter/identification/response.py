@@ -16,7 +16,7 @@ from inerter.networks.transform import linearise
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
 from inerter.records.response import Estimator, frequency_response
-from inerter.records.result import Response, exact
+from inerter.records.result import Response, exact_response
 from inerter.records.spectra import lines_of
 from inerter.signals.harmonics import Harmonics
 from inerter.signals.signal import Signal
@@ -69,12 +69,12 @@ def model_response(
         answered = [_from_rest(rig, smoothed(record, cutoff), step) for record in chosen]
     answers = [record for record, _ in answered]
     if not any(np.ptp(record.force) for record in answers):  # such as in the play of a gap
-        found = exact(measured.omega, np.zeros(measured.omega.size, dtype=complex), measured.amplitude)
+        found = exact_response(measured.omega, np.zeros(measured.omega.size, dtype=complex), measured.amplitude)
     else:
         found = frequency_response(answers, estimator=estimator, segment=segment)
         found = found.lines(_among(found.omega, measured.omega))
         if found.estimator == "periodic":  # two periods that are the same have no scatter
-            found = exact(found.omega, found.value, found.amplitude)
+            found = exact_response(found.omega, found.value, found.amplitude)
     notes = [note for record, _ in answered for note in record.notes]
     status = next((status for _, status in answered if not status.ok), found.status)
     found = replace(found, source="model", status=status, notes=tuple(dict.fromkeys(notes)))
@@ -87,7 +87,7 @@ def as_read(response: Response, bandwidth: float | None) -> Response:
     if bandwidth is None:
         return response
     s = 1j * response.frequency / bandwidth
-    read = exact(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude)
+    read = exact_response(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude)
     note = f"As read by a load cell of {bandwidth:g} Hz."
     return replace(read, source=response.source, status=response.status, notes=(*response.notes, note))
 
@@ -111,7 +111,9 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     left_out = {e.key: [o.label for o in linear.left_out if o.key == e.key] for e in linear.left_out}
     notes = [f"{key.capitalize()} left out: {', '.join(labels)}." for key, labels in left_out.items()]
     notes += [f"Gaps closed: {', '.join(linear.gaps)}."] if linear.gaps else []
-    return as_read(replace(exact(frequencies, value), source="linear model", notes=tuple(notes)), cell_bandwidth)
+    return as_read(
+        replace(exact_response(frequencies, value), source="linear model", notes=tuple(notes)), cell_bandwidth
+    )
 
 
 def smoothed(record: Record, cutoff: float) -> Record:
@@ -120,9 +122,9 @@ def smoothed(record: Record, cutoff: float) -> Record:
     As it is where the cut-off is close to half the rate.
     """
     if cutoff >= _HIGHEST * 0.5 / record.interval:
-        return record.noted("The displacement is as measured: it reaches up to nearly half the rate.")
+        return record.with_notes("The displacement is as measured: it reaches up to nearly half the rate.")
     filter_ = scipy.signal.butter(_ORDER, cutoff, fs=1.0 / record.interval, output="sos")
-    return record.noted(
+    return record.with_notes(
         f"The displacement smoothed up to {cutoff:.4g} Hz (Butterworth, forward and backward).",
         displacement=scipy.signal.sosfiltfilt(filter_, record.displacement),
     )
@@ -138,7 +140,7 @@ def _mean_period(record: Record, period: float) -> Harmonics:
     """The mean period of a displacement, of the harmonics that stand out of its scatter."""
     part = whole_periods(record, period)
     lines = lines_of([part])
-    significant = lines.chosen() | lines.significant()
+    significant = lines.excited() | lines.significant()
     amplitudes = np.where(significant, lines.displacement[0].mean(axis=0), 0.0)
     last = 1 + int(np.max(np.flatnonzero(amplitudes), initial=0))
     return Harmonics(

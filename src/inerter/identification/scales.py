@@ -82,11 +82,11 @@ def scaled(record: Record, options: FitOptions) -> Record:
         changes = {
             n: v * force.value for n in ("force", "force_range", "force_noise") if (v := getattr(record, n)) is not None
         }
-        record = record.noted(f"The force was multiplied by {force.value:.6g}, its scale.", **changes)
+        record = record.with_notes(f"The force was multiplied by {force.value:.6g}, its scale.", **changes)
     if moved is not None and moved.value != 1.0:
         names = ("displacement", "velocity", "acceleration", "displacement_noise")
         changes = {n: v * moved.value for n in names if (v := getattr(record, n)) is not None}
-        record = record.noted(f"The displacement was multiplied by {moved.value:.6g}, its scale.", **changes)
+        record = record.with_notes(f"The displacement was multiplied by {moved.value:.6g}, its scale.", **changes)
     return record
 
 

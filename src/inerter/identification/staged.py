@@ -27,7 +27,7 @@ from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
-from inerter.records.saturation import saturated
+from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
@@ -266,8 +266,8 @@ def _findings(
     if inertance is not None:
         yield Finding(FitFinding.GIVEN_INERTANCE, "info", _INERTANCE, {"inertance": inertance})
     yield from found.findings
-    if check is not None and saturated(check).any():
-        share = float(saturated(check).mean())
+    if check is not None and saturated_samples(check).any():
+        share = float(saturated_samples(check).mean())
         yield Finding(FitFinding.SATURATED_CHECK, "warning", check.source, {"share": share})
     if response is not None:
         differ = sum(not band.agrees for band in response.bands)

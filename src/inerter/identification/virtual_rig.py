@@ -142,7 +142,7 @@ class VirtualRig:
         highest = highest_frequency(position[at[0] :], step, _SEEN * error)
         if highest <= 0.5 * self.sampling:
             return record
-        return record.noted(
+        return record.with_notes(
             f"The table moves at up to {highest:.3g} Hz, but {self.sampling:g} samples a second show no more than "
             f"{0.5 * self.sampling:g} Hz: faster motion appears as slower. Sample at {2.5 * highest:.3g} Hz or more."
         )

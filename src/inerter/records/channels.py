@@ -1,4 +1,4 @@
-"""What a file of measurements holds, before it becomes a record: channels by name."""
+"""Channels of a measurement file by name, before they become a record."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Samples:
-    """The values of one channel as they stand in the file, and their times [s] where the channel has its own."""
+    """Raw values of one channel, and their times [s] where the channel has its own."""
 
     values: NDArray[Any]
     time: NDArray[np.float64] | None = None
@@ -37,10 +37,10 @@ class Samples:
 
 @dataclass(frozen=True)
 class Contents:
-    """An open file: its channels, how to read some of them, and what is to be said about it."""
+    """An open file: its channels, a function that reads some of them, and notes."""
 
     channels: tuple[Channel, ...]
     read: Callable[[Sequence[Channel], Progress], list[Samples]]
     notes: tuple[str, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
-    nameless: bool = False  # the file does not say what its channels are
+    nameless: bool = False  # the file has no channel names

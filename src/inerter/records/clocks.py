@@ -1,4 +1,4 @@
-"""Faults of the clock that the times do not show: sampling that jitters, and channels whose clocks differ."""
+"""Clock faults that the times do not show: sampling jitter, and channels with different clocks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import t as student
 
-from inerter.records.lost import MAD
+from inerter.records.dropouts import MAD
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution
 
@@ -33,7 +33,7 @@ class ClockDrift:
 
 
 def jitter(record: Record, motion: Motion) -> float | None:
-    """Standard deviation of the sampling instants [s] by which the displacement scatters; None if it does not show.
+    """Standard deviation of the sampling instants [s] estimated from the displacement; None if not detectable.
 
     A sample that is taken too late by dt is off by velocity * dt, so that the scatter about the smoothed motion grows
     with speed. The scatter of rounding is there at any speed.
@@ -55,11 +55,11 @@ def jitter(record: Record, motion: Motion) -> float | None:
 
 
 def clock_drift(record: Record, motion: Motion) -> ClockDrift | None:
-    """Steady growth of the delay between displacement and force over the record; None if there is no clear one.
+    """Steady growth of the delay between displacement and force over the record; None if not significant.
 
-    The force is taken for a law of the motion that stays the same, linear in position, velocity, acceleration and
-    direction, and the delay of its rest is compared between the parts of the record. What the law lacks is alike in all
-    of them only if the motion is: one that grows or sweeps says nothing.
+    The force is modelled by a constant law, linear in position, velocity, acceleration and direction, and the delay of
+    its residual is compared between the parts of the record. The error of that law is the same in all of them only if
+    the motion is: growing amplitudes and sweeps are therefore rejected.
     """
     size = record.time.size // (_PARTS + 1)
     if size < 64:

@@ -1,4 +1,4 @@
-"""Zero-phase low-pass filtering of whole records, with ends that do not ring."""
+"""Zero-phase low-pass filtering of whole records, without ringing at the ends."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SETTLED = 5.0  # time constants 1/bandwidth by which the record is continued at
 
 
 def low_pass(values: Vector, interval: float, bandwidth: float) -> Vector:
-    """The values without what is above `bandwidth` [Hz]: a Butterworth filter of order 4, forwards and backwards.
+    """The values low-pass filtered at `bandwidth` [Hz]: a Butterworth filter of order 4, forwards and backwards.
 
     The gain is 1/2 at the bandwidth and there is no phase. Beyond its ends the record is continued by a cubic through
     its last 1/bandwidth, so that value, slope and curvature go on smoothly.
@@ -26,8 +26,8 @@ def low_pass(values: Vector, interval: float, bandwidth: float) -> Vector:
     window = max(round(1.0 / (bandwidth * interval)), 8)
     pad = min(round(_SETTLED * window), values.size - 1)
     mean = float(np.mean(values))
-    head = _continued(values[::-1] - mean, window, pad)[::-1]
-    tail = _continued(values - mean, window, pad)
+    head = _extrapolate(values[::-1] - mean, window, pad)[::-1]
+    tail = _extrapolate(values - mean, window, pad)
     padded = np.concatenate((head, values - mean, tail))
     result: Vector = sosfiltfilt(sections, padded, padtype="odd", padlen=min(3 * ORDER, padded.size - 1))
     return result[pad : pad + values.size] + mean
@@ -49,7 +49,7 @@ def _sections(interval: float, bandwidth: float) -> Vector:
     return sections
 
 
-def _continued(values: Vector, window: int, pad: int) -> Vector:
+def _extrapolate(values: Vector, window: int, pad: int) -> Vector:
     """`pad` values beyond the last one: a cubic over two windows, then straight, with the noise fading out."""
     window = min(window, values.size)
     past = np.arange(1 - window, 1) / window

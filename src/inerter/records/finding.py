@@ -1,4 +1,4 @@
-"""A finding as data: a kind, what it is about, and numbers; its sentence is made where it is shown."""
+"""A finding as data: a kind, its subject, and numbers; its sentence is formatted where it is shown."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Severity = Literal["info", "warning", "error"]
 
 
 class Kind(Protocol):
-    """A kind of finding, which knows how one is said."""
+    """A kind of finding, which formats its sentence."""
 
     def text(self, finding: Finding) -> Text:
         """The parts of its sentence."""
@@ -21,9 +21,9 @@ class Kind(Protocol):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing found in a record or an identification.
+    """One finding of a record or an identification.
 
-    `error`: no model can be fitted to it as it is; `warning`: the work can go on, but look; `info`: good to know.
+    `error`: no model can be fitted to the record; `warning`: results may be affected; `info`: no action required.
     """
 
     kind: Kind
@@ -33,10 +33,10 @@ class Finding:
 
     @property
     def text(self) -> Text:
-        """The parts of its sentence: words, and what can be done about it."""
+        """The parts of its sentence: words and remedies."""
         return self.kind.text(self)
 
     @property
     def sentence(self) -> str:
-        """For a reader who works in Python."""
+        """The sentence with remedies in Python."""
         return in_python(self.text)

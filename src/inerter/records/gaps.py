@@ -1,4 +1,4 @@
-"""Samples that are missing: refused, filled, or cut away; and channels that were sampled at different times."""
+"""Missing samples: refused, filled, or cut away; and channels sampled at different times."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from inerter.records.remedy import Action, Remedy
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 LONGEST = 10  # samples in a row that gaps="fill" fills
-SCATTER, _WHOLE = 0.1, 0.25  # of an interval: what an even clock strays, and what whole intervals do
+SCATTER, _WHOLE = 0.1, 0.25  # of an interval: largest deviation of an even clock, and of whole intervals
 HOLE = 3.0  # intervals without a sample that count as a hole in a raster
 
 
-def mend(
+def fill_missing(
     source: str, channels: dict[str, Samples], gaps: str | float
 ) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
-    """The channels without missing samples, notes, and how many were filled: all, and in the longest run, of each.
+    """The channels without missing samples, notes, and the numbers filled per channel: in all, and in the longest run.
 
     Raises `RecordError` for gaps that are not to be filled, or are too long.
     """
     if not (gaps in ("refuse", "fill", "longest") or (is_number(gaps) and gaps > 0.0)):
-        raise RecordError(f"gaps must be 'refuse', 'fill', 'longest' or a number of s to fill, got {gaps!r}.")
+        raise RecordError(f"gaps must be 'refuse', 'fill', 'longest' or the longest gap to fill in s; got {gaps!r}.")
     channels, notes = _without_blank_end(channels)
     missing = {role: ~np.isfinite(samples.values) for role, samples in channels.items()}
     bad = {role: mask for role, mask in missing.items() if mask.any()}
@@ -37,19 +37,21 @@ def mend(
         return channels, notes, {}
     if "time" in bad:
         raise RecordError(
-            f"{source}: {int(bad['time'].sum())} times are missing or no finite numbers, the first at sample "
+            f"{source}: {int(bad['time'].sum())} times are missing or not finite, the first at sample "
             f"{int(np.argmax(bad['time']))}. Remove those rows, or give ",
             Remedy(Action.INTERVAL),
             " instead of the times.",
         )
     if gaps == "refuse":
         raise _refusal(source, bad)
-    result, more, filled = _longest(channels, bad) if gaps == "longest" else _filled(source, channels, bad, gaps)
+    result, more, filled = (
+        _keep_longest(channels, bad) if gaps == "longest" else _interpolate_missing(source, channels, bad, gaps)
+    )
     return result, notes + more, filled
 
 
 def _without_blank_end(channels: dict[str, Samples]) -> tuple[dict[str, Samples], list[str]]:
-    """Without the samples at the end that no channel has, as spreadsheets and counters leave them."""
+    """The channels without samples at the end that all channels lack, as spreadsheets leave them, and a note."""
     size = channels["force"].values.size
     kept = size
     while kept and not any(np.isfinite(samples.values[kept - 1]) for samples in channels.values()):
@@ -57,19 +59,19 @@ def _without_blank_end(channels: dict[str, Samples]) -> tuple[dict[str, Samples]
     if kept == size:
         return channels, []
     cut = {role: Samples(samples.values[:kept]) for role, samples in channels.items()}
-    return cut, [f"Samples at the end that no channel has, cut off: {size - kept}."]
+    return cut, [f"Empty samples at the end, cut off: {size - kept}."]
 
 
 @dataclass(frozen=True, eq=False)
 class MissingRows:
-    """After which samples an even clock leaves rows out, and how many there."""
+    """Samples after which rows are missing in an otherwise even time channel, and their numbers."""
 
     after: NDArray[np.int64]
     counts: NDArray[np.int64]
 
 
 def missing_rows(time: Vector) -> MissingRows | None:
-    """Rows that a clock leaves out which is even otherwise; None if there are none, or it is not even.
+    """Rows missing in an otherwise even time channel; None if there are none, or it is not even.
 
     It is even if its other intervals scatter by less than a tenth, and those are whole intervals to a quarter of one.
     """
@@ -82,7 +84,7 @@ def missing_rows(time: Vector) -> MissingRows | None:
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:
-    """Where the mask is true: first sample and one after the last, of each run.
+    """Runs of true samples: the first sample of each and one after its last.
 
     >>> runs(np.array([False, True, True, False, True]))
     [(1, 3), (4, 5)]
@@ -95,24 +97,24 @@ def fill(time: Vector, values: Vector, missing: Mask) -> Vector:
 
     Needs two values that are not missing on either side of the first gap and the last.
     """
-    near = binary_dilation(missing, iterations=6) & ~missing  # what is further off counts for nothing
+    near = binary_dilation(missing, iterations=6) & ~missing  # samples further away have no influence
     result = values.copy()
     result[missing] = CubicSpline(time[near], values[near])(time[missing])
     return result
 
 
-def onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict[str, Samples], list[str]]:
+def resample_onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict[str, Samples], list[str]]:
     """Every channel at the times of the force, by a cubic spline through its own samples.
 
-    The force is what a model is fitted to, so its samples stay as they were measured.
+    Models are fitted to the force, so its samples are not interpolated.
 
     Raises `RecordError` if the times of a channel do not increase, or the channels do not overlap.
     """
     for role, samples in channels.items():
         if samples.time is None or samples.values.size < 4 or not np.all(np.diff(samples.time) > 0.0):
             raise RecordError(
-                f"{source}: the {role} has no four samples at increasing times of its own, so it cannot be brought "
-                f"to the times of the force. Export all channels with one raster."
+                f"{source}: the {role} has fewer than four samples at increasing times, so it cannot be interpolated "
+                f"to the times of the force. Export all channels with one time raster."
             )
     spans = [(s.time[0], s.time[-1]) for s in channels.values() if s.time is not None]
     start, stop = max(span[0] for span in spans), min(span[1] for span in spans)
@@ -126,17 +128,19 @@ def onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict[str, Sam
         )
     time = clock[inside]
     result = {"time": Samples(time)}
-    result |= {role: Samples(s.values[inside] if role == "force" else _at(time, s)) for role, s in channels.items()}
+    result |= {
+        role: Samples(s.values[inside] if role == "force" else _interpolate_at(time, s)) for role, s in channels.items()
+    }
     steps = {role: float(np.median(np.diff(s.time))) for role, s in channels.items() if s.time is not None}
     others = ", ".join(f"{role} every {step:.4g} s" for role, step in steps.items() if role != "force")
     return result, [
-        f"The channels have times of their own ({others}); they were interpolated to those of the force, "
+        f"The channels have different time rasters ({others}); they were interpolated to the times of the force, "
         f"every {steps['force']:.4g} s."
     ]
 
 
-def alike(rasters: list[Vector]) -> bool:
-    """Whether these times are the same, to a thousandth of an interval."""
+def have_same_times(rasters: list[Vector]) -> bool:
+    """Whether these times agree within a thousandth of an interval."""
     first = rasters[0]
     if first.size < 2 or any(other.size != first.size for other in rasters):
         return False
@@ -144,8 +148,8 @@ def alike(rasters: list[Vector]) -> bool:
     return all(other is first or bool(np.max(np.abs(other - first)) <= slack) for other in rasters[1:])
 
 
-def _at(time: Vector, samples: Samples) -> Vector:
-    """The spline through finite samples; missing where the samples leave a hole."""
+def _interpolate_at(time: Vector, samples: Samples) -> Vector:
+    """The spline through finite samples; nan where the samples have a gap."""
     assert samples.time is not None
     good = np.isfinite(samples.values)
     knots, values = samples.time[good], samples.values[good]
@@ -165,33 +169,31 @@ def _refusal(source: str, bad: dict[str, Mask]) -> RecordError:
     found = runs(mask)
     longest = max(stop - start for start, stop in found)
     return RecordError(
-        f"{source}: the {role} has {int(mask.sum())} samples that are missing or no finite numbers, in {len(found)} "
+        f"{source}: the {role} has {int(mask.sum())} samples that are missing or not finite, in {len(found)} "
         f"runs of up to {longest}, the first at sample {found[0][0]}. Read it with ",
         *(Remedy(Action.GAPS, "fill"), " (short ones are interpolated), "),
         *(Remedy(Action.GAPS, 0.05), " (those up to 0.05 s) or "),
-        *(Remedy(Action.GAPS, "longest"), " (the longest stretch without any is kept)."),
+        *(Remedy(Action.GAPS, "longest"), " (the longest gap-free part is kept)."),
     )
 
 
-def _longest(
+def _keep_longest(
     channels: dict[str, Samples], bad: dict[str, Mask]
 ) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
     good = ~np.logical_or.reduce(list(bad.values()))
     start, stop = max(runs(good), key=lambda run: run[1] - run[0], default=(0, 0))
     kept = {role: Samples(samples.values[start:stop].copy()) for role, samples in channels.items()}
-    note = (
-        f"Of {good.size} samples those from {start} to {stop - 1} were kept: the longest stretch without a missing one."
-    )
+    note = f"Samples {start} to {stop - 1} of {good.size} were kept: the longest part without missing samples."
     return kept, [note], {}
 
 
-def _filled(
+def _interpolate_missing(
     source: str, channels: dict[str, Samples], bad: dict[str, Mask], gaps: str | float
 ) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
     every = ~np.logical_or.reduce(list(bad.values()))
     inside = np.flatnonzero(every)
     if inside.size < 4:
-        raise RecordError(f"{source}: fewer than 4 samples have all channels, so nothing can be filled in.")
+        raise RecordError(f"{source}: fewer than 4 samples have all channels, so missing samples cannot be filled.")
     first, last = int(inside[0]), int(inside[-1]) + 1
     cut = {role: samples.values[first:last] for role, samples in channels.items()}
     time = cut["time"]
@@ -204,14 +206,14 @@ def _filled(
         start, stop = max(found, key=lambda run: time[run[1]] - time[run[0]])
         if time[stop] - time[start] > limit:
             raise RecordError(
-                f"{source}: the {role} misses {stop - start} samples in a row from {time[start]:g} s on, too many to "
-                f"fill ({limit:g} s at most). Use ",
-                *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
+                f"{source}: {stop - start} consecutive samples of the {role} are missing from {time[start]:g} s, too "
+                f"many to interpolate (at most {limit:g} s). Use ",
+                *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
             )
         cut[role] = fill(time, cut[role], mask[first:last])
         count, longest = int(mask[first:last].sum()), max(b - a for a, b in found)
         filled[role] = (count, longest)
-        notes.append(f"Missing samples of the {role} that were interpolated: {count}, up to {longest} in a row.")
+        notes.append(f"Missing samples of the {role}, interpolated: {count}, up to {longest} in a row.")
     if last - first < every.size:
-        notes.append(f"Samples at the ends that some channel misses, cut off: {every.size - last + first}.")
+        notes.append(f"Incomplete samples at the ends, cut off: {every.size - last + first}.")
     return {role: Samples(values) for role, values in cut.items()}, notes, filled

@@ -1,10 +1,10 @@
-"""Headings of channels as programs write them: a name, its unit, and remarks in brackets."""
+"""Channel headings as programs write them: a name, its unit, and remarks in brackets."""
 
 from __future__ import annotations
 
 import re
 
-from inerter.records.scales import fits_any
+from inerter.records.channel_units import fits_any
 from inerter.units import is_unit
 
 _BRACKET = re.compile(r"\[([^\[\]]*)\]|\(([^()]*(?:\([^()]*\)[^()]*)*)\)")
@@ -24,7 +24,7 @@ def is_unit_cell(cell: str) -> bool:
 
 
 def split_heading(cell: str) -> tuple[str, str, str]:
-    """The name in a heading, its unit, and the name without what else is in brackets.
+    """Name in a heading, unit, and name without remarks in brackets.
 
     >>> split_heading("Kraft (vorn) [kN]"), split_heading("Kraft [kN] (vorn)"), split_heading("Weg in mm")
     (('Kraft (vorn)', 'kN', 'Kraft'), ('Kraft (vorn)', 'kN', 'Kraft'), ('Weg', 'mm', 'Weg'))
@@ -43,5 +43,5 @@ def split_heading(cell: str) -> tuple[str, str, str]:
 
 
 def without_brackets(name: str) -> str:
-    """The name without what stands in brackets, unless that is all of it."""
+    """The name without remarks in brackets, unless the remark is all of it."""
     return " ".join(_BRACKET.sub(" ", name).split()) or name

@@ -1,4 +1,4 @@
-"""Faults of single instants in a channel: spikes, values that a recorder held, and pieces that were joined.
+"""Faults at single instants of a channel: spikes, held values, and joints between pieces.
 
 Each is a contradiction of the samples before and after it: a spike leaves a smooth channel and comes back, a held value
 repeats where noise or motion would have changed it, and a joint moves all samples after it.
@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.records.dropouts import MAD
 from inerter.records.gaps import runs
-from inerter.records.lost import MAD
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
@@ -38,7 +38,7 @@ _FORWARD = np.array([-5.0, 21.0, -35.0, 35.0]) / 16.0  # a cubic through four sa
 
 @dataclass(frozen=True)
 class Instant:
-    """Samples from `start` up to `stop` of a channel, and the size of what is wrong with them [unit of the channel]."""
+    """Samples from `start` up to `stop` of a channel, and the size of their error [unit of the channel]."""
 
     start: int
     stop: int
@@ -46,9 +46,9 @@ class Instant:
 
 
 def spikes(values: Vector, widest: int = _WIDEST) -> list[Instant]:
-    """Runs of up to `widest` samples that leave an otherwise smooth channel and come back to it at once.
+    """Runs of up to `widest` samples that leave an otherwise smooth channel and return to it at once.
 
-    An impact that passed a load cell takes several samples to decay, and a step does not come back: neither is found.
+    An impact that passed a load cell takes several samples to decay, and a step does not return: neither is a spike.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500] += 40.0
@@ -116,10 +116,10 @@ def _local_scale(deviation: Vector) -> Vector:
 
 
 def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
-    """Runs of at least four equal values where noise would have changed them, or the motion would have gone on.
+    """Runs of at least four equal values where noise or motion would have changed them.
 
-    A channel at its limit, one that stands still and one whose values repeat all the time hold nothing. One that is not
-    `smooth` may rest and go on with a jump, as a force does where backlash is open: there only noise tells.
+    A clipped channel, one at rest and one whose values repeat all the time have no held values. A channel that is not
+    `smooth` may rest and continue with a jump, as a force does where backlash is open: there only noise is decisive.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500:506] = values[500]
@@ -148,13 +148,13 @@ def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
 
 
 def _noise(values: Vector) -> float:
-    """Standard deviation of what changes from sample to sample, by third differences."""
+    """Standard deviation of the noise from sample to sample, by third differences."""
     third = np.diff(values, 3)
     return MAD * float(np.median(np.abs(third))) / math.sqrt(20.0)
 
 
 def _by_chance(same: Mask, inside: Mask, a: int, b: int, step: float) -> float:
-    """Probability that so many samples in a row are equal, from how often two are nearby.
+    """Probability that so many consecutive samples are equal, from the share of equal neighbours nearby.
 
     At least that of noise of size one about a mean that does not move, read in these steps.
     """
@@ -165,7 +165,7 @@ def _by_chance(same: Mask, inside: Mask, a: int, b: int, step: float) -> float:
 
 
 def _departure(values: Vector, a: int, b: int) -> tuple[float, float]:
-    """How far a polynomial through the samples before and after moves away from a held value, and their scatter."""
+    """Largest distance of a held value from a polynomial through the samples around it, and their scatter."""
     near = np.r_[max(a - _BEFORE, 0) : a + 1, b : min(b + _BEFORE, values.size)]
     if near.size < 2 * _BEFORE:
         return 0.0, 0.0
@@ -176,7 +176,7 @@ def _departure(values: Vector, a: int, b: int) -> tuple[float, float]:
 
 
 def joints(record: Record, excused: Mask) -> list[Instant]:
-    """Places at which the displacement jumps between two smooth stretches: where pieces were joined.
+    """Instants at which the displacement jumps between two smooth parts: joints between pieces.
 
     They are few, and far larger than any other discontinuity. `excused` are samples with faults of another kind.
     """
@@ -185,7 +185,7 @@ def joints(record: Record, excused: Mask) -> list[Instant]:
         return []
     windows = np.lib.stride_tricks.sliding_window_view(z, 4)
     jump = windows[4:] @ _FORWARD[::-1] - windows[:-4] @ _FORWARD  # between samples i + 3 and i + 4
-    size = np.where(_grown(excused, 8)[3 : 3 + jump.size], 0.0, np.abs(jump))
+    size = np.where(_dilate(excused, 8)[3 : 3 + jump.size], 0.0, np.abs(jump))
     noise = max(MAD * float(np.median(np.abs(jump))), resolution(z))
     found: list[Instant] = []
     rest = size.copy()
@@ -197,12 +197,12 @@ def joints(record: Record, excused: Mask) -> list[Instant]:
         rest[max(at - 8, 0) : at + 9] = 0.0
     others = float(rest.max())
     return sorted(
-        (i for i in found if abs(i.size) > _ALONE * others and _steps(z, i, noise)), key=lambda instant: instant.start
+        (i for i in found if abs(i.size) > _ALONE * others and _is_step(z, i, noise)), key=lambda instant: instant.start
     )
 
 
-def _steps(z: Vector, joint: Instant, noise: float) -> bool:
-    """Whether all samples after a place are displaced against those before, and not those beside it alone."""
+def _is_step(z: Vector, joint: Instant, noise: float) -> bool:
+    """Whether all samples after the joint are displaced against those before, not only the neighbouring ones."""
     at = joint.start + 1
     before, after = z[max(at - 12, 0) : at - 2], z[at + 2 : at + 12]
     if min(before.size, after.size) < 8:
@@ -212,7 +212,7 @@ def _steps(z: Vector, joint: Instant, noise: float) -> bool:
     return abs(float(other(-0.5) - law(-0.5))) > 0.3 * abs(joint.size) + noise
 
 
-def _grown(mask: Mask, by: int) -> Mask:
+def _dilate(mask: Mask, by: int) -> Mask:
     return np.asarray(np.convolve(mask, np.ones(2 * by + 1), "same") > 0.0)
 
 

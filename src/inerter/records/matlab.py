@@ -1,4 +1,4 @@
-"""Records from MATLAB's MAT files, of versions 5 to 7.3, by pymatreader: plain vectors, and what recorders export."""
+"""Records from MATLAB's MAT files, versions 5 to 7.3, by pymatreader: plain vectors, and exports of recorders."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.records.channel_units import fits
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import split_heading
-from inerter.records.optional import library, translated
-from inerter.records.scales import fits
+from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.units import parse_quantity
 
 _WHAT = "a MAT file"
@@ -43,7 +43,7 @@ class _Key:
 
 
 @contextmanager
-def opened(path: str, source: str) -> Iterator[Contents]:
+def open_channels(path: str, source: str) -> Iterator[Contents]:
     """The vectors of the file, those of structs by "run.position", the columns of a matrix by "data[0]".
 
     The unit of a vector is a text beside it: `unit` or `units` in its own struct, or a struct `units` with a text of
@@ -51,10 +51,10 @@ def opened(path: str, source: str) -> Iterator[Contents]:
     dSPACE ControlDesk (`X`, `Y(i)`), of Simulink (`time`, `signals(i)`), of catman (`Channel_1_Data` and its header),
     waveforms of LabVIEW (`t0`, `dt`, `Y`) and timeseries as structs (`Time`, `Data`).
 
-    Raises `RecordError` if the file is damaged, holds objects of MATLAB alone, or pymatreader is missing.
+    Raises `RecordError` if the file is damaged, contains only MATLAB objects, or pymatreader is missing.
     """
     pymatreader = library("pymatreader", "mat", "MAT files")
-    with translated(source, _WHAT), warnings.catch_warnings():
+    with reraise_read_errors(source, _WHAT), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of objects, which are looked for below
         objects = _objects(path)
         variables = pymatreader.read_mat(path)
@@ -63,8 +63,8 @@ def opened(path: str, source: str) -> Iterator[Contents]:
     channels = tuple(_channels(_with_headers(kept), "", {}, notes))
     if objects and not channels:
         raise RecordError(
-            f"{source}: {', '.join(objects)} can be read by MATLAB alone, such as a timetable or a timeseries. Save "
-            f"the vectors in it as variables of their own, such as time, displacement and force."
+            f"{source}: {', '.join(objects)}: MATLAB objects, such as a timetable or a timeseries, cannot be read. "
+            f"Save their vectors as separate variables, such as time, displacement and force."
         )
 
     def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
@@ -122,13 +122,13 @@ def _recorder(variables: Mapping[str, Any], prefix: str, notes: dict[str, None])
         return _rows(variables, prefix, np.asarray(first + float(step) * np.arange(np.size(values[0])), dtype=float))
     clocks = [variables[keys[key]] for key in _CLOCKS if key in keys and _is_vector(variables[keys[key]])]
     if len(clocks) == 1 and len(values) == 1 and np.size(values[0]) == np.size(clocks[0]) and "data" in keys:
-        second = _second(variables, keys, notes)
+        second = _seconds_per_unit(variables, keys, notes)
         return None if second is None else _rows(variables, prefix, second * np.ravel(clocks[0]).astype(float))
     return _rows(variables, prefix, None) if len(values) > 1 or (values and _texts(variables, _NAMES)) else None
 
 
-def _second(variables: Mapping[str, Any], keys: Mapping[str, str], notes: dict[str, None]) -> float | None:
-    """What a unit of the times of a timeseries is worth [s]."""
+def _seconds_per_unit(variables: Mapping[str, Any], keys: Mapping[str, str], notes: dict[str, None]) -> float | None:
+    """Unit of the times of a timeseries [s]; None if it is not a unit of time."""
     about = variables.get(keys.get("timeinfo", ""), {})
     unit = about.get("Units", "") if isinstance(about, dict) else ""
     if not isinstance(unit, str) or not unit:

@@ -8,27 +8,27 @@ from contextlib import contextmanager
 from typing import Any, BinaryIO
 
 from inerter.records.channels import Channel, Contents, Progress, Samples
-from inerter.records.optional import library, translated
+from inerter.records.optional_readers import library, reraise_read_errors
 
 _WHAT = "an MDF file"
 
 
 @contextmanager
-def opened(path: str, source: str) -> Iterator[Contents]:
+def open_channels(path: str, source: str) -> Iterator[Contents]:
     """The channels of all groups but their clocks; each brings the times of its own raster.
 
     Raises `RecordError` if the file is damaged, or asammdf is missing.
     """
     asammdf = library("asammdf", "mdf", "MDF files")
     with open(path, "rb") as stream:
-        with translated(source, _WHAT, "asammdf"):
+        with reraise_read_errors(source, _WHAT, "asammdf"):
             file = _open(asammdf, stream)
         with file:
-            with translated(source, _WHAT, "asammdf"):
+            with reraise_read_errors(source, _WHAT, "asammdf"):
                 channels = tuple(_channels(file))
 
             def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
-                with translated(source, _WHAT, "asammdf"):
+                with reraise_read_errors(source, _WHAT, "asammdf"):
                     return [_samples(file, c, (at + 1) / len(chosen), progress) for at, c in enumerate(chosen)]
 
             yield Contents(channels, read, meta={"version": str(file.version)})

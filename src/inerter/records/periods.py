@@ -1,4 +1,4 @@
-"""Records that repeat: how long a period is, and the whole periods of a record."""
+"""Periodic records: their period, and the whole periods of a record."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from inerter.records.record import Record
 Matrix = NDArray[np.float64]
 _REPEATS = 0.02  # difference from one period to the next, relative to that of unrelated samples, that still repeats
 _AS_GOOD = 4.0  # a shorter period whose difference is at most so many times the smallest is the period
-_ROUNDING = 1e-6  # of the difference: what rounding and interpolation between lags leave
+_ROUNDING = 1e-6  # of the difference: error of rounding and interpolation between lags
 _WHOLE = 0.02  # intervals by which whole-sample periods may be off at the end of the record
-_MANY = 2_000_000  # samples from which on a period is known well enough without a look at its phase
+_MANY = 2_000_000  # samples above which a period is accurate enough without alignment of its phase
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class Periods:
 
 
 def period_of(displacement: Matrix) -> float | None:
-    """After how many samples a displacement repeats, at least twice within it; None if it does not.
+    """Period of a displacement in samples, if it contains at least two; None otherwise.
 
     The smallest lag at which the mean square of x(t + lag) - x(t) is as small as it gets, as in the difference
     function of de Cheveigne and Kawahara (2002) for pitch; refined at its multiples.
@@ -53,7 +53,7 @@ def period_of(displacement: Matrix) -> float | None:
             break
         period = _vertex(difference, near)[0] / multiple
         multiple *= 2
-    return _in_phase(displacement, period) if displacement.size <= _MANY else period
+    return _align_phase(displacement, period) if displacement.size <= _MANY else period
 
 
 def whole_periods(record: Record, period: float) -> Periods:
@@ -62,7 +62,7 @@ def whole_periods(record: Record, period: float) -> Periods:
     Where a period is no whole number of samples, both channels are interpolated by cubic splines at evenly spaced
     instants, which leaves their ratio alone.
 
-    Raises `RecordError` if there is not even one.
+    Raises `RecordError` if the record is shorter than one period.
     """
     samples, notes = period / record.interval, list[str]()
     whole, available = round(samples), record.time.size
@@ -78,16 +78,18 @@ def whole_periods(record: Record, period: float) -> Periods:
     if count < 1 or whole < 4:
         raise RecordError(
             f"{record.source!r} has {available} samples in {record.duration:g} s, too few for one period of {period:g} "
-            f"s: record longer, or at a higher rate."
+            f"s. Record longer, or at a higher rate."
         )
-    x, force = (_folded(values, samples, whole, count, bool(notes)) for values in (record.displacement, record.force))
+    x, force = (
+        _fold_periods(values, samples, whole, count, bool(notes)) for values in (record.displacement, record.force)
+    )
     return Periods(period, x, force, tuple(notes))
 
 
 def common_periods(records: Sequence[Record]) -> list[float] | None:
-    """The period [s] of each record, known or found; None if no record repeats.
+    """The period [s] of each record, stated or estimated; None if no record is periodic.
 
-    Raises `RecordError` if some repeat and others do not.
+    Raises `RecordError` if only some are periodic.
     """
     found = list[float | None]()
     for record in records:
@@ -99,7 +101,8 @@ def common_periods(records: Sequence[Record]) -> list[float] | None:
     if len(known) < len(found):
         other = records[found.index(None)].source
         raise RecordError(
-            f"Some of the records repeat, {other!r} does not: estimate their responses apart, or give its period."
+            f"{other!r} is not periodic, but other records are. Estimate their responses separately, or give its "
+            f"period."
         )
     return known
 
@@ -124,21 +127,21 @@ def _vertex(values: Matrix, at: int) -> tuple[float, float]:
     return float(at - slope / bend), max(float(here - 0.5 * slope**2 / bend), 0.0)
 
 
-def _in_phase(displacement: Matrix, period: float) -> float:
+def _align_phase(displacement: Matrix, period: float) -> float:
     """The period for which the phase of the strongest harmonic is the same in all periods."""
     for _ in range(3):
         whole = math.ceil(period)
         count = math.floor((displacement.size - 1) / period + 1.0 / whole + 1e-9)
         if count < 2 or whole < 4:
             return period
-        amplitudes = np.fft.rfft(_folded(displacement, period, whole, count, True), axis=1)[:, : whole // 2]
+        amplitudes = np.fft.rfft(_fold_periods(displacement, period, whole, count, True), axis=1)[:, : whole // 2]
         harmonic = 1 + int(np.argmax(np.abs(amplitudes[:, 1:].mean(axis=0))))
         phase = np.unwrap(np.angle(amplitudes[:, harmonic]))
         period /= 1.0 + float(np.polyfit(np.arange(count), phase, 1)[0]) / (2.0 * np.pi * harmonic)
     return period
 
 
-def _folded(values: Matrix, samples: float, whole: int, count: int, between: bool) -> Matrix:
+def _fold_periods(values: Matrix, samples: float, whole: int, count: int, between: bool) -> Matrix:
     if not between:
         return values[values.size - count * whole :].reshape(count, whole)
     index = np.arange(count * whole) * (samples / whole)

@@ -1,4 +1,4 @@
-"""Small changes to a record, each of which leaves a sentence in its notes."""
+"""Processing steps for a record, each of which adds a sentence to its notes."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ MOST = 10**8  # samples of one channel
 
 
 def detrend(record: Record, channels: tuple[str, ...] = BOTH) -> Record:
-    """Without the straight line of least squares through each of these channels.
+    """The record without the least-squares straight line of each of these channels.
 
     Over whole periods it takes drift and offset alone; over less, part of the motion too.
 
-    Raises `RecordError` for a channel that is not there.
+    Raises `RecordError` for an unknown channel.
     """
     changes = {role: without_line(_channel(record, role)) for role in channels}
-    return record.noted(
-        *(f"Detrended the {role}: {_span(record, role, changes[role])} were taken away." for role in channels),
+    return record.with_notes(
+        *(f"Detrended the {role}: {_span(record, role, changes[role])} subtracted." for role in channels),
         **changes,
     )
 
@@ -39,30 +39,30 @@ def detrend(record: Record, channels: tuple[str, ...] = BOTH) -> Record:
 def remove_offset(
     record: Record, channels: tuple[str, ...] = BOTH, start: float | None = None, stop: float | None = None
 ) -> Record:
-    """Without the mean of each of these channels, taken from `start` to `stop` [s]: a stretch where it should be zero.
+    """The record without the mean of each of these channels between `start` and `stop` [s], where it should be zero.
 
     By default the mean is over the whole record, or as many whole periods as there are if its period is known.
 
-    Raises `RecordError` for a channel that is not there, or fewer than 4 samples in the stretch.
+    Raises `RecordError` for an unknown channel, or fewer than 4 samples in the interval.
     """
     if start is None and stop is None and record.period and record.duration > record.period:
         start, stop = _first(record), _first(record) + math.floor(record.duration / record.period) * record.period
         stop -= 0.5 * record.interval  # the sample that begins the next period
     part = record.trim(start, stop)
     offsets = {role: float(np.mean(_channel(part, role))) for role in channels}
-    return record.noted(
+    return record.with_notes(
         *(f"Offset of the {role} removed: {offset:.6g} {CHANNELS[role]}." for role, offset in offsets.items()),
         **{role: _channel(record, role) - offset for role, offset in offsets.items()},
     )
 
 
 def reverse_force(record: Record) -> Record:
-    """With the force of the other sign: positive in tension, where the load cell counts compression."""
-    return record.noted("The sign of the force was reversed.", force=-record.force)
+    """The record with reversed force: positive in tension, where the load cell counts compression as positive."""
+    return record.with_notes("The sign of the force was reversed.", force=-record.force)
 
 
 def shift_force(record: Record, delay: float) -> Record:
-    """With the force moved earlier by `delay` [s], by which it was recorded late (negative: early).
+    """The record with the force shifted earlier by `delay` [s], by which it was recorded late (negative: early).
 
     Between samples a cubic spline goes through the force; samples without a partner are cut off.
 
@@ -77,14 +77,14 @@ def shift_force(record: Record, delay: float) -> Record:
         raise RecordError(f"A delay of {delay:g} s leaves fewer than 4 samples of {record.duration:g} s.")
     force = CubicSpline(time, record.force)(time[inside] + delay)
     others = {role: values[inside] for role, values in record.channels().items() if role != "force"}
-    return record.noted(f"The force was moved {delay:.6g} s earlier.", **others, force=force)
+    return record.with_notes(f"The force was moved {delay:.6g} s earlier.", **others, force=force)
 
 
 def resample(record: Record, interval: float | None = None) -> Record:
-    """On even times, `interval` [s] apart (by default the median of the intervals there are).
+    """The record on even times, `interval` [s] apart (default: the median interval).
 
-    For longer intervals a zero-phase filter first takes away what the new samples cannot hold: above 0.4 of their
-    rate. A cubic spline gives the values between samples.
+    For longer intervals a zero-phase anti-aliasing filter at 0.4 of the new rate is applied first. A cubic spline gives
+    the values between samples.
 
     Raises `RecordError` for an interval that is not positive, or leaves fewer than 4 samples or more than 1e8.
     """
@@ -100,20 +100,20 @@ def resample(record: Record, interval: float | None = None) -> Record:
     time: Vector = _first(record) + step * np.arange(count, dtype=float)
     sentence = f"Resampled from {usual:.6g} s (median) to {step:.6g} s"
     if step <= 1.001 * usual:
-        changes = {role: _spline(record.time, values, time) for role, values in _measured(record).items()}
-        return record.noted(sentence + " by a cubic spline.", time=time, **changes)
+        changes = {role: _spline(record.time, values, time) for role, values in _measured_channels(record).items()}
+        return record.with_notes(sentence + " by a cubic spline.", time=time, **changes)
     fine: Vector = np.linspace(record.time[0], record.time[-1], round(record.duration / usual) + 1)
     bandwidth = HIGHEST / step
     changes = {}
-    for role, values in _measured(record).items():
+    for role, values in _measured_channels(record).items():
         even = values if record.uniform else _spline(record.time, values, fine)
         spacing = float(fine[1] - fine[0])
         changes[role] = _spline(fine, low_pass(even, spacing, min(bandwidth, HIGHEST / spacing)), time)
-    return record.noted(f"{sentence}, after a zero-phase filter at {bandwidth:.4g} Hz.", time=time, **changes)
+    return record.with_notes(f"{sentence}, after a zero-phase filter at {bandwidth:.4g} Hz.", time=time, **changes)
 
 
 def fill_gaps(record: Record, longest: float) -> Record:
-    """With samples put in where the times leave some out, for up to `longest` [s], by a cubic spline.
+    """The record with gaps of up to `longest` [s] in its times filled by a cubic spline.
 
     Raises `RecordError` if a gap is longer.
     """
@@ -123,28 +123,28 @@ def fill_gaps(record: Record, longest: float) -> Record:
     usual = float(np.median(steps))
     left_out = np.maximum(np.round(steps / usual).astype(int) - 1, 0)
     if not left_out.any():
-        return record.noted("There were no gaps in the times to fill.")
+        return record.with_notes("The times have no gaps to fill.")
     if np.max(steps) > longest:
         at = float(record.time[int(np.argmax(steps))])
         raise RecordError(
-            f"{record.source!r} has a gap of {np.max(steps):g} s after {at:g} s, longer than the {longest:g} s "
-            f"to fill. Trim the record to one side of it."
+            f"{record.source!r} has a gap of {np.max(steps):g} s after {at:g} s, longer than the limit of {longest:g} "
+            f"s. Trim the record to one side of the gap."
         )
     parts = [np.linspace(a, b, n + 2)[:-1] for a, b, n in zip(record.time, record.time[1:], left_out, strict=False)]
     time = np.append(np.concatenate(parts), record.time[-1])
     new = ~np.isin(time, record.time)
-    changes = {role: _filled(time, values, new) for role, values in _measured(record).items()}
+    changes = {role: _interpolate_new(time, values, new) for role, values in _measured_channels(record).items()}
     count, most = int(new.sum()), int(left_out.max())
-    note = f"Samples that the times leave out and were interpolated: {count}, up to {most} in a row."
-    return record.noted(note, time=time, **changes)
+    note = f"Samples missing in the times, interpolated: {count}, up to {most} in a row."
+    return record.with_notes(note, time=time, **changes)
 
 
 def with_missing_times(record: Record, gaps: str | float) -> Record:
-    """The record as `read_record(..., gaps=gaps)` gives it: with the samples that an even clock leaves out, or without.
+    """The record as `read_record(..., gaps=gaps)` returns it: with rows missing in an even clock filled, or without.
 
-    "longest" keeps the longest stretch that leaves none out, and "refuse" the record as it is.
+    "longest" keeps the longest part without missing rows, and "refuse" the unchanged record.
 
-    Raises `RecordError` where more samples are left out at one place than `gaps` allows to put in.
+    Raises `RecordError` where more samples are missing at one place than `gaps` allows to fill.
     """
     if gaps == "refuse" or record.uniform:
         return record
@@ -154,21 +154,21 @@ def with_missing_times(record: Record, gaps: str | float) -> Record:
     if gaps == "longest":
         cuts = [0, *(missing.after + 1).tolist(), record.time.size]
         start, stop = max(pairwise(cuts), key=lambda part: part[1] - part[0])
-        said = f"Samples {start} to {stop - 1} were kept: the longest stretch in which the times leave none out."
+        said = f"Samples {start} to {stop - 1} were kept: the longest part without gaps in the times."
         return record.samples(slice(start, stop), said)
     steps = np.diff(record.time)
     limit = (LONGEST + 1) * float(np.median(steps)) if isinstance(gaps, str) else float(gaps)
     most = int(np.argmax(steps))
     if steps[most] > limit * (1.0 + SCATTER):
         raise RecordError(
-            f"{record.source}: the times leave out {missing.counts.max()} samples after {record.time[most]:g} s, too "
-            f"many to put in ({limit:g} s at most). Use ",
-            *(Remedy(Action.GAPS, "longest"), ", or a number of s if you trust an interpolation."),
+            f"{record.source}: {missing.counts.max()} samples are missing in the times after {record.time[most]:g} s, "
+            f"too many to interpolate (at most {limit:g} s). Use ",
+            *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
         )
     return fill_gaps(record, float(steps[most]))
 
 
-def _filled(time: Vector, values: Vector, new: NDArray[np.bool_]) -> Vector:
+def _interpolate_new(time: Vector, values: Vector, new: NDArray[np.bool_]) -> Vector:
     spread = np.zeros(time.size)
     spread[~new] = values
     return fill(time, spread, new)
@@ -179,12 +179,12 @@ def _spline(time: Vector, values: Vector, at: Vector) -> Vector:
     return result
 
 
-def _measured(record: Record) -> dict[str, Vector]:
+def _measured_channels(record: Record) -> dict[str, Vector]:
     return {role: values for role, values in record.channels().items() if role != "time"}
 
 
 def _channel(record: Record, role: str) -> Vector:
-    channels = _measured(record)
+    channels = _measured_channels(record)
     if role not in channels:
         raise RecordError(f"{record.source!r} has no channel {role!r}; it has {', '.join(channels)}.")
     return channels[role]

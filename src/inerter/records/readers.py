@@ -1,4 +1,4 @@
-"""Reading a record from a file: the channels chosen, put into SI units and onto common times."""
+"""Reading a record from a file: channels selected, converted to SI units and interpolated to common times."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
+from inerter.records.channel_selection import Roles, checked_roles, example, select_channels
+from inerter.records.channel_units import check_present, check_units, fits, scale
 from inerter.records.channels import Channel, Contents, Progress, Samples
-from inerter.records.choosing import Roles, checked_roles, choose, example
-from inerter.records.gaps import alike, mend, onto_force
-from inerter.records.lost import mended
+from inerter.records.dropouts import fill_dropouts
+from inerter.records.gaps import fill_missing, have_same_times, resample_onto_force
 from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
-from inerter.records.scales import check_present, check_units, fits, scale
 
 Vector = NDArray[np.float64]
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
 FORMATS: dict[str, tuple[str, Opener]] = {
-    ".csv": ("text", tables.opened),
-    ".tsv": ("text", tables.opened),
-    ".txt": ("text", tables.opened),
-    ".tdms": ("TDMS", tdms.opened),
-    ".mf4": ("MDF", mdf.opened),
-    ".mdf": ("MDF", mdf.opened),
-    ".mat": ("MAT", matlab.opened),
+    ".csv": ("text", tables.open_channels),
+    ".tsv": ("text", tables.open_channels),
+    ".txt": ("text", tables.open_channels),
+    ".tdms": ("TDMS", tdms.open_channels),
+    ".mf4": ("MDF", mdf.open_channels),
+    ".mdf": ("MDF", mdf.open_channels),
+    ".mat": ("MAT", matlab.open_channels),
 }
 _OPTIONAL = ("velocity", "acceleration")
-# How files of each kind begin, and what to do with one that is none of ours.
+# First bytes of files of each kind, and a remedy for those that are not read.
 _MAGIC = (
     (b"TDSm", "TDMS", "Rename it to end in .tdms."),
     (b"MDF ", "MDF", "Rename it to end in .mf4."),
@@ -63,18 +63,18 @@ def read_record(
 
     The channels are the keywords `displacement`, `force`, `time`, `velocity` and `acceleration`. One is named as in the
     file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name in English, German or French
-    (time, displacement, position, x, force, load, Zeit, Weg, Kraft, temps, ...), of which a note tells where it is a
-    choice. Units come from the file; `units`, such as {"force": "kgf"}, adds or overrules them, and may say what one
-    volt is worth, {"force": "250 N"}.
-    `interval` [s] gives the sampling where the file has no times, or overrules them.
+    (time, displacement, position, x, force, load, Zeit, Weg, Kraft, temps, ...), which a note reports where there was a
+    choice. Units come from the file; `units`, such as {"force": "kgf"}, adds or overrides them, and may state the value
+    of one volt, {"force": "250 N"}.
+    `interval` [s] gives the sampling interval where the file has no times, or overrides them.
 
-    Samples that are missing or no finite numbers are refused; `gaps="fill"` interpolates up to 10 in a row, a number
-    those up to so many seconds, and `gaps="longest"` keeps the longest stretch without any. The same is done about
-    rows that an even clock leaves out, and about samples that were lost while the clock went on evenly, as the
-    displacement tells; `gaps="refuse"` leaves those.
+    Missing samples and values that are not finite are refused; `gaps="fill"` interpolates up to 10 in a row, a number
+    those up to so many seconds, and `gaps="longest"` keeps the longest part without any. The same applies to rows
+    missing in an even clock, and to samples dropped without a gap in the time channel, as detected from the
+    displacement; `gaps="refuse"` leaves those unchanged.
     `progress` is called with the fraction read so far.
 
-    Raises `RecordError` for a file, channel or unit that cannot be used, in one sentence that says what to try.
+    Raises `RecordError` for a file, channel or unit that cannot be used, with a remedy.
     """
     asked, units = checked_roles(named), check_units(units)
     name = _checked_path(path)
@@ -82,12 +82,12 @@ def read_record(
     opener = _opener(name, source)
     _check_interval(interval, asked["time"])
     with opener(name, source) as contents:
-        chosen, said = choose(source, contents, asked, timed=interval is not None)
+        chosen, said = select_channels(source, contents, asked, timed=interval is not None)
         scales, notes = _scales(source, chosen, units, asked)
-        samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _silent), strict=True))
-    channels = {role: _scaled(source, chosen[role], samples[role], scales[role]) for role in chosen}
-    channels, more = _timed(contents, source, chosen, channels, interval)
-    channels, filled_in, filled = mend(source, channels, gaps)
+        samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _ignore_progress), strict=True))
+    channels = {role: _to_si_units(source, chosen[role], samples[role], scales[role]) for role in chosen}
+    channels, more = _with_times(contents, source, chosen, channels, interval)
+    channels, filled_in, filled = fill_missing(source, channels, gaps)
     meta = {
         **contents.meta,
         "channels": {role: channel.name for role, channel in chosen.items()},
@@ -103,31 +103,30 @@ def read_record(
         period=period,
         meta=meta,
     )
-    return mended(with_missing_times(record, gaps), gaps)
+    return fill_dropouts(with_missing_times(record, gaps), gaps)
 
 
-def _silent(fraction: float) -> None:
+def _ignore_progress(fraction: float) -> None:
     pass
 
 
 def _checked_path(path: str | os.PathLike[str]) -> str:
     if not isinstance(path, str | os.PathLike):
-        raise RecordError(f"A record is read from the path of a file, got {path!r}.")
+        raise RecordError(f"The path of a record file must be a text or a Path; got {path!r}.")
     name = os.fsdecode(path)
     if os.path.isdir(name):
-        raise RecordError(f"{name!r} is a folder; give the path of a file in it.")
+        raise RecordError(f"{name!r} is a folder. Give the path of a file in it.")
     if not os.path.exists(name):
-        raise RecordError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.")
+        raise RecordError(f"{name}: file not found in {os.getcwd()!r}. Check the path.")
     return name
 
 
 def _opener(name: str, source: str) -> Opener:
-    """How a file of that suffix is opened, once its first bytes agree with it."""
+    """Reader for a file of that suffix, if its first bytes agree with it."""
     suffix = Path(name).suffix.lower()
     if suffix not in FORMATS:
         raise RecordError(
-            f"{source}: records are read from {', '.join(FORMATS)}, by the suffix of the file, "
-            f"not from {suffix or 'a file without one'}. Export or rename it."
+            f"{source}: unsupported file suffix {suffix!r}; supported: {', '.join(FORMATS)}. Export or rename the file."
         )
     expected, opener = FORMATS[suffix]
     try:
@@ -137,10 +136,10 @@ def _opener(name: str, source: str) -> Opener:
         raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
     found, advice = next(((what, to) for magic, what, to in _MAGIC if head.startswith(magic)), ("text", ""))
     if found == "text" and expected != "text":
-        found = "empty" if not head.strip(b" \0\r\n\t") else "something else"
-        advice = "Is it complete, and its suffix right?"
+        found = "an empty file" if not head.strip(b" \0\r\n\t") else "another format"
+        advice = "Check that the file is complete and its suffix correct."
     if found != expected and not (expected == "MAT" and found == "HDF5"):
-        raise RecordError(f"{source} should hold {expected} by its suffix, but by its first bytes is {found}. {advice}")
+        raise RecordError(f"{source}: the suffix indicates {expected}, but the first bytes indicate {found}. {advice}")
     return opener
 
 
@@ -150,13 +149,16 @@ def _check_interval(interval: float | None, time: str | int | None) -> None:
     if not is_number(interval) or interval <= 0.0:
         raise RecordError(f"The interval between samples must be a positive number of s, got {interval!r}.")
     if time is not None:
-        raise RecordError(f"Give the interval ({interval:g} s) or the channel of times ({time!r}), not both.")
+        raise RecordError(f"Give either the interval ({interval:g} s) or the time channel ({time!r}), not both.")
 
 
 def _scales(
     source: str, chosen: dict[str, Channel], units: dict[str, str], asked: dict[str, str | int | None]
 ) -> tuple[dict[str, float], list[str]]:
-    """What a unit of each channel is worth, and notes. Rates whose unit does not fit are left out unless asked for."""
+    """Size of the unit of each channel in SI units, and notes.
+
+    Velocities and accelerations whose unit does not fit are left out unless named in the call.
+    """
     scales, notes = {}, []
     needed = {role: c for role, c in chosen.items() if role not in _OPTIONAL or asked[role] is not None}
     check_present(source, needed, units)
@@ -164,21 +166,21 @@ def _scales(
         wanted = asked[role] is not None or role in units or role not in _OPTIONAL
         if not wanted and not fits(role, channel.unit):
             del chosen[role]
-            notes.append(f"The channel {channel.label} was left out, since its unit is none of {role}.")
+            notes.append(f"The channel {channel.label} was left out: its unit is not a unit of {role}.")
             continue
         scales[role], _, note = scale(source, role, channel, units.get(role))
         notes += [note] if note else []
     return scales, notes
 
 
-def _scaled(source: str, channel: Channel, samples: Samples, factor: float) -> Samples:
+def _to_si_units(source: str, channel: Channel, samples: Samples, factor: float) -> Samples:
     values = np.asarray(samples.values)
     if values.dtype.kind == "c":
-        raise RecordError(f"{source}: {channel.name!r} holds complex numbers; a record needs real ones.")
+        raise RecordError(f"{source}: {channel.name!r} contains complex numbers; a record requires real numbers.")
     if values.dtype.kind not in "fiub" or values.ndim != 1:
         raise RecordError(
-            f"{source}: {channel.name!r} holds {values.dtype} of shape {values.shape}; a record needs a vector of "
-            f"real numbers."
+            f"{source}: {channel.name!r} contains {values.dtype} of shape {values.shape}; a record requires a vector "
+            f"of real numbers."
         )
     own = values.dtype == np.float64 and values.flags.owndata and values.flags.writeable
     values = values if own else values.astype(float)
@@ -190,35 +192,36 @@ def _scaled(source: str, channel: Channel, samples: Samples, factor: float) -> S
     return Samples(values, samples.time)
 
 
-def _timed(
+def _with_times(
     contents: Contents, source: str, chosen: dict[str, Channel], channels: dict[str, Samples], interval: float | None
 ) -> tuple[dict[str, Samples], list[str]]:
-    """All channels over the same times, which are a channel of their own, from here on."""
+    """All channels on common times, with a time channel, and notes."""
     notes = []
     if contents.meta.get("cut"):
         shortest = min(samples.values.size for samples in channels.values())
-        notes.append(f"The file is cut short; the first {shortest} samples are complete and were kept.")
+        notes.append(f"The file is truncated: the first {shortest} samples are complete and were kept.")
         channels = {role: _first(samples, shortest) for role, samples in channels.items()}
     rasters = {role: samples.time for role, samples in channels.items()}
     timed = "time" not in channels and interval is None
     if timed and any(time is None for time in rasters.values()):
         raise RecordError(
-            f"{source}: no channel has an obvious name for the time, and no other gives the sampling. Name it, such ",
-            *("as ", example(contents.channels, "time"), ", or give ", Remedy(Action.INTERVAL, 1e-3), "."),
+            f"{source}: time channel not found by an obvious name, and the sampling interval is unknown. Name the "
+            f"time, ",
+            *("such as ", example(contents.channels, "time"), ", or give ", Remedy(Action.INTERVAL, 1e-3), "."),
         )
-    if timed and not alike([time for time in rasters.values() if time is not None]):
-        return onto_force(source, channels)
+    if timed and not have_same_times([time for time in rasters.values() if time is not None]):
+        return resample_onto_force(source, channels)
     sizes = {role: samples.values.size for role, samples in channels.items()}
     if len(set(sizes.values())) > 1:
         counts = ", ".join(f"{chosen[role].name!r} {size}" for role, size in sizes.items())
         raise RecordError(
-            f"{source}: the channels have different numbers of samples ({counts}), so they are not over the same "
-            f"times. Choose channels that were sampled together."
+            f"{source}: the channels have different numbers of samples ({counts}), so they have no common times. "
+            f"Select channels that were sampled together."
         )
     size = channels["force"].values.size
     if interval is not None:
         channels = {"time": Samples(interval * np.arange(size)), **channels}
-        notes.append(f"The samples were taken to be {interval:g} s apart, as the call says.")
+        notes.append(f"Sampling interval {interval:g} s as specified in the call.")
     elif timed:
         time = rasters["force"]
         channels = {"time": Samples(np.array(time)), **channels} if time is not None else channels

@@ -1,8 +1,9 @@
-"""A measured record: force and displacement over time, where they came from and what was done to them."""
+"""A measured record: force and displacement over time, their source and their processing."""
 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -21,13 +22,13 @@ UNIFORM = 1e-3  # of an interval: times that stray less from an even spacing cou
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """What a rig measured: channels of one length over uniform or other increasing time, in SI units.
+    """Channels measured by a rig: vectors of one length over uniform or other increasing time, in SI units.
 
     The displacement is that of the moved end of the device; the force is positive in tension, as everywhere here.
-    `notes` say, one sentence each, what was done to the channels since they were received.
+    `notes` list the processing of the channels since they were received, one sentence each.
 
-    Raises `RecordError` for channels that are no finite real vectors of one length of at least 4, or times that do
-    not increase.
+    Raises `RecordError` for channels that are not finite real vectors of one length of at least 4, or times that do not
+    increase.
     """
 
     time: Matrix  # (n,) [s]
@@ -41,10 +42,10 @@ class Record:
     force_bandwidth: float | None = None  # [Hz] of the load cell (second order, Butterworth), where it is known
     force_noise: float | None = None  # [N] r.m.s. of one sample, with what its steps add, where it is known
     displacement_noise: float | None = None  # [m] the same of the displacement
-    fixture_mass: float | None = None  # [kg] that moves with the table between load cell and device
+    fixture_mass: float | None = None  # [kg] of the fixture between load cell and device, moving with the table
     fixture_mass_error: float | None = None  # [kg] its standard uncertainty (k = 1), where it is known
     period: float | None = None  # [s] of the excitation, where it is known to repeat
-    meta: dict[str, Any] = field(default_factory=dict)  # what else the file said, such as its units
+    meta: dict[str, Any] = field(default_factory=dict)  # further contents of the file, such as its units
     further: Mapping[str, Matrix] = field(default_factory=dict)  # (n,) each: other channels by name, as a temperature
 
     def __post_init__(self) -> None:
@@ -64,7 +65,7 @@ class Record:
             bad = np.flatnonzero(~np.isfinite(array))
             if bad.size:
                 raise RecordError(
-                    f"The {name} of {self.source!r} has {bad.size} samples that are no finite numbers, the first at "
+                    f"The {name} of {self.source!r} has {bad.size} samples that are not finite, the first at "
                     f"sample {bad[0]}. Trim them away, or read the file with ",
                     *(Remedy(Action.GAPS, "fill"), "."),
                 )
@@ -73,11 +74,11 @@ class Record:
         for name, values in self.further.items():
             if np.shape(values) != self.time.shape or not np.all(np.isfinite(values)):
                 raise RecordError(
-                    f"The further channel {name!r} must have {self.time.size} finite samples, as the time has; got "
+                    f"The further channel {name!r} must have {self.time.size} finite samples like the time; got "
                     f"shape {np.shape(values)}."
                 )
         if self.time.size < 4:
-            raise RecordError(f"A record needs at least 4 samples, {self.source!r} has {self.time.size}.")
+            raise RecordError(f"A record must have at least 4 samples; {self.source!r} has {self.time.size}.")
         if not np.all(np.diff(self.time) > 0.0):
             at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
             raise RecordError(
@@ -109,7 +110,7 @@ class Record:
 
     @property
     def duration(self) -> float:
-        """From the first sample to the last [s]."""
+        """Time from the first sample to the last [s]."""
         return float(self.time[-1] - self.time[0])
 
     @property
@@ -118,8 +119,8 @@ class Record:
         even = self.time[0] + self.interval * np.arange(self.time.size)
         return bool(np.max(np.abs(self.time - even)) <= UNIFORM * self.interval)
 
-    def noted(self, *sentences: str, **changes: Any) -> Record:
-        """The same record with changed fields, and sentences about what was done.
+    def with_notes(self, *sentences: str, **changes: Any) -> Record:
+        """The same record with changed fields, and sentences about the processing added to its notes.
 
         Further channels are interpolated to times that change.
         """
@@ -127,9 +128,14 @@ class Record:
             changes["further"] = {n: np.interp(changes["time"], self.time, v) for n, v in self.further.items()}
         return replace(self, notes=(*self.notes, *sentences), **changes)
 
+    def noted(self, *sentences: str, **changes: Any) -> Record:
+        """The old name of `with_notes`."""
+        warnings.warn("`noted` is now `with_notes`; the old name goes with the next version.", DeprecationWarning, 2)
+        return self.with_notes(*sentences, **changes)
+
     def samples(self, chosen: slice, *sentences: str) -> Record:
-        """A part of the samples."""
-        return self.noted(*sentences, **{name: values[chosen] for name, values in self.channels().items()})
+        """The record with some of its samples."""
+        return self.with_notes(*sentences, **{name: values[chosen] for name, values in self.channels().items()})
 
     def trim(self, start: float | None = None, stop: float | None = None) -> Record:
         """The samples from `start` to `stop` [s], both included.
@@ -151,12 +157,12 @@ class Record:
         return self.samples(slice(int(a), int(b)), f"Trimmed to {begin:.6g} to {end:.6g} s.")
 
     def split(self, fraction: float = 0.7) -> tuple[Record, Record]:
-        """The first `fraction` of the time to fit, and the rest to check.
+        """Estimation data, the first `fraction` of the samples, and validation data, the rest.
 
         Raises `RecordError` unless both parts have at least 4 samples.
         """
         if not is_number(fraction) or not 0.0 < fraction < 1.0:
-            raise RecordError(f"The part to fit is a fraction between 0 and 1, got {fraction!r}.")
+            raise RecordError(f"The estimation fraction must be a number between 0 and 1; got {fraction!r}.")
         at = math.floor(fraction * self.time.size)
         if not 4 <= at <= self.time.size - 4:
             raise RecordError(
@@ -164,6 +170,6 @@ class Record:
             )
         cut = float(self.time[at])
         return (
-            self.samples(slice(0, at), f"The part before {cut:.6g} s, to fit."),
-            self.samples(slice(at, None), f"The part from {cut:.6g} s on, to check."),
+            self.samples(slice(0, at), f"Estimation data: before {cut:.6g} s."),
+            self.samples(slice(at, None), f"Validation data: after {cut:.6g} s."),
         )

@@ -1,4 +1,4 @@
-"""What can be done about a fault of a record, as data: Python and the command line say it in words of their own."""
+"""Remedies for faults of a record, as data: Python and the command line each format them in their syntax."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 class Action(StrEnum):
-    """What is done: an argument of `read_record`, a field of a record, a step on it, or a setting of a fit."""
+    """Kind of remedy: an argument of `read_record`, a field of a record, a processing step, or a setting of a fit."""
 
     CHANNEL = "channel"  # (role, name or number)
     UNIT = "unit"  # (role, unit)
@@ -23,7 +23,7 @@ class Action(StrEnum):
     REPAIR = "repair"
     DETREND = "detrend"
     REMOVE_OFFSET = "remove-offset"
-    REVERSE_FORCE = "reverse-force"  # a whole sentence with a space before it: a fit does it by itself
+    REVERSE_FORCE = "reverse-force"  # a whole sentence with a space before it: a fit does it automatically
     SHIFT_FORCE = "shift-force"  # [s]
     FORCE_BANDWIDTH = "force-bandwidth"
     FIXTURE_MASS = "fixture-mass"
@@ -35,7 +35,7 @@ class Action(StrEnum):
 
 @dataclass(frozen=True)
 class Remedy:
-    """One such step, with its value where it has one. As text it is written in Python."""
+    """One remedy, with its value where it has one. As text it is written in Python."""
 
     action: Action
     value: Any = None

@@ -1,4 +1,4 @@
-"""Samples of a record that contradict their neighbours, and the record with them interpolated."""
+"""Faulty samples of a record, and the record with them interpolated."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.records.dropouts import find_dropouts
 from inerter.records.gaps import fill
 from inerter.records.instants import Instant, held_values, joints, mask_of, spikes
-from inerter.records.lost import losses
 from inerter.records.record import Record
 
 Mask = NDArray[np.bool_]
@@ -46,7 +46,7 @@ def faulty_instants(record: Record) -> FaultyInstants:
             if abs(spike.size) > least and not inside[spike.start - 1 : spike.stop + 1].any()
         ]
     excused = mask_of([*held["displacement"], *held["force"], *found["displacement"]], record.time.size)
-    for loss in losses(record):
+    for loss in find_dropouts(record):
         excused[loss.after : loss.after + 2] = True
     return FaultyInstants(found, held, joints(record, excused) if record.uniform else [])
 
@@ -76,7 +76,7 @@ def _least_spike(record: Record) -> float:
 
 
 def repair(record: Record) -> Record:
-    """The record with spikes and held values interpolated by cubic splines; joints between pieces stay."""
+    """The record with spikes and held values interpolated by cubic splines; joints between pieces are kept."""
     faulty = faulty_instants(record)
     changes, notes = {}, []
     for role in _ROLES:
@@ -85,4 +85,4 @@ def repair(record: Record) -> Record:
         if missing.any():
             changes[role] = fill(record.time, getattr(record, role), missing)
             notes.append(f"Spikes and held values of the {role}, interpolated: {int(missing.sum())} samples.")
-    return record.noted(*notes, **changes)
+    return record.with_notes(*notes, **changes)

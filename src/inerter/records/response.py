@@ -1,4 +1,4 @@
-"""`frequency_response`: from displacement to force, of measured records, with its confidence band."""
+"""`frequency_response` of measured records: dynamic stiffness, force over displacement, with its confidence band."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from inerter.errors import OK, RecordError, Status, StatusKind
 from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
-from inerter.records.result import Response, named, respond
+from inerter.records.result import Response, format_sources, respond
 from inerter.records.spectra import HarmonicLines, Spectra, lines_of, welch
 from inerter.systems.linear import LinearSystem
 
@@ -46,20 +46,20 @@ def frequency_response(
     column, each arrival with its factor exp(-j omega delay), or with a Pade approximant for each delay between one
     arrival and the next. Infinite where omega is a pole. Raises `LinearSystemError` unless omega holds finite numbers.
 
-    **Records**: force over displacement, a `Response`, at the frequencies that their displacement has.
-    Where the displacement repeats, with `record.period` or one that is found, amplitudes of the excited harmonics are
-    averaged over whole periods before they are divided, which leaves no bias of noise in either channel; the scatter
-    between periods gives the band (Pintelon and Schoukens, System Identification, 2nd ed. 2012, ch. 2). Of several
-    records of one period, the scatter between records does, which has in it what friction and backlash make of
-    different phases. Records of different periods, such as sines, give one response together.
-    Where it does not repeat, spectra are averaged over Hann-windowed segments of `segment` seconds, by default a
-    sixteenth of all the time (Welch 1967), and the band follows from the coherence and the number of averages (Bendat
-    and Piersol, Random Data, 4th ed. 2010, sec. 9.2).
+    **Records**: dynamic stiffness, force over displacement, as a `Response` at the frequencies of the displacement.
+    Where the displacement is periodic, with `record.period` or an estimated one, amplitudes of the excited harmonics
+    are averaged over whole periods before they are divided, so that noise in either channel causes no bias; the scatter
+    between periods gives the band (Pintelon and Schoukens, System Identification, 2nd ed. 2012, ch. 2). For several
+    records of one period, the scatter between records gives the band, which includes the effect of friction and
+    backlash at different phases. Records of different periods, such as sines, are combined into one response. Where it
+    is not periodic, spectra are averaged over Hann-windowed segments of `segment` seconds, by default a sixteenth of
+    all the time (Welch 1967), and the band follows from the coherence and the number of averages (Bendat and Piersol,
+    Random Data, 4th ed. 2010, sec. 9.2).
 
-    `estimator` is used where more than one record or segment is averaged. "H1", the default, bears noise in the force
-    without bias, for the load cell is the noisier channel and friction adds what does not follow the displacement;
-    noise in the displacement makes its gain too small. "H2" is the contrary; "Hv" is their geometric mean, for noise
-    alike in both.
+    `estimator` is used where more than one record or segment is averaged. "H1", the default, is unbiased under noise in
+    the force, since the load cell is the noisier channel and friction adds force uncorrelated with the displacement;
+    noise in the displacement makes its gain too small. "H2" is the contrary; "Hv" is their geometric mean, for equal
+    noise in both.
 
     Raises `RecordError` for records that are too short, not uniformly sampled, or do not move.
 
@@ -74,10 +74,10 @@ def frequency_response(
         isinstance(system, Sequence) and system and all(isinstance(part, Record) for part in system)
     ):
         if omega is not None or pade_order is not None:
-            raise RecordError("The frequencies of a record are those that its displacement has: leave out omega.")
+            raise RecordError("The frequencies of a record are those of its displacement: leave out omega.")
         return measured_response([system] if isinstance(system, Record) else list(system), estimator, segment)
     if estimator != "H1" or segment is not None:
-        raise RecordError("An estimator and a segment are for records; a linear system is known exactly.")
+        raise RecordError("An estimator and a segment apply to records only; the response of a linear system is exact.")
     return linear_response(system, math.nan if omega is None else omega, pade_order)  # type: ignore[arg-type]
 
 
@@ -90,21 +90,23 @@ def measured_response(records: Sequence[Record], estimator: Estimator = "H1", se
         check_positive(RecordError, "The length of a segment", segment, "s")
     periods = None if segment is not None else common_periods(records)
     if periods is None:
-        found = averaged(records, welch(records, segment), estimator)
-        return replace(found, notes=(*found.notes, *_blurred(found)))
+        found = averaged_response(records, welch(records, segment), estimator)
+        return replace(found, notes=(*found.notes, *_resolution_notes(found)))
     parts = [
-        _periodic([record for record, own in zip(records, periods, strict=True) if own in group], group, estimator)
-        for group in _alike(periods)
+        _periodic_response(
+            [record for record, own in zip(records, periods, strict=True) if own in group], group, estimator
+        )
+        for group in _group_periods(periods)
     ]
-    return parts[0] if len(parts) == 1 else _joined(parts, records)
+    return parts[0] if len(parts) == 1 else _join_responses(parts, records)
 
 
-def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Response:
+def averaged_response(records: Sequence[Record], spectra: Spectra, estimator: str) -> Response:
     """The response from averaged spectra."""
     if not spectra.omega.size:
         raise RecordError(
-            f"Force and displacement of {named(records)} have no more in common than noise would: there is no "
-            f"response. Excite more strongly, or record longer."
+            f"{format_sources(records)}: the coherence between force and displacement is not significant. Excite more "
+            f"strongly, or record longer."
         )
     coherence = spectra.coherence
     size = np.maximum(np.abs(spectra.fx), 1e-300)
@@ -115,40 +117,40 @@ def averaged(records: Sequence[Record], spectra: Spectra, estimator: str) -> Res
     return respond(records, spectra.omega, value, coherence, scatter, averages, estimator, spectra.notes)
 
 
-def _periodic(records: Sequence[Record], group: Sequence[float], estimator: Estimator) -> Response:
+def _periodic_response(records: Sequence[Record], group: Sequence[float], estimator: Estimator) -> Response:
     """The response of records of one period."""
     period = float(np.mean(group))
     parts = [whole_periods(record, period) for record in records]
     every = lines_of(parts)
-    chosen = every.chosen()
+    chosen = every.excited()
     if not chosen.any():
         raise RecordError(
-            f"In the displacement of {named(records)} no harmonic of {period:.6g} s stands out of its scatter: is that "
-            f"the period?"
+            f"{format_sources(records)}: no harmonic of a period of {period:.6g} s exceeds the scatter of the "
+            f"displacement. Check the period."
         )
-    lines, left_out = every.at(chosen).settled()
+    lines, left_out = every.at(chosen).without_transients()
     counts = [x.shape[0] for x in lines.displacement]
     if counts == [1]:
         raise RecordError(
-            f"Too short: {named(records)} has one whole period of {period:.6g} s. Record two or more, for their "
-            f"scatter says how sure the response is."
+            f"{format_sources(records)}: too short: one whole period of {period:.6g} s. Record two or more: the "
+            f"uncertainty of the response follows from their scatter."
         )
     many = f"{counts[0]} periods" if len(counts) == 1 else f"{len(counts)} records of {min(counts)} or more periods"
     notes = [f"Periodic: {many} of {period:.6g} s, {chosen.sum()} of {chosen.size} harmonics excited."]
     notes += [note for part in parts for note in part.notes]
     left = ("period" if n == 1 else f"{n} periods" for n in left_out if n)
-    notes += [f"Left out the first {some}: the force had not settled." for some in left]
+    notes += [f"Left out the first {some}: transient in the force." for some in left]
     if chosen.sum() == 1:
         notes.append(_distortion(every, chosen))
     elif len(parts) == 1:
         notes.append(
-            "The band is of the scatter between periods: what friction and backlash make of other phases of the "
-            "excitation shows only between records."
+            "The band covers the scatter between periods only; the effect of friction and backlash at other phases of "
+            "the excitation requires several records."
         )
-    status = _repeats(lines.displacement, records)
+    status = _periodicity_status(lines.displacement, records)
     if len(parts) > 1:
         x, force = (np.array([a.mean(axis=0) for a in of]) for of in (lines.displacement, lines.force))
-        found = averaged(records, _products(lines.omega, x, force), estimator)
+        found = averaged_response(records, _products(lines.omega, x, force), estimator)
         return replace(found, notes=(*notes, *found.notes), status=status)
     (x,), (force,) = lines.displacement, lines.force
     value = force.mean(axis=0) / x.mean(axis=0)
@@ -170,7 +172,7 @@ def _products(omega: Matrix, x: Complex, force: Complex) -> Spectra:
 
 
 def _distortion(lines: HarmonicLines, chosen: NDArray[np.bool_]) -> str:
-    """What a sine is besides its fundamental, in words."""
+    """Sentence on the harmonic distortion of a sine."""
     words = []
     at = int(np.argmax(chosen))
     for name, amplitudes in (("displacement", lines.displacement), ("force", lines.force)):
@@ -178,10 +180,11 @@ def _distortion(lines: HarmonicLines, chosen: NDArray[np.bool_]) -> str:
         others = math.sqrt(power[1:].sum() / power[0]) if power[0] > 0.0 else math.inf
         third = math.sqrt(power[2] / power[0]) if power.size > 2 and power[0] > 0.0 else 0.0
         words.append(f"of the {name} {100.0 * others:.2g} % (the third alone {100.0 * third:.2g} %)")
-    return f"A sine: harmonics are, relative to the fundamental, {' and '.join(words)}; the response is of that alone."
+    distortion = " and ".join(words)
+    return f"Sinusoidal excitation: harmonic distortion {distortion}; the response is that of the fundamental alone."
 
 
-def _repeats(x: Sequence[Complex], records: Sequence[Record]) -> Status:
+def _periodicity_status(x: Sequence[Complex], records: Sequence[Record]) -> Status:
     """Whether the displacement is the same in all periods of a record."""
     for amplitudes, record in zip(x, records, strict=True):
         mean = amplitudes.mean(axis=0)
@@ -189,14 +192,14 @@ def _repeats(x: Sequence[Complex], records: Sequence[Record]) -> Status:
         if change > 0.1:
             return Status(
                 StatusKind.INACCURATE,
-                f"the displacement of {record.source!r} changes by {100.0 * change:.0f} % from period to period: is "
-                f"its period right?",
+                f"the displacement of {record.source!r} changes by {100.0 * change:.0f} % from period to period; check "
+                f"its period",
             )
     return OK
 
 
-def _blurred(found: Response) -> list[str]:
-    """A note where the response bends within the resolution by more than its band.
+def _resolution_notes(found: Response) -> list[str]:
+    """A note where the bias of the response by the resolution of the segments exceeds its band.
 
     The Hann window averages the response over frequencies of variance (spacing)^2 / 3, which shifts it by a sixth of
     its second difference.
@@ -210,10 +213,10 @@ def _blurred(found: Response) -> list[str]:
     count = int(np.sum(adjacent[1:] & adjacent[:-1] & (bias > wide)))
     if not count:
         return []
-    return [f"At {count} frequencies the segments are too short to resolve the response: its bias exceeds its band."]
+    return [f"Segments too short to resolve the response at {count} frequencies: its bias exceeds its band."]
 
 
-def _joined(parts: Sequence[Response], records: Sequence[Record]) -> Response:
+def _join_responses(parts: Sequence[Response], records: Sequence[Record]) -> Response:
     """Responses at different frequencies as one; of one frequency, that with the most averages."""
     omega = np.concatenate([part.omega for part in parts])
     averages = np.concatenate([part.averages for part in parts])
@@ -234,13 +237,13 @@ def _joined(parts: Sequence[Response], records: Sequence[Record]) -> Response:
         averages=averages[chosen],
         amplitude=math.sqrt(np.mean([part.amplitude**2 for part in parts])),
         estimator="periodic",
-        source=named(records),
+        source=format_sources(records),
         status=next((part.status for part in parts if not part.status.ok), OK),
         notes=tuple(f"{part.source}: {note}" for part in parts for note in part.notes),
     )
 
 
-def _alike(periods: Sequence[float]) -> list[list[float]]:
+def _group_periods(periods: Sequence[float]) -> list[list[float]]:
     """Periods in groups that count as one."""
     groups: list[list[float]] = []
     for period in sorted(set(periods)):
@@ -255,12 +258,12 @@ def _check(records: Sequence[Record]) -> None:
     for record in records:
         if not record.uniform:
             raise RecordError(
-                f"The samples of {record.source!r} are not evenly spaced, which spectra need: resample the record."
+                f"The samples of {record.source!r} are not evenly spaced, as spectra require. Resample the record."
             )
         if _is_constant(record.displacement):
-            raise RecordError(f"The displacement of {record.source!r} is constant: there is no response.")
+            raise RecordError(f"The displacement of {record.source!r} is constant, so the response is undefined.")
     if all(_is_constant(record.force) for record in records):
-        raise RecordError(f"The force of {named(records)} is constant: there is no response.")
+        raise RecordError(f"The force of {format_sources(records)} is constant, so the response is undefined.")
 
 
 def _is_constant(values: Matrix) -> bool:

@@ -1,4 +1,4 @@
-"""A measured frequency response as a value: gain, phase, coherence, and how sure they are."""
+"""A measured frequency response: gain, phase, coherence, and their confidence bands."""
 
 from __future__ import annotations
 
@@ -37,11 +37,11 @@ _COLUMNS = {  # name: unit, long name
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Force over displacement at some frequencies, at the amplitude of the records.
+    """Dynamic stiffness, force over displacement, at some frequencies, at the amplitude of the records.
 
-    There are only frequencies that the displacement has. The bands hold the true value in 95 of 100 cases each, as far
-    as scatter goes; a response without scatter, such as a model's, has infinite averages and bands of no width. A
-    phase of pi is that of an inerter, pi/2 that of a damper, 0 that of a spring.
+    Only frequencies of the displacement are included. The bands are 95 % confidence intervals at each frequency, for
+    random scatter; a response without scatter, such as that of a model, has infinite averages and bands of zero width.
+    A phase of pi is that of an inerter, pi/2 that of a damper, 0 that of a spring.
     """
 
     omega: Matrix  # (n,) [rad/s], increasing
@@ -64,7 +64,7 @@ class Response:
 
     @property
     def frequency(self) -> Matrix:
-        """[Hz]."""
+        """Frequency [Hz], shape (n,)."""
         return np.asarray(self.omega / (2.0 * np.pi))
 
     def lines(self, chosen: NDArray[np.bool_]) -> Response:
@@ -96,7 +96,7 @@ class Response:
     def to_csv(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write a table with a header `name [unit]`; numbers read back to the last bit.
 
-        Raises `RecordError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
+        Raises `RecordError` if the file cannot be written, or exists and `overwrite` is false.
         """
         columns = self.columns()
         with (
@@ -122,10 +122,10 @@ def respond(
 ) -> Response:
     """A response from complex values and their relative standard deviations.
 
-    Half of the variance of a complex value lies along it, and half across; Student's t has two degrees of freedom for
+    Half of the variance of a complex value is radial, and half tangential; Student's t has two degrees of freedom for
     each average but the first.
     """
-    gain, phase = np.abs(value), turned(np.angle(value))
+    gain, phase = np.abs(value), wrap_phase(np.angle(value))
     reach = _student(averages) * scatter / math.sqrt(2.0)
     turn = np.minimum(reach, np.pi)
     return Response(
@@ -138,15 +138,15 @@ def respond(
         averages=averages,
         amplitude=math.sqrt(np.mean([np.var(record.displacement) for record in records])),
         estimator=estimator,
-        source=named(records),
+        source=format_sources(records),
         status=status,
         notes=notes,
     )
 
 
-def exact(omega: Matrix, value: Complex, amplitude: float = math.nan) -> Response:
+def exact_response(omega: Matrix, value: Complex, amplitude: float = math.nan) -> Response:
     """A response without scatter, from its complex values [N/m]."""
-    gain, phase = np.abs(value), turned(np.angle(value))
+    gain, phase = np.abs(value), wrap_phase(np.angle(value))
     return Response(
         omega=omega,
         gain=gain,
@@ -161,22 +161,22 @@ def exact(omega: Matrix, value: Complex, amplitude: float = math.nan) -> Respons
     )
 
 
-def turned(angle: Matrix) -> Matrix:
+def wrap_phase(angle: Matrix) -> Matrix:
     """Phases from -pi/2 to 3 pi/2: those of passive devices, 0 to pi, are in the middle and do not jump.
 
-    Adding up differences instead would carry one noisy line's slip of a turn to all that follow.
+    Unwrapping by differences instead would carry the error of one noisy line to all that follow.
 
-    >>> turned(np.array([-3.1, 3.1]))  # an inerter
+    >>> wrap_phase(np.array([-3.1, 3.1]))  # an inerter
     array([3.18318531, 3.1       ])
     """
     return np.asarray((angle + 0.5 * np.pi) % (2.0 * np.pi) - 0.5 * np.pi)
 
 
-def named(records: Sequence[Record]) -> str:
-    """The sources of some records, in words."""
+def format_sources(records: Sequence[Record]) -> str:
+    """The sources of some records, separated by commas."""
     return ", ".join(dict.fromkeys(record.source for record in records))
 
 
 def _student(averages: Matrix) -> Matrix:
-    """Quantile of Student's t for two degrees of freedom an average, but for the first."""
+    """Quantile of Student's t for two degrees of freedom per average but the first."""
     return np.asarray(scipy.stats.t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))

@@ -1,4 +1,4 @@
-"""Samples at which a load cell or its amplifier cuts the force off."""
+"""Samples at which a load cell or its amplifier clips the force."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
 Vector = NDArray[np.float64]
-FLAT = 3  # samples in a row at the extreme value that look like a limit
+FLAT = 3  # consecutive samples at the extreme value that count as clipping
 
 
 @dataclass(frozen=True)
 class Plateau:
-    """An extreme [N] at which a force stays, and the largest number of samples in a row there."""
+    """An extreme [N] at which a force is clipped, and the largest number of consecutive samples there."""
 
     value: float
     longest: int
 
 
-def saturated(record: Record) -> NDArray[np.bool_]:
+def saturated_samples(record: Record) -> NDArray[np.bool_]:
     """Samples (samples,) at the end of the load cell's range, or on a plateau of the force where that is unknown."""
     force, limit = record.force, record.force_range
     if limit is not None:
@@ -36,7 +36,7 @@ def saturated(record: Record) -> NDArray[np.bool_]:
 
 
 def plateaus(record: Record) -> list[Plateau]:
-    """The extremes of the force at which it stays for longer than its motion explains."""
+    """The extremes of the force at which it is constant for longer than its motion explains."""
     force, step = record.force, resolution(record.force)
     found = []
     for value in (float(np.max(force)), float(np.min(force))):
@@ -51,7 +51,7 @@ def _at(force: Vector, value: float) -> NDArray[np.bool_]:
 
 
 def _expected_at_turn(force: Vector, extreme: float, step: float) -> float:
-    """How long a smooth signal would stay within one step of its extreme, judged by how it leaves 10 % of its range."""
+    """Samples of a smooth signal within one step of its extreme, estimated from those within 10 % of its range."""
     if step == 0.0:
         return 1.0
     band = max(0.1 * float(np.ptp(force)), 4.0 * step)

@@ -1,7 +1,7 @@
 """Velocity and acceleration from a measured displacement: filtered to a stated bandwidth, then a spline.
 
 Two differences of an encoder's samples multiply its steps by 1/interval^2: 1 um at 1 kHz becomes 1 m/s^2. So the
-displacement is filtered first, as little as its own spectrum allows, and what that costs is known.
+displacement is filtered first, as little as its spectrum allows, and the attenuation is reported.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _LONGEST = 1 << 20  # samples of one spectrum
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """The displacement of a record as a smooth curve, its derivatives, and how far they can be trusted.
+    """The displacement of a record as a smooth curve, its derivatives, and their noise.
 
     Nearer to the ends than 1/bandwidth all three rest on samples of one side only and are less certain.
     """
@@ -45,19 +45,19 @@ class Motion:
     displacement: Vector  # (n,) [m]
     velocity: Vector  # (n,) [m/s]
     bandwidth: float  # [Hz] where the gain of the filter is 1/2
-    highest: float  # [Hz] the highest frequency at which the displacement stands out of its noise
-    attenuation: float  # what the filter takes from the amplitude at that frequency, as a fraction
+    highest: float  # [Hz] the highest frequency at which the displacement exceeds its noise floor
+    attenuation: float  # relative attenuation of the filter at that frequency
     noise: float  # [m] r.m.s. of the noise in the displacement as measured
-    velocity_noise: float  # [m/s] r.m.s. of what is left of it in the velocity
-    acceleration_noise: float  # [m/s^2] and in the acceleration
+    velocity_noise: float  # [m/s] r.m.s. noise of the velocity
+    acceleration_noise: float  # [m/s^2] r.m.s. noise of the acceleration
     asked: bool = False  # whether the bandwidth was given
 
     @cached_property
     def acceleration(self) -> Vector:
-        """(n,) [m/s^2]"""
+        """Acceleration [m/s^2], shape (n,)."""
         return _slope(self.time, self.velocity)
 
-    def smoothed(self, displacement: Vector) -> tuple[Vector, Vector]:
+    def smooth(self, displacement: Vector) -> tuple[Vector, Vector]:
         """Another displacement on the same times, and its velocity, by the same filter."""
         smooth = low_pass(displacement, float(self.time[-1] - self.time[0]) / (self.time.size - 1), self.bandwidth)
         return smooth, _slope(self.time, smooth)
@@ -66,10 +66,10 @@ class Motion:
 def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motion:
     """The displacement, velocity and acceleration below `bandwidth` [Hz], without phase.
 
-    By default the bandwidth is four times the highest frequency at which the displacement stands out of its noise
-    floor (at most 0.4 of the sampling rate), where the filter takes less than 2e-5 of the amplitude. The filter is a
-    Butterworth of order 4, forwards and backwards; a cubic spline goes through the result, whose slope is the
-    velocity, and the slope of a spline through that the acceleration.
+    By default the bandwidth is four times the highest frequency at which the displacement exceeds its noise floor (at
+    most 0.4 of the sampling rate), where the filter attenuates by less than 2e-5. The filter is a Butterworth of order
+    4, forwards and backwards; the slope of a cubic spline through the result is the velocity, and the slope of a spline
+    through that the acceleration.
 
     Raises `RecordError` if the samples are not evenly spaced, or the bandwidth is not between 0 and half the rate.
     """
@@ -84,7 +84,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     displacement = low_pass(record.displacement, interval, chosen)
     velocity = _slope(record.time, displacement)
     attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
-    noises = _noises(noise.density, interval, chosen)
+    noises = _derivative_noise(noise.density, interval, chosen)
     return Motion(
         time=record.time,
         displacement=displacement,
@@ -103,7 +103,7 @@ def _uneven(record: Record) -> RecordError:
     missing = missing_rows(record.time)
     if missing is None:
         return RecordError(
-            f"The samples of {record.source!r} are not evenly spaced, which a filter needs. Use ",
+            f"The samples of {record.source!r} are not evenly spaced, as a filter requires. Use ",
             *(Remedy(Action.RESAMPLE), " first."),
         )
     places = "one place" if missing.after.size == 1 else f"{missing.after.size} places"
@@ -118,19 +118,19 @@ def _uneven(record: Record) -> RecordError:
 
 @dataclass(frozen=True)
 class Noise:
-    """What the spectrum of a channel says of its noise, and of the motion above it."""
+    """Noise floor of the spectrum of a channel, and the highest frequency above it."""
 
     density: float  # [unit^2/Hz], one-sided
     rms: float  # [unit]
-    highest: float  # [Hz] the highest frequency that stands out of the noise
+    highest: float  # [Hz] the highest frequency above the noise floor
 
 
 def noise_of(values: Vector, interval: float) -> Noise:
-    """The noise floor of a channel, and how far its motion reaches above that.
+    """The noise floor of a channel, and the highest frequency of its motion above that.
 
-    The spectrum is averaged over sixths of an octave; its lowest wide band is the floor, unless the steps of the
-    values, spread over the rate at which they are taken, ask for more. A record too short for a spectrum has no noise
-    to be found, and its highest frequency is that which leaves the filter of `smooth_displacement` at its limit.
+    The spectrum is averaged over sixths of an octave; its lowest wide band is the floor, unless the quantisation noise
+    is larger. A record too short for a spectrum has no detectable noise, and its highest frequency is that for which
+    the filter of `smooth_displacement` is at its limit.
     """
     limit = HIGHEST / (MARGIN * interval)
     if values.size < _FEWEST or np.ptp(values) == 0.0:
@@ -164,7 +164,7 @@ def quietest(values: Vector, interval: float) -> float:
 
 
 def resolution(values: Vector) -> float:
-    """The step in which the values are read: all differences between distinct values are multiples of it.
+    """Resolution (quantisation step) of the values: all differences between distinct values are multiples of it.
 
     0 where none can be found: fewer than 3 steps, or steps as small as rounding. It is looked for in
     the first 131072 values.
@@ -185,7 +185,7 @@ def resolution(values: Vector) -> float:
 
 
 def _slope(time: Vector, values: Vector) -> Vector:
-    """The slope of the cubic spline through the values, block by block: what is 64 samples off counts for nothing."""
+    """The slope of the cubic spline through the values, block by block, with overlaps of 64 samples."""
     result = np.empty(values.size)
     for start in range(0, values.size, _BLOCK):
         near = slice(max(start - 64, 0), start + _BLOCK + 64)
@@ -222,8 +222,8 @@ def _step_density(values: Vector, interval: float, step: float) -> float:
     return step**2 / 12.0 / max(min(rate, 0.5 / interval), 1.0 / (interval * values.size))
 
 
-def _noises(floor: float, interval: float, bandwidth: float) -> tuple[float, float]:
-    """R.m.s. of white noise of that density after the filter, in velocity and acceleration, as the splines see it."""
+def _derivative_noise(floor: float, interval: float, bandwidth: float) -> tuple[float, float]:
+    """R.m.s. of white noise of that density after filter and splines, in velocity and acceleration."""
     top = min(0.5 / interval, 6.0 * bandwidth)
     frequency = np.linspace(0.0, top, 4001)
     theta = 2.0 * np.pi * frequency * interval

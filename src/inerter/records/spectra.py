@@ -1,4 +1,4 @@
-"""Spectra of records at the frequencies that their displacement has: periodic lines, and Welch's averages."""
+"""Spectra of records at the frequencies of their displacement: periodic lines, and Welch's averages."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Chosen = NDArray[np.bool_]
 
-_FAINT = 1e-3  # of the largest amplitude of velocity: what is below is no part of the excitation
-_BESIDE = 0.05  # the same for the amplitudes within a decade, for lines: what is below is distortion
-_LEVEL = 1e-3  # probability that nothing but noise counts as something
+_FAINT = 1e-3  # of the largest amplitude of velocity: smaller ones are not part of the excitation
+_BESIDE = 0.05  # the same for the amplitudes within a decade, for lines: smaller ones are distortion
+_LEVEL = 1e-3  # significance level: probability that noise alone is significant
 _NEIGHBOURS = 21  # harmonics whose scatter is looked at together
-_ABOVE_STEPS = 20.0  # times what the steps of the encoder leave, for the power of a random displacement
-_CHANCE = 0.05  # probability that a frequency with nothing in common counts
-_DECAYED = 3.0  # a period has settled if its force strays from the last ones at most so many times as they do
-_STEADY = 5e-3  # of the size of the force: strays that never count as a transient
+_ABOVE_STEPS = 20.0  # times the quantisation noise of the encoder, for the power of a random displacement
+_CHANCE = 0.05  # probability that an incoherent frequency is kept
+_DECAYED = 3.0  # a period is steady if its force deviates from the last ones at most so many times as they do
+_STEADY = 5e-3  # of the size of the force: deviations that never count as a transient
 _SEGMENTS = 16.0  # shares of the time of all records in a segment, unless it is given
 _LEAST_SAMPLES, _LEAST_BIN = 16, 3  # in a segment; the mean that is taken off reaches into the bins below
 
 
 @dataclass(frozen=True, eq=False)
 class Spectra:
-    """Mean squares and products of displacement and force at some frequencies, and over how many averages."""
+    """Averaged auto and cross spectra of displacement and force at some frequencies, and the number of averages."""
 
     omega: Matrix  # (lines,) [rad/s]
     xx: Matrix  # (lines,) of the displacement
@@ -43,12 +43,12 @@ class Spectra:
 
     @property
     def coherence(self) -> Matrix:
-        """Share of the force's mean square that goes with the displacement."""
+        """Magnitude-squared coherence of force and displacement, shape (lines,)."""
         size = self.xx * self.ff
         return np.asarray(np.divide(np.abs(self.fx) ** 2, size, out=np.zeros_like(size), where=size > 0.0).clip(0, 1))
 
     def at(self, chosen: Chosen) -> Spectra:
-        """Some of the lines."""
+        """The spectra at some of the lines."""
         return Spectra(self.omega[chosen], self.xx[chosen], self.ff[chosen], self.fx[chosen], self.count, self.notes)
 
 
@@ -61,12 +61,12 @@ class HarmonicLines:
     force: tuple[Complex, ...]  # [N]
     least: float  # [m^2] squared amplitude that the steps of the encoder leave at a harmonic
 
-    def chosen(self) -> Chosen:
-        """The harmonics of the excitation.
+    def excited(self) -> Chosen:
+        """Mask of the harmonics of the excitation, shape (harmonics,).
 
-        A harmonic counts if it stands out of the scatter between periods (an F test), its velocity is no less than a
-        thousandth of the largest and a twentieth of the largest within a decade around it. So does the strongest
-        alone if it has nearly all of the velocity: a sine, whose other harmonics are distortion.
+        A harmonic counts if it exceeds the scatter between periods (an F test), its velocity is no less than a
+        thousandth of the largest and a twentieth of the largest within a decade around it. The strongest counts alone
+        if it has nearly all of the velocity: a sine, whose other harmonics are distortion.
         """
         means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
         power = np.mean(np.abs(means) ** 2, axis=0)
@@ -74,11 +74,11 @@ class HarmonicLines:
         strongest = int(np.argmax(velocity))
         if velocity[strongest] >= 0.95 * velocity.sum():
             return np.asarray(np.arange(power.size) == strongest)
-        strong = np.maximum(_FAINT**2 * velocity.max(), _BESIDE**2 * _largest(velocity))
+        strong = np.maximum(_FAINT**2 * velocity.max(), _BESIDE**2 * _local_maximum(velocity))
         return np.asarray(self.significant() & (velocity >= strong))
 
     def at(self, chosen: Chosen) -> HarmonicLines:
-        """Some of the harmonics."""
+        """The amplitudes at some of the harmonics."""
         return HarmonicLines(
             self.omega[chosen],
             tuple(x[:, chosen] for x in self.displacement),
@@ -86,22 +86,22 @@ class HarmonicLines:
             self.least,
         )
 
-    def settled(self) -> tuple[HarmonicLines, list[int]]:
-        """Without the periods at the start of each record in which the force has not settled, and how many these are.
+    def without_transients(self) -> tuple[HarmonicLines, list[int]]:
+        """The amplitudes without the transient periods at the start of each record, and their numbers.
 
-        The force of a period is compared with what the last half of the periods makes of its displacement.
+        The force of a period is compared with the response of the last half of the periods to its displacement.
         """
-        first = [_unsettled(x, force) for x, force in zip(self.displacement, self.force, strict=True)]
+        first = [_count_transient_periods(x, force) for x, force in zip(self.displacement, self.force, strict=True)]
         x, force = (
             tuple(values[n:] for values, n in zip(of, first, strict=True)) for of in (self.displacement, self.force)
         )
         return HarmonicLines(self.omega, x, force, self.least), first
 
     def significant(self) -> Chosen:
-        """The harmonics that stand out of the scatter of the displacement and of the steps of its encoder.
+        """Mask of the harmonics that exceed the scatter and the quantisation noise of the displacement.
 
-        Their power exceeds their own scatter (an F test), and that of their neighbours by so much that none of all
-        harmonics would if it were nothing but noise.
+        Their power exceeds their own scatter (an F test), and that of their neighbours by a factor that noise alone
+        would not reach at any of the harmonics.
         """
         means = np.array([amplitudes.mean(axis=0) for amplitudes in self.displacement])
         power, squares = np.mean(np.abs(means) ** 2, axis=0), 2 * len(means)
@@ -149,15 +149,15 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
     interval = records[0].interval
     if any(abs(record.interval - interval) > 1e-6 * interval for record in records):
         rates = ", ".join(f"{1.0 / record.interval:g}" for record in records)
-        raise RecordError(f"The records have different rates ({rates} Hz): resample them to one.")
+        raise RecordError(f"The records have different sampling rates ({rates} Hz). Resample them to one.")
     sizes = [record.time.size for record in records]
     length = min(round(sum(sizes) / _SEGMENTS), *sizes) if segment is None else round(segment / interval)
     step = max(length - length // 2, 1)
     counts = np.array([max((size - length) // step + 1, 0) for size in sizes])
     if length < _LEAST_SAMPLES or counts.min() < 1 or counts.sum() < 2:
         raise RecordError(
-            f"Too short: {' and '.join(f'{r.source!r} of {r.duration:g} s' for r in records)} cannot be cut into two "
-            f"or more segments of {length * interval:g} s and at least {_LEAST_SAMPLES} samples."
+            f"Too short: {' and '.join(f'{r.source!r} of {r.duration:g} s' for r in records)} cannot be divided into "
+            f"two or more segments of {length * interval:g} s and at least {_LEAST_SAMPLES} samples."
         )
     window = scipy.signal.windows.hann(length, sym=False)
     sums = [np.zeros(length // 2 + 1, dtype=complex) for _ in range(3)]
@@ -173,33 +173,33 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
             )
     frequency = np.fft.rfftfreq(length, interval)
     xx, ff = sums[0].real, sums[1].real
-    count = float(sum(_effective(window, step, int(n)) for n in counts))
+    count = float(sum(_effective_count(window, step, int(n)) for n in counts))
     floor = max(resolution(record.displacement) for record in records) ** 2 / 12.0 * 2.0 * interval
     velocity = frequency**2 * xx
     inside = slice(_LEAST_BIN, (length - 1) // 2 + 1)
     velocity, significant = velocity[inside], (xx > _ABOVE_STEPS * floor)[inside]
     chosen = significant & (velocity >= _FAINT**2 * velocity.max())
     averages = Spectra(np.asarray(2.0 * np.pi * frequency[inside]), xx[inside], ff[inside], sums[2][inside], count)
-    related = _related(averages.coherence, chosen, count)
+    related = _is_coherent(averages.coherence, chosen, count)
     notes = [
         f"Welch: {counts.sum()} Hann segments of {length * interval:g} s, overlapping by half, "
-        f"as good as {count:.1f} independent ones."
+        f"equivalent to {count:.1f} independent ones."
     ]
     if np.any(~chosen):
-        notes.append(f"No response at {np.sum(~chosen)} frequencies, where the displacement has no content.")
+        notes.append(f"No response at {np.sum(~chosen)} frequencies: no displacement there.")
     if np.any(chosen & ~related):
         notes.append(
-            f"No response at {np.sum(chosen & ~related)} frequencies, where force and displacement have nothing "
-            f"in common that noise could not have by chance (5 %)."
+            f"No response at {np.sum(chosen & ~related)} frequencies: coherence of force and displacement not "
+            f"significant (5 % level)."
         )
     found = averages.at(chosen & related)
     return Spectra(found.omega, found.xx, found.ff, found.fx, count, tuple(notes))
 
 
-def _related(coherence: Matrix, chosen: Chosen, count: float) -> Chosen:
-    """Where force and displacement have more in common than noise would at 5 of 100 frequencies.
+def _is_coherent(coherence: Matrix, chosen: Chosen, count: float) -> Chosen:
+    """Mask of the lines at which the coherence of force and displacement is significant at the 5 % level.
 
-    Nowhere, if there are no more such frequencies than noise would have, and none that sticks out of all of them.
+    False everywhere, if there are no more such lines than noise would have, and none is significant among all.
     """
     chance = np.power(np.maximum(1.0 - coherence, 0.0), max(count - 1.0, 1e-9))  # of so high a one by noise
     related = chosen & (chance < _CHANCE)
@@ -207,7 +207,7 @@ def _related(coherence: Matrix, chosen: Chosen, count: float) -> Chosen:
     return np.asarray(related & (some or np.min(chance[related], initial=1.0) < _LEVEL / max(chosen.sum(), 1)))
 
 
-def _largest(power: Matrix) -> Matrix:
+def _local_maximum(power: Matrix) -> Matrix:
     """The largest of the values within a decade around each harmonic, from a tenth of its frequency to ten times."""
     tenth = np.floor(10.0 * np.log10(np.arange(1, power.size + 1))).astype(int)
     peaks = np.zeros(tenth[-1] + 1)
@@ -215,8 +215,8 @@ def _largest(power: Matrix) -> Matrix:
     return np.asarray(scipy.ndimage.maximum_filter1d(peaks, 21, mode="nearest")[tenth])
 
 
-def _unsettled(x: Complex, force: Complex) -> int:
-    """How many periods at the start stray more than the later half; of fewer than four, none is found."""
+def _count_transient_periods(x: Complex, force: Complex) -> int:
+    """Number of transient periods at the start, which deviate more than the later half; 0 of fewer than four."""
     count = x.shape[0]
     half = count // 2
     strays = force - force[half:].mean(axis=0) / x[half:].mean(axis=0) * x
@@ -225,8 +225,8 @@ def _unsettled(x: Complex, force: Complex) -> int:
     return int(np.argmax(np.append(size[:half] <= usual, True))) if count >= 4 else 0
 
 
-def _effective(window: Matrix, step: int, count: int) -> float:
-    """As how many independent segments some overlapping ones count."""
+def _effective_count(window: Matrix, step: int, count: int) -> float:
+    """Equivalent number of independent segments of some overlapping ones."""
     energy = float(window @ window)
     shifts = [j for j in range(1, count) if j * step < window.size]
     shared = [(float(window[j * step :] @ window[: -j * step]) / energy) ** 2 for j in shifts]

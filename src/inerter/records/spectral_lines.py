@@ -1,4 +1,4 @@
-"""Narrow spectral lines in a force that no motion explains: hum of the mains, its aliases, and other pickup."""
+"""Narrow spectral lines in a force that no motion explains: mains hum, its aliases, and other pickup."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ _MANY = 1 << 20
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """A sine in the force that stands alone in its spectrum: frequency [Hz] and amplitude [N]."""
+    """An isolated sine in the spectrum of the force: frequency [Hz] and amplitude [N]."""
 
     frequency: float
     amplitude: float
 
 
 def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
-    """The largest line above the motion that no other is near to in size, and that is no multiple of the motion.
+    """The largest isolated line above the motion that is no harmonic of it; None if there is none.
 
-    Friction and backlash answer a periodic motion with lines at its multiples, of which each is about as large as the
-    next; a line that stands alone was picked up.
+    Friction and backlash cause lines at the harmonics of a periodic motion, of which each is about as large as the
+    next; an isolated line is pickup.
     """
     values = record.force[:_MANY] - float(np.mean(record.force[:_MANY]))
     if values.size < 512 or record.duration < 1.0:
@@ -60,7 +60,7 @@ def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
 
 
 def _frequency(amplitude: Vector, at: int) -> float:
-    """The place of a peak between spectral lines, by a parabola through logarithms."""
+    """Position of a peak between spectral lines, by a parabola through logarithms."""
     a, b, c = np.log(np.maximum(amplitude[at - 1 : at + 2], 1e-300))
     return at + 0.5 * float((a - c) / (a - 2.0 * b + c)) if a - 2.0 * b + c < 0.0 else float(at)
 

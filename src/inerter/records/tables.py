@@ -1,4 +1,4 @@
-"""Records from text: CSV, TSV and columns of numbers, with units beside, below or above the names, or in the call."""
+"""Records from text: CSV, TSV and columns of numbers, with units next to, below or above the names, or in the call."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ _THOUSANDS = re.compile(
     r"[+-]?\d{1,3}(?:(?:\.\d{3})+,\d*|(?:,\d{3})+\.\d*|(?:['\u2019 \u00a0\u202f]\d{3})+(?:[.,]\d*)?|(?:[.,]\d{3}){2,})"
 )
 _UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
-_THOUSANDS_SAID = "separators of thousands. Export numbers without them, such as 1234.5."
+_THOUSANDS_SAID = "thousands separators. Export numbers without them, such as 1234.5."
 _TAIL = 1 << 12  # bytes at the end in which lines of text are looked for
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
 
 @dataclass(frozen=True)
 class TableLayout:
-    """How a table is written, and where its numbers begin."""
+    """Format of a table, and the place at which its numbers begin."""
 
     delimiter: str | None
     decimal: str
@@ -49,16 +49,16 @@ class TableLayout:
     encoding: str
     names: tuple[str, ...]
     units: tuple[str, ...]
-    shorts: tuple[str, ...]  # names without what stands in brackets
+    shorts: tuple[str, ...]  # names without remarks in brackets
     nameless: bool
     preamble: tuple[str, ...] = ()
 
 
 @contextmanager
-def opened(path: str, source: str) -> Iterator[Contents]:
+def open_channels(path: str, source: str) -> Iterator[Contents]:
     """The columns of a text file.
 
-    Raises `RecordError`, which names the line, for a file that is no table of numbers.
+    Raises `RecordError`, which names the line, for a file that is not a table of numbers.
     """
     with open(path, "rb") as raw, _as_utf8(raw) as file:
         layout = _layout(source, file.read(HEAD))
@@ -89,7 +89,7 @@ def _as_utf8(raw: BinaryIO) -> BinaryIO:
 
 
 def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
-    """Where the numbers end: before last lines without any, such as "Ende", of which a note says so."""
+    """End of the numbers [bytes]: before last lines without any, such as "Ende", which a note reports."""
     end = file.seek(0, os.SEEK_END)
     start = max(layout.offset, end - _TAIL)
     file.seek(start)
@@ -103,11 +103,11 @@ def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
         return end, ()
     said = shown(lines[left[0]].decode(layout.encoding, errors="replace").strip())
     which = f"The last line, {said}, was" if len(left) == 1 else f"The last {len(left)} lines, from {said} on, were"
-    return start + sum(map(len, lines[: left[0]])), (f"{which} left out, since no numbers are in it.",)
+    return start + sum(map(len, lines[: left[0]])), (f"{which} left out: no numbers.",)
 
 
 def _is_text(cell: str) -> bool:
-    """Whether a cell is no sample: empty, or words that do not stand for a missing one."""
+    """Whether a cell is not a sample: empty, or words that do not denote a missing one."""
     return not cell or not (_is_value_or_missing(cell) or re.match(r"[+-]?[.,]?\d", cell))
 
 
@@ -117,32 +117,32 @@ def _layout(source: str, head: bytes) -> TableLayout:
     if len(head) == HEAD:
         raw = raw[:-1]  # may be cut short
     if not b"".join(raw).strip() and len(head) < HEAD:
-        raise RecordError(f"{source} is empty; expected a header with names and units, and rows of numbers.")
-    lines, encoding = _decoded(source, head, raw)
+        raise RecordError(f"{source}: empty file; expected a header with names and units, and rows of numbers.")
+    lines, encoding = _decode(source, head, raw)
     for at, line in enumerate(lines):
         delimiters = [delimiter for delimiter in _DELIMITERS if _divides(lines[at : at + 3], delimiter)]
-        if delimiters:  # one that leaves numbers alone goes before one that leaves others
+        if delimiters:  # prefer one that leaves only numbers
             delimiter = next((d for d in delimiters if all(map(_is_value_or_missing, _cells(line, d)))), delimiters[0])
             offset = start + sum(map(len, raw[:at]))
-            return _described(source, lines, at, delimiter, offset, encoding)
+            return _read_layout(source, lines, at, delimiter, offset, encoding)
     grouped = (cell for line in lines for d in _DELIMITERS for cell in _cells(line, d) if _THOUSANDS.fullmatch(cell))
     if (cell := next(grouped, None)) is not None:
         raise RecordError(f"{source}: the number {shown(cell)} has {_THOUSANDS_SAID}")
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
-        f"{source}: no rows of numbers in two or more columns were found; the file begins {shown(first.strip())}. "
+        f"{source}: rows of numbers in two or more columns not found; the file begins {shown(first.strip())}. "
         f"Expected a header such as 'time [s], displacement [mm], force [N]' and rows of numbers below it."
     )
 
 
-def _decoded(source: str, head: bytes, raw: list[bytes]) -> tuple[list[str], str]:
+def _decode(source: str, head: bytes, raw: list[bytes]) -> tuple[list[str], str]:
     try:
         return [line.decode("utf-8") for line in raw], "utf-8"
     except UnicodeDecodeError:
         lines = [line.decode("latin-1") for line in raw]  # a micro sign of an older program
     text = "".join(lines)
     if sum(not c.isprintable() and not c.isspace() for c in text) > 0.01 * len(text):
-        raise RecordError(f"{source} is not text, so it cannot be read as a table. Is its suffix right?")
+        raise RecordError(f"{source} is not text, so it cannot be read as a table. Check its suffix.")
     return lines, "latin-1"
 
 
@@ -179,7 +179,7 @@ def _is_row(cells: list[str]) -> bool:
     return numbers >= 2 or (numbers == 1 and all(map(_is_value_or_missing, cells)))
 
 
-def _described(
+def _read_layout(
     source: str, lines: list[str], at: int, delimiter: str | None, offset: int, encoding: str
 ) -> TableLayout:
     columns = len(_cells(lines[at], delimiter))
@@ -201,7 +201,7 @@ def _header(source: str, above: list[str], delimiter: str | None, columns: int) 
         if not line.strip():
             continue
         text = line.lstrip(" \t#%") if comment else line
-        cells = _spaced(text) if delimiter is None else _cells(text, delimiter)
+        cells = _split_spaced(text) if delimiter is None else _cells(text, delimiter)
         if len(cells) != columns:
             _check_counts(source, len(above) - count + 1, cells, columns, comment)
             return rows, count - 1
@@ -216,14 +216,14 @@ def _header(source: str, above: list[str], delimiter: str | None, columns: int) 
 def _check_counts(source: str, line: int, cells: list[str], columns: int, comment: bool) -> None:
     headings = [cell for cell in cells if _HEADING.fullmatch(cell)]
     if not comment and len(headings) >= 2:
-        half = " A decimal comma needs another delimiter than a comma." if columns == 2 * len(cells) else ""
+        half = " A decimal comma requires a delimiter other than a comma." if columns == 2 * len(cells) else ""
         raise RecordError(
-            f"{source}, line {line}: the header has {len(cells)} columns, the rows below it have {columns}.{half}"
+            f"{source}, line {line}: the header has {len(cells)} columns, the rows below have {columns}.{half}"
         )
 
 
-def _spaced(text: str) -> list[str]:
-    """Cells between white space, of which a unit in brackets belongs to the name before it."""
+def _split_spaced(text: str) -> list[str]:
+    """Cells between white space; a unit in brackets belongs to the name before it."""
     return re.findall(r"[^\s\[(]+(?:\s*[\[(][^\])]*[\])])?", text)
 
 
@@ -259,15 +259,15 @@ def _columns(
         whole = block.rfind(b"\n") + 1 if more else len(block)
         block, rest = block[:whole], block[whole:]
         if block.strip():
-            for part, values in zip(parts, _parsed(source, block, line, layout, wanted), strict=True):
+            for part, values in zip(parts, _parse(source, block, line, layout, wanted), strict=True):
                 part.append(values)
         line += block.count(b"\n")
         progress(min(file.tell() / max(end, 1), 1.0))
     return [np.concatenate(parts.pop(0)) for _ in wanted]
 
 
-def _parsed(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> list[NDArray[np.float64]]:
-    """The wanted columns of a block of lines; what is odd about it is looked for by a second, slower reading."""
+def _parse(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> list[NDArray[np.float64]]:
+    """The wanted columns of a block of lines; a second, slower reading finds the line of an error."""
     import pandas as pd  # noqa: PLC0415 - heavy
 
     options: dict[str, Any] = {"sep": layout.delimiter or r"\s+", "decimal": layout.decimal, "comment": "#"}
@@ -283,7 +283,7 @@ def _parsed(source: str, block: bytes, line: int, layout: TableLayout, wanted: l
     if not clean:
         _inspect(source, block, line, layout, wanted)
     if not columns:
-        raise RecordError(f"{source}: the rows from line {line} on cannot be read as numbers.")
+        raise RecordError(f"{source}: the rows after line {line - 1} cannot be read as numbers.")
     return columns
 
 
@@ -293,7 +293,7 @@ def _even(block: bytes, rows: int, layout: TableLayout) -> bool:
 
 
 def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
-    """Raises `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
+    """Raise `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
     for at, text in enumerate(block.decode(layout.encoding, errors="replace").split("\n"), line):
         cells = _cells(text.split("#")[0], layout.delimiter)
         if not cells:
@@ -302,7 +302,7 @@ def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: 
         if len(cells) < layout.columns or any(spare):
             raise RecordError(
                 f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in {shown(text.strip())}. "
-                f"Remove or complete that line."
+                f"Remove or complete this line."
             )
         for column in wanted:
             if not _is_value(cells[column], layout.decimal):
@@ -327,5 +327,5 @@ def _bad_cell(source: str, line: int, cells: list[str], decimal: str = ".") -> R
         return RecordError(f"{source}, line {line}: {shown(cell)} has {_THOUSANDS_SAID}")
     return RecordError(
         f"{source}, line {line}: expected a number with a decimal {mark}, got {shown(cell)}. "
-        f"Leave a cell empty, or write nan, where a sample is missing."
+        f"Leave the cell empty, or write nan, where a sample is missing."
     )

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import RecordError
+from inerter.records.channel_units import fits
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import split_heading
-from inerter.records.optional import library, translated
-from inerter.records.scales import fits
+from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.units import parse_quantity
 
 _WHAT = "a TDMS file"
@@ -21,20 +21,20 @@ _BLOCK = 1 << 20  # samples
 
 
 @contextmanager
-def opened(path: str, source: str) -> Iterator[Contents]:
-    """The channels of all groups. A waveform's increment gives its times.
+def open_channels(path: str, source: str) -> Iterator[Contents]:
+    """The channels of all groups. The increment of a waveform gives its times.
 
     Raises `RecordError` if the file is damaged, or nptdms is missing.
     """
     nptdms = library("nptdms", "tdms", "TDMS files")
-    with translated(source, _WHAT, "nptdms"):
+    with reraise_read_errors(source, _WHAT, "nptdms"):
         file = nptdms.TdmsFile.open(path)
     with file:
         found = [channel for group in file.groups() for channel in group.channels() if _holds_numbers(channel)]
-        channels = tuple(map(_described, found))
+        channels = tuple(map(_channel_of, found))
 
         def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
-            with translated(source, _WHAT, "nptdms"):
+            with reraise_read_errors(source, _WHAT, "nptdms"):
                 samples = [_samples(source, c.key, at, len(chosen), progress) for at, c in enumerate(chosen)]
             return _on_one_clock(samples, [c.key.properties.get("wf_start_time") for c in chosen])
 
@@ -43,8 +43,8 @@ def opened(path: str, source: str) -> Iterator[Contents]:
         yield Contents(channels, read, meta=meta)
 
 
-def _described(channel: Any) -> Channel:
-    """The channel by its name, of which a unit in brackets counts where no property has one."""
+def _channel_of(channel: Any) -> Channel:
+    """The channel by its name; a unit in brackets counts where no property has one."""
     unit, (name, beside, short) = _unit(channel), split_heading(channel.name)
     name = channel.name if unit else name
     return Channel(f"{channel.group_name}/{name}", unit or beside, short, channel)
@@ -99,7 +99,10 @@ def _times(source: str, channel: Any, size: int) -> Any:
     unit = str(channel.properties.get("wf_xunit_string") or "s")
     second = fits("time", unit) and parse_quantity(f"1 {unit}", "s")
     if not second:
-        raise RecordError(f"{source}: {channel.name!r} is over {unit!r}, not over the time. Choose another channel.")
+        raise RecordError(
+            f"{source}: the abscissa of {channel.name!r} has the unit {unit!r}, which is not a unit of time. Select "
+            f"another channel."
+        )
     offset = float(channel.properties.get("wf_start_offset") or 0.0)
     times = offset + float(interval) * np.arange(size)
     return times if second == 1.0 else second * times

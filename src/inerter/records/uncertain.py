@@ -1,4 +1,4 @@
-"""Numbers with their standard uncertainty, as a calibration certificate states them.
+"""Numbers with their standard uncertainty, as stated by a calibration certificate.
 
 The uncertainty is a standard one (k = 1) in the sense of JCGM 100:2008 (the GUM), 2.3.1, unless the text names another
 coverage factor: "1 +- 2 % (k = 2)" is "1 +- 1 %". A limit of error +-a without a distribution has a standard

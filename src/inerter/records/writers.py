@@ -1,4 +1,4 @@
-"""Writing a record to a file, in SI units, so that this package and others can read it."""
+"""Writing a record to a file, in SI units, for this package and others."""
 
 from __future__ import annotations
 
@@ -10,30 +10,32 @@ import numpy as np
 import scipy
 
 from inerter.errors import RecordError
-from inerter.records.optional import library
+from inerter.records.optional_readers import library
 from inerter.records.record import CHANNELS, Record
 from inerter.writing import export
 
-_NOT_GIVEN = "nothing is known of where it came from"
+_NOT_GIVEN = "unknown source"
 
 
 def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
-    """Writes the channels with their units; the suffix says how: .csv, .tsv, .txt, .tdms, .mf4 or .mat.
+    """Write the channels with their units; the format follows from the suffix: .csv, .tsv, .txt, .tdms, .mf4 or .mat.
 
-    `read_record` gives the same numbers back. The source and notes go along for people; the range of the load cell
-    and the period are for the call that reads it.
+    `read_record` returns the same numbers. The source and notes are written as text; the range of the load cell and the
+    period are arguments of the call that reads the file.
 
-    A file that is there already is replaced with `overwrite` only, and then as a whole: if that fails, it is as it was.
+    An existing file is replaced with `overwrite` only, and then as a whole: if that fails, it is unchanged.
 
-    Raises `RecordError` for a file that is there, another suffix, a folder that is not there, or a library that is not
+    Raises `RecordError` for an existing file, an unsupported suffix, a missing folder, or a library that is not
     installed; `WorkError` if the disk is full.
     """
     if not isinstance(record, Record):
-        raise RecordError(f"write_record takes a Record, got {type(record).__name__}.")
+        raise RecordError(f"write_record requires a Record, got {type(record).__name__}.")
     name = os.fsdecode(path)
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:
-        raise RecordError(f"Records are written to {', '.join(WRITERS)}, got {name!r}. Name a file with such a suffix.")
+        raise RecordError(
+            f"{name}: unsupported suffix; supported: {', '.join(WRITERS)}. Name a file with such a suffix."
+        )
     with export(name, RecordError, overwrite=overwrite) as draft:
         WRITERS[suffix](record, str(draft))
 

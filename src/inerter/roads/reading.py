@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError, UnitError
 from inerter.records import tables
+from inerter.records.channel_selection import fold_name
 from inerter.records.channels import Channel, Contents
-from inerter.records.choosing import folded
-from inerter.records.optional import library, translated
+from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import Sampled
@@ -130,7 +130,7 @@ def _from_table(
         raise RecordError(f"Give the interval ({interval:g} m) or the column of distances, not both.")
     asked = {role: named.get(role) for role in _WORDS}
     try:
-        with tables.opened(name, source) as contents:
+        with tables.open_channels(name, source) as contents:
             chosen = _chosen(source, contents, asked, spaced=interval is not None)
             worth = _scales(source, chosen, units, spaced=interval is not None)
             values = _read(contents, [chosen[role] for role in worth])
@@ -189,7 +189,7 @@ def _unnamed(source: str, role: str, left: Sequence[Channel], channels: Sequence
 
 
 def _is_called(name: str, words: str) -> bool:
-    plain = re.sub(r"[_.\-/]", " ", folded(name))
+    plain = re.sub(r"[_.\-/]", " ", fold_name(name))
     return re.search(rf"(?<!\w)(?:{words})(?!\w)", plain) is not None
 
 
@@ -283,7 +283,7 @@ def _checked_lateral(lateral: object) -> tuple[float, ...]:
 
 def _from_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
     crg = library("pyopencrg", "roads", "OpenCRG files")
-    with translated(source, "OpenCRG"), warnings.catch_warnings():
+    with reraise_read_errors(source, "OpenCRG"), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its remarks on headers that no height depends on
         road = crg.read(name)
         distance, low, high = np.array(road.u, dtype=float), float(road.v_min), float(road.v_max)

@@ -23,7 +23,7 @@ from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Free, Network
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
-from inerter.records.findings import findings
+from inerter.records.inspection import findings
 from inerter.records.prepare import detrend, resample, shift_force
 from inerter.records.readers import read_record
 from inerter.records.record import Record
@@ -99,10 +99,10 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
         period=asked.period,
         progress=progress,
     )
-    received = received.noted(**{name: getattr(asked, name) for name in _OF_SENSORS})
+    received = received.with_notes(**{name: getattr(asked, name) for name in _OF_SENSORS})
     if asked.fixture_mass is not None:
         mass = asked.fixture_mass
-        received = received.noted(fixture_mass=mass.value, fixture_mass_error=mass.uncertainty or None)
+        received = received.with_notes(fixture_mass=mass.value, fixture_mass_error=mass.uncertainty or None)
     used = repair(received) if asked.repair else received
     if asked.start is not None or asked.stop is not None:
         used = used.trim(asked.start, asked.stop)
@@ -195,5 +195,5 @@ def model_title(found: Identified) -> str:
 
 def _corrected(comparison: RecordFit, gain: float, delay: float) -> Record:
     moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
-    record = comparison.record.noted(force=(comparison.record.force - comparison.offset) / gain - moved)
+    record = comparison.record.with_notes(force=(comparison.record.force - comparison.offset) / gain - moved)
     return shift_force(record, delay) if delay else record

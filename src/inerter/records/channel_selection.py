@@ -1,4 +1,4 @@
-"""Which channel of a file is which: by the names that the call gives, or by obvious ones."""
+"""Selection of the channel for each role: by the names in the call, or by obvious names in the file."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypedDict
 
 from inerter.errors import RecordError
+from inerter.records.channel_units import EXAMPLES, fits
 from inerter.records.channels import Channel, Contents
 from inerter.records.remedy import Action, Remedy
-from inerter.records.scales import EXAMPLES, fits
 
 
 class Roles(TypedDict, total=False):
-    """Which channel is which, by name or number from 0."""
+    """Channel of each role, by name or number from 0."""
 
     time: str | int | None
     displacement: str | int | None
@@ -25,8 +25,8 @@ class Roles(TypedDict, total=False):
 
 
 ROLES = tuple(Roles.__annotations__)
-# Names that tell the channel by themselves, whatever their case and accents: in English, German and French. The last
-# two roles are taken only if their unit fits.
+# Names that identify the channel, whatever their case and accents: in English, German and French. The last two roles
+# are taken only if their unit fits.
 OBVIOUS = {
     "time": ("time", "t", "zeit", "messzeit", "temps"),
     "displacement": ("displacement", "disp", "position", "pos", "x", "stroke", "weg", "hub", "deplacement", "course"),
@@ -43,7 +43,7 @@ _LISTED = 12
 def checked_roles(given: Mapping[str, Any]) -> dict[str, str | int | None]:
     """The channel of each role; None where it is to be found by its name.
 
-    Raises `RecordError` for what is no role.
+    Raises `RecordError` for an unknown role.
     """
     for name in given:
         if name not in ROLES:
@@ -53,33 +53,35 @@ def checked_roles(given: Mapping[str, Any]) -> dict[str, str | int | None]:
     return {role: given.get(role) for role in ROLES}
 
 
-def choose(
+def select_channels(
     source: str, contents: Contents, asked: dict[str, str | int | None], timed: bool
 ) -> tuple[dict[str, Channel], list[str]]:
-    """The channel of each role: the one that was asked for, else the one with an obvious name; and a note of choices.
+    """The channel of each role: the one named in the call, else the one with an obvious name; and a note of choices.
 
-    A channel whose name begins with such a word is taken where no other of the file has a unit of its role. `timed`
-    says that the times are known without a channel.
+    A channel whose name begins with such a word is taken where no other channel of the file has a unit of its role.
+    `timed` means that the times are known without a channel.
 
-    Raises `RecordError`, which lists what there is, where a needed channel is not found or not clear.
+    Raises `RecordError`, which lists the channels, where a required channel is not found or ambiguous.
     """
     channels = contents.channels
-    chosen = {role: named(source, channels, role, given) for role, given in asked.items() if given is not None}
+    chosen = {
+        role: channel_by_name(source, channels, role, given) for role, given in asked.items() if given is not None
+    }
     for role in ("displacement", "force", "time", "velocity", "acceleration"):  # times are those of the group of both
         if role in chosen or (role == "time" and timed):
             continue
-        if found := _obvious(source, channels, role, {_group(channel) for channel in chosen.values()}):
+        if found := _obvious_channel(source, channels, role, {_group(channel) for channel in chosen.values()}):
             chosen[role] = found
         elif role in ("displacement", "force"):
             if contents.nameless:
                 raise _without_header(source, channels, asked, timed)
             raise RecordError(
-                f"{source}: no channel has an obvious name for the {role} (such as {', '.join(OBVIOUS[role][:3])}); "
-                f"there {listed(channels)}. Name it: ",
+                f"{source}: {role} channel not found by an obvious name (such as {', '.join(OBVIOUS[role][:3])}); "
+                f"available: {format_channels(channels)}. Name it: ",
                 *(example(channels, role), "."),
             )
     chosen = {role: chosen[role] for role in ROLES if role in chosen}
-    _distinct(source, chosen)
+    _check_distinct(source, chosen)
     words = {role: OBVIOUS[role][: _ENGLISH[role]] for role in ROLES}
     by_name = [
         f"{role} from {channel.label}"
@@ -87,7 +89,7 @@ def choose(
         if asked.get(role) is None
         and (_folded_short(channel) not in words[role] or sum(_folded_short(c) in OBVIOUS[role] for c in channels) > 1)
     ]
-    return chosen, [f"Channels were chosen by their names: {', '.join(by_name)}."] if by_name else []
+    return chosen, [f"Channels selected by name: {', '.join(by_name)}."] if by_name else []
 
 
 def _without_header(
@@ -98,14 +100,14 @@ def _without_header(
     said = [part for at, role in enumerate(needed, first) for part in (Remedy(Action.CHANNEL, (role, at)), ", ")][:-1]
     units: Any = Remedy(Action.UNITS, tuple((role, EXAMPLES[role]) for role in needed))
     return RecordError(
-        f"{source} has no header above its {len(channels)} columns. Say which is which, counted from 0, and in which "
-        f"units, such as ",
+        f"{source}: the {len(channels)} columns have no header. Name the column of each channel, counted from 0, and "
+        f"their units, such as ",
         *said,
         *(" and ", units, "."),
     )
 
 
-def named(source: str, channels: Sequence[Channel], role: str, given: str | int) -> Channel:
+def channel_by_name(source: str, channels: Sequence[Channel], role: str, given: str | int) -> Channel:
     """The channel of that name or number (from 0).
 
     Raises `RecordError` if there is none, or more than one.
@@ -115,39 +117,41 @@ def named(source: str, channels: Sequence[Channel], role: str, given: str | int)
             return channels[given]
         raise RecordError(
             *(f"{source}: ", Remedy(Action.CHANNEL, (role, given))),
-            f" is not among its {len(channels)} channels, which are counted from 0; there {listed(channels)}.",
+            f" is out of range; the file has {len(channels)} channels, counted from 0: {format_channels(channels)}.",
         )
     if not isinstance(given, str):
         raise RecordError(f"{role} must be the name or the number of a channel, got {given!r}.")
-    for key in (_full, _short, _folded, _folded_short):
+    for key in (_full_name, _short_name, _folded_name, _folded_short):
         matches = [channel for channel in channels if key(channel) == key(Channel(given, short=given))]
         if len(matches) == 1:
             return matches[0]
         if matches:
-            raise _unclear(source, channels, role, matches)
-    close = _nearest(given, channels)
+            raise _ambiguous_name(source, channels, role, matches)
+    close = _nearest_name(given, channels)
     hint = f" Did you mean {close!r}?" if close else ""
-    raise RecordError(f"{source}: there is no channel {given!r} for the {role}; there {listed(channels)}.{hint}")
+    raise RecordError(
+        f"{source}: unknown channel {given!r} for the {role}; available: {format_channels(channels)}.{hint}"
+    )
 
 
-def listed(channels: Sequence[Channel]) -> str:
-    """The channels with their units, for messages: "is time [s], ..." or "are ..."."""
+def format_channels(channels: Sequence[Channel]) -> str:
+    """The channels with their units, for messages: "time [s], force [N]"."""
     if not channels:
-        return "are no channels of numbers"
+        return "no channels of numbers"
     shown = [channel.label for channel in channels[:_LISTED]]
     if len(channels) > _LISTED:
         shown.append(f"and {len(channels) - _LISTED} more")
-    return ("is " if len(channels) == 1 else "are ") + ", ".join(shown)
+    return ", ".join(shown)
 
 
-def _obvious(source: str, channels: Sequence[Channel], role: str, groups: Collection[str]) -> Channel | None:
+def _obvious_channel(source: str, channels: Sequence[Channel], role: str, groups: Collection[str]) -> Channel | None:
     """The one channel with an obvious name; of several the one in these groups; None if there is none."""
     matches = [channel for channel in channels if _folded_short(channel) in OBVIOUS[role]]
     near = [channel for channel in matches if _group(channel) in groups]
     if len(near) == 1 < len(matches):
         return near[0]
     if len(matches) > 1:
-        raise _unclear(source, channels, role, matches)
+        raise _ambiguous_name(source, channels, role, matches)
     fitting = [channel for channel in channels if fits(role, channel.unit)] if not matches and role in _NEEDED else []
     if len(fitting) == 1 and _first_word(fitting[0]) in OBVIOUS[role]:
         return fitting[0]
@@ -155,7 +159,7 @@ def _obvious(source: str, channels: Sequence[Channel], role: str, groups: Collec
 
 
 def _group(channel: Channel) -> str:
-    """What is before the name of a channel in its group; empty where there are no groups."""
+    """Group prefix of the channel name; empty where there are no groups."""
     return re.split(r"[/.][^/.]*$", channel.name)[0] if re.search(r"[/.]", channel.name) else ""
 
 
@@ -164,16 +168,16 @@ def _first_word(channel: Channel) -> str | None:
     return found[0] if found else None
 
 
-def _unclear(source: str, channels: Sequence[Channel], role: str, matches: Sequence[Channel]) -> RecordError:
+def _ambiguous_name(source: str, channels: Sequence[Channel], role: str, matches: Sequence[Channel]) -> RecordError:
     numbers = [channels.index(channel) for channel in matches]
     names = " and ".join(f"{channel.name!r} (number {at})" for channel, at in zip(matches, numbers, strict=True))
-    alike = len({channel.name for channel in matches}) < len(matches)
-    way, which = ("number", numbers[0]) if alike else ("name", matches[0].name)
+    repeated = len({channel.name for channel in matches}) < len(matches)
+    way, which = ("number", numbers[0]) if repeated else ("name", matches[0].name)
     remedy = Remedy(Action.CHANNEL, (role, which))
-    return RecordError(f"{source}: {names} may all be the {role}. Say which, by {way}: ", remedy, ".")
+    return RecordError(f"{source}: ambiguous {role} channel: {names}. Select one by {way}: ", remedy, ".")
 
 
-def _distinct(source: str, chosen: dict[str, Channel]) -> None:
+def _check_distinct(source: str, chosen: dict[str, Channel]) -> None:
     roles: dict[int, str] = {}
     for role, channel in chosen.items():
         if id(channel) in roles:
@@ -184,38 +188,38 @@ def _distinct(source: str, chosen: dict[str, Channel]) -> None:
         roles[id(channel)] = role
 
 
-def _nearest(given: str, channels: Sequence[Channel]) -> str | None:
-    by_key = {key(channel): channel.name for channel in channels for key in (_folded, _folded_short)}
+def _nearest_name(given: str, channels: Sequence[Channel]) -> str | None:
+    by_key = {key(channel): channel.name for channel in channels for key in (_folded_name, _folded_short)}
     close = difflib.get_close_matches(given.casefold(), by_key, n=1, cutoff=0.5)
     return by_key[close[0]] if close else None
 
 
 def example(channels: Sequence[Channel], role: str) -> Remedy:
-    """What to name for a role: the first channel whose unit is one of it."""
+    """Example of naming the channel of a role: the first one with a unit of that role."""
     likely = (channel.name for channel in channels if fits(role, channel.unit))
     return Remedy(Action.CHANNEL, (role, next(likely, "name")))
 
 
-def _full(channel: Channel) -> str:
+def _full_name(channel: Channel) -> str:
     return channel.name
 
 
-def _short(channel: Channel) -> str:
+def _short_name(channel: Channel) -> str:
     return channel.short or channel.name
 
 
-def _folded(channel: Channel) -> str:
-    return folded(channel.name)
+def _folded_name(channel: Channel) -> str:
+    return fold_name(channel.name)
 
 
 def _folded_short(channel: Channel) -> str:
-    return folded(_short(channel))
+    return fold_name(_short_name(channel))
 
 
-def folded(name: str) -> str:
+def fold_name(name: str) -> str:
     """The name without case and accents.
 
-    >>> folded(" Déplacement ")
+    >>> fold_name(" Déplacement ")
     'deplacement'
     """
     parts = unicodedata.normalize("NFKD", name.strip().casefold())

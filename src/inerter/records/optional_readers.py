@@ -1,4 +1,4 @@
-"""Libraries that are extras, and the strange errors that broken files draw from them."""
+"""Optional reader libraries, and their errors for damaged files."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.errors import InerterError, RecordError
 
 
 def library(module: str, extra: str, what: str) -> Any:
-    """The module of that name.
+    """The imported module of that name.
 
     Raises `RecordError`, which names the extra, if it is not installed.
     """
@@ -20,13 +20,13 @@ def library(module: str, extra: str, what: str) -> Any:
         return import_module(module)
     except ImportError:
         raise RecordError(
-            f'{what} need a library that is not installed: pip install "inerter[{extra}]", then try again.'
+            f'{what} require a library that is not installed. Install it with pip install "inerter[{extra}]".'
         ) from None
 
 
 @contextmanager
-def translated(source: str, what: str, *loggers: str) -> Iterator[None]:
-    """Turns whatever a library raises into one sentence, and keeps its own log off the screen."""
+def reraise_read_errors(source: str, what: str, *loggers: str) -> Iterator[None]:
+    """Reraise any error of a library as a `RecordError` of one sentence, with the log of the library silenced."""
     known = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in loggers]
     quiet = [logging.getLogger(name) for name in known]
     levels = [logger.level for logger in quiet]
@@ -39,7 +39,7 @@ def translated(source: str, what: str, *loggers: str) -> Iterator[None]:
     except Exception as problem:  # the libraries' errors share no base: struct.error, KeyError, OSError, ...
         said = " ".join(str(problem).split())[:200].rstrip(". ") or type(problem).__name__
         raise RecordError(
-            f"{source} cannot be read as {what}: it is damaged or cut short ({said}). Copy or export it once more."
+            f"{source} cannot be read as {what}: the file is damaged or truncated ({said}). Copy or export it again."
         ) from None
     finally:
         for logger, level in zip(quiet, levels, strict=True):

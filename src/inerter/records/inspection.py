@@ -1,4 +1,4 @@
-"""Looking a record over, before anything is fitted to it."""
+"""Inspection of a record before a model is fitted to it."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import welch
 
-from inerter.records import signs
+from inerter.records import polarity_delay
 from inerter.records.clocks import clock_drift, jitter
+from inerter.records.dropouts import find_dropouts
 from inerter.records.finding import Finding, Severity
+from inerter.records.finding_texts import COARSE, LARGE, RecordFinding
 from inerter.records.instants import Instant
-from inerter.records.kinds import COARSE, LARGE, RecordFinding
-from inerter.records.lost import losses
 from inerter.records.record import UNIFORM, Record
 from inerter.records.repair import faulty_instants
-from inerter.records.saturation import plateaus, saturated
+from inerter.records.saturation import plateaus, saturated_samples
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import lonely_line
 
@@ -28,13 +28,20 @@ PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more oft
 
 
 def findings(record: Record) -> list[Finding]:
-    """What is worth knowing about a record, the gravest first.
+    """Findings of a record, the most severe first.
 
-    Looks at the sampling and its clock, samples that were lost, held or replaced by spikes, joints between pieces, the
-    size, noise, steps, limits, offset and drift of the channels, swapped columns, hum of the mains and other lines, the
-    sign of the force and its delay.
+    Inspects the sampling and its clock, samples that were dropped, held or replaced by spikes, joints between pieces,
+    the amplitude, noise, resolution, clipping, offset and drift of the channels, swapped columns, mains hum and other
+    spectral lines, the sign of the force and its delay.
     """
-    found = [*_count(record), *_sampling(record), *_lost(record), *_filled(record), *_constant(record), *_sizes(record)]
+    found = [
+        *_count(record),
+        *_sampling(record),
+        *_dropouts(record),
+        *_filled_samples(record),
+        *_constant(record),
+        *_implausible_sizes(record),
+    ]
     if not any(finding.severity == "error" for finding in found):
         found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
         if record.uniform:
@@ -46,18 +53,18 @@ def findings(record: Record) -> list[Finding]:
 def _of_motion(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
-        *_undersampled(record, motion),
-        *_swapped(record),
+        *_undersampling(record, motion),
+        *_swapped_columns(record),
         *(_hum(record, motion) or _line(record, motion)),
         *_clock(record, motion),
-        *signs.sign(record, motion),
-        *signs.delay(record, motion),
+        *polarity_delay.sign(record, motion),
+        *polarity_delay.delay(record, motion),
         Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
     ]
 
 
-def _undersampled(record: Record, motion: Motion) -> list[Finding]:
-    """Motion close to half the sampling rate, beyond which there may be more that is folded back."""
+def _undersampling(record: Record, motion: Motion) -> list[Finding]:
+    """Motion close to half the sampling rate, above which further motion may be aliased."""
     limit = 0.5 / record.interval
     if motion.highest < _FOLDED * limit:
         return []
@@ -90,8 +97,8 @@ def _sampling(record: Record) -> list[Finding]:
     return result or [Finding(RecordFinding.SAMPLING, "info", numbers={**numbers, "even": False})]
 
 
-def _lost(record: Record) -> list[Finding]:
-    lost = losses(record)
+def _dropouts(record: Record) -> list[Finding]:
+    lost = find_dropouts(record)
     if not lost:
         return []
     count, at = sum(loss.count for loss in lost), float(record.time[lost[0].after])
@@ -125,7 +132,7 @@ def _where(record: Record, instants: list[Instant]) -> dict[str, float]:
     }
 
 
-def _filled(record: Record) -> list[Finding]:
+def _filled_samples(record: Record) -> list[Finding]:
     result = []
     for role, (count, longest) in record.meta.get("filled", {}).items():
         numbers = {"samples": float(count), "longest": float(longest)}
@@ -144,7 +151,7 @@ def _constant(record: Record) -> list[Finding]:
     return result
 
 
-def _sizes(record: Record) -> list[Finding]:
+def _implausible_sizes(record: Record) -> list[Finding]:
     result = []
     for role, most in PLAUSIBLE.items():
         size = 0.5 * float(np.ptp(getattr(record, role)))
@@ -155,7 +162,7 @@ def _sizes(record: Record) -> list[Finding]:
 
 def _saturation(record: Record) -> list[Finding]:
     """The force at a known limit, or flat at its extremes for longer than its motion explains."""
-    share = float(np.mean(saturated(record)))
+    share = float(np.mean(saturated_samples(record)))
     if share == 0.0:
         return []
     extremes = [(plateau.value, plateau.longest) for plateau in plateaus(record)]
@@ -211,7 +218,7 @@ def _middle(values: Vector) -> float:
     return 0.5 * float(np.max(values) + np.min(values))
 
 
-def _swapped(record: Record) -> list[Finding]:
+def _swapped_columns(record: Record) -> list[Finding]:
     """A displacement is smoother than the force that it causes; the other way round the columns may be swapped."""
     rough = {role: _roughness(getattr(record, role)) for role in ("displacement", "force")}
     if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
@@ -220,12 +227,12 @@ def _swapped(record: Record) -> list[Finding]:
 
 
 def _roughness(values: Vector) -> float:
-    """R.m.s. of second differences, over the standard deviation: what jumps from sample to sample."""
+    """R.m.s. of second differences, over the standard deviation."""
     return float(np.std(np.diff(values, 2)) / np.std(values)) if values.size > 4 else 0.0
 
 
 def _hum(record: Record, motion: Motion) -> list[Finding]:
-    """Lines of the mains in the force that stand out of all that is beside them, where nothing moves.
+    """Mains hum: lines in the force that exceed all neighbouring lines, where the displacement has none.
 
     Friction answers one frequency with its odd multiples, so a multiple of a motion above 4 Hz is not taken for hum.
     """
@@ -252,7 +259,7 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
 
 
 def _line(record: Record, motion: Motion) -> list[Finding]:
-    """A line at any other frequency that stands alone."""
+    """An isolated line at any other frequency."""
     line = lonely_line(record, motion)
     if line is None:
         return []

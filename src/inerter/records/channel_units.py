@@ -1,4 +1,4 @@
-"""Units of measured channels: what one unit of a file is worth in SI units, never guessed."""
+"""Units of measured channels: their size in SI units, never guessed."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ _EXAMPLES = {
     "velocity": "mm/s",
     "acceleration": "m/s^2 or g",
 }
-# Mass units that a load cell may show when it means the weight; taken as forces only when the call says so.
+# Mass units that a load cell may show for the weight; taken as forces only if named in the call.
 _WEIGHTS = {"kg": "kgf", "lb": "lbf"}
 EXAMPLES = {role: re.split(r",| or ", units)[0] for role, units in _EXAMPLES.items()}
 _POWER = re.compile(r"(?<=[A-Za-z])([23])(?!\w)")
 
 
 def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[float, str, str | None]:
-    """What one unit of the channel is worth in the SI unit of its role, the unit, and a note where one is due.
+    """Size of one unit of the channel in the SI unit of its role, the unit, and a note where one is due.
 
-    `given` is the unit that the call names, and wins over that of the file. It may be a quantity, "250 N", for a file
-    that holds volts or counts.
+    `given` is the unit named in the call, and takes precedence over that of the file. It may be a quantity, "250 N",
+    for a file with volts or counts.
 
-    Raises `RecordError` for a missing or unknown unit, or one of another kind.
+    Raises `RecordError` for a missing or unknown unit, or one of another quantity.
     """
     unit = channel.unit if given is None else given
     if not isinstance(unit, str):
@@ -50,7 +50,7 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
 
 
 def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str, str]) -> None:
-    """Raises `RecordError`, which names all of them, if several channels have a unit neither in the file nor given."""
+    """Raise `RecordError`, which names all of them, if several channels have a unit neither in the file nor given."""
     bare = {role: c for role, c in chosen.items() if role not in given and not c.unit.strip()}
     if len(bare) < 2:
         return
@@ -62,19 +62,19 @@ def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str
 
 
 def fits(role: str, unit: str) -> bool:
-    """Whether a unit as a file writes it is one of that role."""
+    """Whether a unit, spelled as in a file, is a unit of that role."""
     return _value(role, unit.strip()) is not None
 
 
 def fits_any(unit: str) -> bool:
-    """Whether a unit as a file writes it is one of any channel of a record."""
+    """Whether a unit, spelled as in a file, is a unit of any channel of a record."""
     return any(fits(role, unit) for role in CHANNELS)
 
 
 def check_units(units: dict[str, str] | None) -> dict[str, str]:
-    """The units of a call, by role.
+    """The units named in a call, by role.
 
-    Raises `RecordError` for a name that is no role.
+    Raises `RecordError` for an unknown role.
     """
     if units is None:
         return {}
@@ -83,14 +83,14 @@ def check_units(units: dict[str, str] | None) -> dict[str, str]:
     for role in units:
         if role not in CHANNELS:
             raise RecordError(
-                f"units has {role!r}, which is none of {', '.join(CHANNELS)}. A unit is given by what the channel is, "
-                f"not by its name in the file."
+                f"units: unknown channel {role!r}; available: {', '.join(CHANNELS)}. Name units by the role of the "
+                f"channel, not by its name in the file."
             )
     return units
 
 
 def _value(role: str, unit: str) -> float | None:
-    """The size of a unit or quantity, or None where it is none of that role."""
+    """Size of a unit or quantity in SI units; None if it is not a unit of that role."""
     if role == "acceleration" and unit in ("g", "G", "g_n", "gn"):
         return STANDARD_GRAVITY
     text = _POWER.sub(r"^\1", unit)
@@ -106,18 +106,18 @@ def _value(role: str, unit: str) -> float | None:
 
 
 def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
-    whose = f"the unit {unit!r} of {channel.name!r}" if given is None else f"the unit {unit!r} that was named"
+    whose = f"unit {unit!r} of {channel.name!r}" if given is None else f"specified unit {unit!r}"
     if role == "force" and unit.strip().lower() in _WEIGHTS:
         force = _WEIGHTS[unit.strip().lower()]
         return (
-            f"{whose} is a mass, not a force. If the load cell shows the weight of that mass, say so with ",
+            f"{whose} is a unit of mass, not of force. If the load cell shows the weight of that mass, use ",
             Remedy(Action.UNIT, (role, force)),
             f" (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N).",
         )
     return (
-        f"{whose} is not known as a unit of {role}, which is one such as {_EXAMPLES[role]}. Name the unit, ",
+        f"{whose} is not a unit of {role}, such as {_EXAMPLES[role]}. Name the unit, ",
         Remedy(Action.UNIT, (role, EXAMPLES[role])),
-        ", or what one count or volt of the file is worth, ",
+        ", or the value of one count or volt of the file, ",
         Remedy(Action.UNIT, (role, f"250 {CHANNELS[role]}")),
         ".",
     )
@@ -126,8 +126,8 @@ def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
 def _note(role: str, channel: Channel, unit: str, given: str | None, value: float) -> str | None:
     if given is None or (given == channel.unit and given.strip() not in _WEIGHTS):
         return None
-    said = f"where the file says {channel.unit}" if channel.unit else "as the call says"
+    said = f"instead of {channel.unit} in the file" if channel.unit else "as specified in the call"
     if re.match(r"\s*[+-]?[\d.]", unit):
-        return f"One unit of the {role} {channel.name!r} was taken as {unit}, {said}."
+        return f"One unit of the {role} {channel.name!r} was read as {unit}, {said}."
     worth = "" if value == 1.0 else f" (1 {unit} = {value:.6g} {CHANNELS[role]})"
-    return f"The {role} {channel.name!r} was taken in {unit}{worth}, {said}."
+    return f"The {role} {channel.name!r} was read in {unit}{worth}, {said}."

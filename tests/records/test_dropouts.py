@@ -9,8 +9,8 @@ import pytest
 
 import inerter as it
 from inerter.errors import RecordError
-from inerter.records.findings import findings
-from inerter.records.lost import Loss, losses, mended
+from inerter.records.dropouts import Dropout, fill_dropouts, find_dropouts
+from inerter.records.inspection import findings
 
 NOISE = 0.3e-6  # [m]
 STEP = 1e-6  # [m] of the encoder
@@ -29,7 +29,7 @@ def bench(random: np.random.Generator, size: int = 3000) -> tuple[np.ndarray, np
     return time, STEP * np.rint(read / STEP), velocity
 
 
-def cut(random: np.random.Generator) -> tuple[it.Record, list[Loss], np.ndarray]:
+def cut(random: np.random.Generator) -> tuple[it.Record, list[Dropout], np.ndarray]:
     """A record that lacks some samples where the table moves fast, what it lacks, and the whole displacement."""
     time, displacement, velocity = bench(random)
     fast = np.flatnonzero(np.abs(velocity) > 0.5 * np.abs(velocity).max())
@@ -41,8 +41,8 @@ def cut(random: np.random.Generator) -> tuple[it.Record, list[Loss], np.ndarray]
     for place, count in zip(places, counts, strict=True):
         kept[place : place + count] = False
     lost = [
-        Loss(int(places[0]) - 1, int(counts[0])),
-        Loss(int(places[1]) - 1 - int(counts[0]), int(counts[1])),
+        Dropout(int(places[0]) - 1, int(counts[0])),
+        Dropout(int(places[1]) - 1 - int(counts[0]), int(counts[1])),
     ]
     whole = displacement
     force = np.sin(3.0 * time)
@@ -53,12 +53,12 @@ def cut(random: np.random.Generator) -> tuple[it.Record, list[Loss], np.ndarray]
 def test_every_loss_is_found_with_its_count_and_put_in_again(seed: int) -> None:
     random = np.random.default_rng([7, seed])
     record, lost, whole = cut(random)
-    assert losses(record) == lost
-    filled = mended(record, "fill")
+    assert find_dropouts(record) == lost
+    filled = fill_dropouts(record, "fill")
     assert filled.time.size == whole.size
     assert np.abs(filled.displacement - whole).max() < 10.0 * STEP
     assert np.ptp(np.diff(filled.time)) < 1e-9
-    assert losses(filled) == []
+    assert find_dropouts(filled) == []
 
 
 @pytest.mark.parametrize("seed", range(60))
@@ -72,7 +72,7 @@ def test_a_whole_record_lacks_nothing(seed: int) -> None:
     spoilt[2][place:] += 1e-3
     spoilt[3][place:] = displacement[place]
     for values in spoilt:
-        assert losses(it.Record(time, values, np.sin(time))) == []
+        assert find_dropouts(it.Record(time, values, np.sin(time))) == []
 
 
 def test_what_is_done_about_them(tmp_path: Path) -> None:
@@ -85,9 +85,9 @@ def test_what_is_done_about_them(tmp_path: Path) -> None:
     assert f"about {sum(loss.count for loss in lost)} samples" in found.sentence
     filled = it.read_record(path, gaps="fill")
     assert filled.time.size == record.time.size + sum(loss.count for loss in lost)
-    assert "put in" in filled.notes[-1]
+    assert "interpolated" in filled.notes[-1]
     longest = it.read_record(path, gaps="longest")
     parts = np.diff([0, *(loss.after + 1 for loss in lost), record.time.size])
     assert longest.time.size == parts.max()
-    with pytest.raises(RecordError, match="too many to put in"):
+    with pytest.raises(RecordError, match="too many to interpolate"):
         it.read_record(path, gaps=1e-3)

@@ -1,4 +1,4 @@
-"""Whether the force has the sign of these conventions, and how late it was recorded."""
+"""Polarity of the force, and its delay against the motion."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.records.accelerance import Lines, force_over_acceleration, lines
+from inerter.records.apparent_mass import Lines, force_over_acceleration, lines
 from inerter.records.finding import Finding
-from inerter.records.kinds import CLEAR, SEEN, RecordFinding
+from inerter.records.finding_texts import CLEAR, SEEN, RecordFinding
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion
 
@@ -19,10 +19,10 @@ WIDE = 3.0  # highest over lowest frequency of an excitation that separates a de
 
 
 def sign(record: Record, motion: Motion) -> list[Finding]:
-    """Whether the force follows the acceleration, as inertia does, or the velocity, as all losses do.
+    """Finding on the polarity of the force: its correlations with acceleration (inertia) and velocity (losses).
 
-    A passive device takes in work. So a force against both is reversed; a force against the acceleration alone is
-    that of a spring (below a resonance), or late.
+    A passive device dissipates energy. So a force that opposes both is reversed; a force that opposes the acceleration
+    alone is that of a spring (below a resonance), or delayed.
     """
     force = record.force - np.mean(record.force)
     inertia = _correlation(force, motion.acceleration if record.acceleration is None else record.acceleration)
@@ -35,25 +35,25 @@ def sign(record: Record, motion: Motion) -> list[Finding]:
 
 
 def delay(record: Record, motion: Motion) -> list[Finding]:
-    """How much later the force was recorded than the motion.
+    """Finding on the delay of the recorded force against the motion.
 
-    With a measured acceleration it is compared with that from the displacement, which says how the displacement lies
-    against the other channels, whatever the device is. Without, the device has a phase of its own; what is
-    assumed then is that it grows as 1/omega (dampers, friction) and omega^3 (elasticity below its resonance), and
-    what grows as omega is the delay. That takes an excitation over a factor of 3 in frequency.
+    A measured acceleration is compared with that from the displacement, which gives the delay of the displacement
+    against the other channels for any device. Without it, the phase of the device is assumed to grow as 1/omega
+    (dampers, friction) and omega^3 (elasticity below its resonance), and the part that grows as omega is the delay.
+    That requires an excitation over a factor of 3 in frequency.
     """
     if record.acceleration is not None:
         found = lines(motion.acceleration, record.acceleration, record.interval, highest=motion.highest)
         if not found.omega.size:
-            return [_unknown("acceleration")]
-        return [_reported(record, *_late(found, (1,)), "acceleration")]
-    found = _inertial(force_over_acceleration(record, motion))
+            return [_unknown_delay("acceleration")]
+        return [_delay_finding(record, *_fit_delay(found, (1,)), "acceleration")]
+    found = _inertial_lines(force_over_acceleration(record, motion))
     if found.omega.size < 6 or found.spread < WIDE:
-        return [_unknown("force")]
-    return [_reported(record, *_cautious(found), "force")]
+        return [_unknown_delay("force")]
+    return [_delay_finding(record, *_robust_delay(found), "force")]
 
 
-def _inertial(found: Lines) -> Lines:
+def _inertial_lines(found: Lines) -> Lines:
     """The lines at which the real part is that of a mass, the same for most, within `STIFF`."""
     if not found.omega.size:
         return found
@@ -63,19 +63,19 @@ def _inertial(found: Lines) -> Lines:
     return Lines(found.omega[kept], found.ratio[kept], found.phase_error[kept])
 
 
-def _cautious(found: Lines) -> tuple[float, float]:
-    """The delay beside the device's own phase; its error includes how far other choices of lines and terms lead."""
-    late, error = _late(found, (1, -1, 3))
+def _robust_delay(found: Lines) -> tuple[float, float]:
+    """The delay apart from the phase of the device; its error includes other choices of lines and terms."""
+    late, error = _fit_delay(found, (1, -1, 3))
     half = slice(found.omega.size // 2, None)
     upper = Lines(found.omega[half], found.ratio[half], found.phase_error[half])
-    others = (_late(found, (1, -1))[0], _late(upper, (1, -1))[0])
+    others = (_fit_delay(found, (1, -1))[0], _fit_delay(upper, (1, -1))[0])
     return late, math.hypot(error, *(late - other for other in others))
 
 
-def _late(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
+def _fit_delay(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
     """The delay in Im(ratio) = - mass delay omega + ... by weighted least squares, and its standard error.
 
-    The error is scaled by the scatter that is left, where that is more than the lines promise.
+    The error is scaled by the residual scatter, where that exceeds the stated errors of the lines.
     """
     scale = float(np.median(found.omega))
     mass = float(np.median(found.ratio.real))
@@ -88,13 +88,13 @@ def _late(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
     return -float(solution[0]) / (mass * scale), float(np.sqrt(covariance[0, 0])) / abs(mass * scale)
 
 
-def _reported(record: Record, late: float, error: float, by: str) -> Finding:
+def _delay_finding(record: Record, late: float, error: float, by: str) -> Finding:
     unseen = abs(late) < SEEN * error or abs(late) < 0.05 * record.interval
     numbers = {"delay": late, "standard_error": error}
     return Finding(RecordFinding.DELAY, "info" if unseen else "warning", by, numbers)
 
 
-def _unknown(by: str) -> Finding:
+def _unknown_delay(by: str) -> Finding:
     return Finding(RecordFinding.DELAY, "info", by)
 
 

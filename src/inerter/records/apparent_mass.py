@@ -1,4 +1,4 @@
-"""Force over acceleration, frequency by frequency: what tells a reversed sign and a delay."""
+"""Apparent mass, force over acceleration at each frequency, from which a reversed sign and a delay are found."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.records.record import Record
 from inerter.records.smoothing import Motion
 
 Vector = NDArray[np.float64]
-COHERENT = 0.8  # least squared coherence of a line that counts
+COHERENT = 0.8  # least magnitude-squared coherence of a line that counts
 _SEGMENTS = 6  # of the record, half of each in the next
 
 
@@ -53,6 +53,6 @@ def lines(first: Vector, second: Vector, interval: float, lowest: float = 0.0, h
 
 
 def force_over_acceleration(record: Record, motion: Motion) -> Lines:
-    """The apparent mass of the device, where the displacement stands out of its noise."""
+    """The apparent mass of the device, where the displacement exceeds its noise floor."""
     acceleration = motion.acceleration if record.acceleration is None else record.acceleration
     return lines(acceleration, record.force, record.interval, highest=motion.highest)

@@ -1,0 +1,336 @@
+"""Kinds of findings in a record, and their sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+
+from inerter.records.finding import Finding
+from inerter.records.record import CHANNELS
+from inerter.records.remedy import Action, Remedy, Text
+
+COARSE = 20.0  # resolution steps over the range of a channel, below which its resolution is coarse
+LARGE = 0.5  # of the amplitude: a mean that may be an offset
+CLEAR = 0.3  # least significant correlation
+SEEN = 3.0  # standard errors of a significant delay
+_LIMITED = (
+    "it appears clipped (saturated). A fit excludes these samples, a frequency response does not: reduce the motion, "
+    "or ",
+    Remedy(Action.TRIM),
+    " these intervals away.",
+)
+
+
+class RecordFinding(StrEnum):
+    """The kinds of findings in a record."""
+
+    FEW_SAMPLES = "few-samples"
+    SAMPLING = "sampling"
+    GAPS = "gaps"
+    JITTER = "jitter"
+    LOST_SAMPLES = "lost-samples"
+    FILLED = "filled"
+    CUT = "cut"
+    CONSTANT = "constant"
+    IMPLAUSIBLE = "implausible"
+    SATURATION = "saturation"
+    DISPLACEMENT_STEPS = "displacement-steps"
+    FORCE_STEPS = "force-steps"
+    DISPLACEMENT_OFFSET = "displacement-offset"
+    FORCE_OFFSET = "force-offset"
+    DISPLACEMENT_DRIFT = "displacement-drift"
+    FORCE_DRIFT = "force-drift"
+    SWAPPED = "swapped"
+    SPIKES = "spikes"
+    HELD = "held"
+    JOINED = "joined"
+    HIDDEN_JITTER = "hidden-jitter"
+    CLOCK_DRIFT = "clock-drift"
+    HUM = "hum"
+    LINE = "line"
+    SIGN = "sign"
+    FORCE_REVERSED = "force-reversed"
+    DELAY = "delay"
+    BANDWIDTH = "bandwidth"
+    UNDERSAMPLED = "undersampled"
+
+    def text(self, finding: Finding) -> Text:
+        """The parts of the sentence of such a finding."""
+        return _TEXTS[self](finding)
+
+
+def _format_sampling(f: Finding) -> str:
+    n, usual = f.numbers, f.numbers["interval"]
+    return f"{n['samples']:.0f} samples over {n['duration']:.6g} s, every {usual:.6g} s ({1.0 / usual:.6g} Hz)"
+
+
+def _few_samples_text(f: Finding) -> Text:
+    many = f"{f.numbers['samples']:.0f}"
+    return (f"The record has only {many} samples; a fit requires hundreds, over several periods of the motion.",)
+
+
+def _sampling_text(f: Finding) -> Text:
+    return (f"{_format_sampling(f)}, {'evenly spaced' if f.numbers['even'] else 'not exactly evenly spaced'}.",)
+
+
+def _gaps_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"{_format_sampling(f)}, with {n['gaps']:.0f} gaps of up to {n['longest']:.4g} s, the first at "
+        f"{n['first']:.6g} s: about {n['lost']:.0f} samples are missing. Use ",
+        *(Remedy(Action.FILL_GAPS), " for short ones, ", Remedy(Action.TRIM), " for long ones."),
+    )
+
+
+def _jitter_text(f: Finding) -> Text:
+    n = f.numbers
+    rounded = f" The resolution of the times is {n['step']:.3g} s." if n["step"] > 0.0 else ""
+    return (
+        f"{_format_sampling(f)}, but unevenly: the intervals vary by {100.0 * n['jitter']:.3g} % (r.m.s.).{rounded} If "
+        f"the clock was even, read the file with ",
+        *(Remedy(Action.INTERVAL, n["interval"]), "; else use ", Remedy(Action.RESAMPLE), "."),
+    )
+
+
+def _lost_samples_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement skips ahead at {_format_count(n['places'], 'instant')}, the first at {n['first']:.4g} s: "
+        f"about {n['samples']:.0f} samples were dropped without a gap in the time channel. Read the file with ",
+        *(Remedy(Action.GAPS, "fill"), ", which interpolates them."),
+    )
+
+
+def _spikes_text(f: Finding) -> Text:
+    n, unit = f.numbers, CHANNELS[f.about]
+    return (
+        f"The {f.about} has {_format_count(n['places'], 'spike')} of up to {n['largest']:.4g} {unit} in "
+        f"{n['samples']:.0f} samples, the first at {n['first']:.4g} s. Check cables and connectors, or use ",
+        *(Remedy(Action.REPAIR), "."),
+    )
+
+
+def _held_values_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The {f.about} repeats one value at {_format_count(n['places'], 'place')}, for up to {n['longest']:.0f} "
+        f"samples, the first at {n['first']:.4g} s: the recorder missed samples and held the last one. Use ",
+        *(Remedy(Action.REPAIR), ", or ", Remedy(Action.TRIM), " these intervals away."),
+    )
+
+
+def _joint_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement jumps at {_format_count(n['places'], 'place')}, by up to {n['largest']:.4g} m within one "
+        f"interval, the first at {n['first']:.4g} s: the pieces before and after belong to different runs. Use ",
+        *(Remedy(Action.TRIM), " and fit each piece as a separate record."),
+    )
+
+
+def _format_count(count: float, noun: str) -> str:
+    return f"one {noun}" if count == 1.0 else f"{count:.0f} {noun}s"
+
+
+def _hidden_jitter_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The noise of the displacement grows with speed although the times are even: sampling jitter of "
+        f"{1e3 * n['jitter']:.3g} ms (r.m.s., {100.0 * n['jitter'] / n['interval']:.0f} % of an interval). Sample both "
+        f"channels with one hardware clock, or record the true times.",
+    )
+
+
+def _clock_drift_text(f: Finding) -> Text:
+    n = f.numbers
+    growth = f"{1e3 * abs(n['growth']):.3g} ms {'later' if n['growth'] > 0.0 else 'earlier'}"
+    return (
+        f"The phase between force and displacement drifts: the force is {growth} at the end than at the start "
+        f"(standard error {1e3 * n['standard_error']:.2g} ms). The clocks of the channels differ by "
+        f"{1e6 * abs(n['rate']):.3g} ppm, or the losses of the device change. Sample both channels with one clock.",
+    )
+
+
+def _line_text(f: Finding) -> Text:
+    n = f.numbers
+    alias = f" or an alias of it, such as {n['rate'] - n['frequency']:.4g} Hz"
+    return (
+        f"The force has an isolated spectral line of {n['amplitude']:.3g} N at {n['frequency']:.4g} Hz that is no "
+        f"harmonic of the motion: pickup at that frequency{alias}. Check grounding and shielding, and use an "
+        f"anti-aliasing filter.",
+    )
+
+
+def _filled_samples_text(f: Finding) -> Text:
+    many, longest = f"{f.numbers['samples']:.0f}", f"{f.numbers['longest']:.0f}"
+    return (f"Missing samples of the {f.about}, interpolated: {many}, up to {longest} in a row.",)
+
+
+def _truncated_file_text(f: Finding) -> Text:
+    return ("The file is truncated: its last samples are missing.",)
+
+
+def _constant_channel_text(f: Finding) -> Text:
+    return (
+        f"The {f.about} is constant, {f.numbers['value']:.6g} {CHANNELS[f.about]}, so no model can be fitted. Check "
+        f"the connection of the sensor and the selection of the channel.",
+    )
+
+
+def _implausible_amplitude_text(f: Finding) -> Text:
+    size = f"{f.numbers['amplitude']:.4g} {CHANNELS[f.about]}"
+    return (f"The {f.about} has an implausible amplitude of {size}. Check its unit.",)
+
+
+def _saturation_text(f: Finding) -> Text:
+    n = f.numbers
+    if "extremes" not in n:
+        return (
+            f"The force reaches the range of the load cell, {n['limit']:.6g} N, for {100.0 * n['share']:.2g} % of the "
+            f"samples: ",
+            *_LIMITED,
+        )
+    where = " and ".join(f"{value:.6g} N for {longest}" for value, longest in n["extremes"])
+    return (f"The force is constant at an extreme of {where} consecutive samples: ", *_LIMITED)
+
+
+def _resolution_text(f: Finding) -> Text:
+    n = f.numbers
+    coarse = " That is coarse: use more of the range of the sensor." if n["levels"] < COARSE else ""
+    step = f"{n['step']:.3g} {CHANNELS[f.about]}"
+    return (f"The {f.about} has a resolution of {step}, {n['levels']:.0f} steps over its range.{coarse}",)
+
+
+def _offset_text(f: Finding) -> Text:
+    n, unit = f.numbers, CHANNELS[f.about]
+    said = f"The {f.about} has a mean of {n['mean']:.4g} {unit}, with an amplitude of {n['amplitude']:.4g} {unit}."
+    if not abs(n["mean"]) > LARGE * n["amplitude"]:
+        return (said,)
+    return (f"{said} If the {f.about} should be zero at rest, use ", Remedy(Action.REMOVE_OFFSET), ".")
+
+
+def _drift_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The {f.about} drifts by {n['change']:.4g} {CHANNELS[f.about]} from the first quarter to the last, "
+        f"{100.0 * abs(n['change']) / n['range']:.0f} % of its range. Use ",
+        *(Remedy(Action.DETREND), "."),
+    )
+
+
+def _swapped_columns_text(f: Finding) -> Text:
+    ratio = f.numbers["displacement"] / max(f.numbers["force"], 1e-12)
+    return (
+        f"The displacement is {ratio:.3g} times as rough as the force from sample to sample, but a displacement should "
+        f"be smoother than the force. Check whether the two columns are swapped.",
+    )
+
+
+def _hum_text(f: Finding) -> Text:
+    n = f.numbers
+    hum = f"{n['amplitude']:.3g} N at {n['frequency']:g} Hz"
+    return (f"The force contains mains hum: {hum}. Check the grounding of the load cell.",)
+
+
+def _format_correlations(f: Finding) -> str:
+    n = f.numbers
+    return (
+        f"correlation {n['with_acceleration']:+.2f} with the acceleration, {n['with_velocity']:+.2f} with the velocity"
+    )
+
+
+def _sign_text(f: Finding) -> Text:
+    inertia, loss = f.numbers["with_acceleration"], f.numbers["with_velocity"]
+    if max(abs(inertia), abs(loss)) < CLEAR:
+        return (f"The force has no clear correlation with the motion ({_format_correlations(f)}).",)
+    if inertia < -CLEAR:
+        return (
+            f"The force opposes the acceleration but dissipates energy ({_format_correlations(f)}), as below the "
+            f"resonance with a spring.",
+        )
+    return (f"The force has the sign of inertia and losses ({_format_correlations(f)}).",)
+
+
+def _reversed_force_text(f: Finding) -> Text:
+    return (
+        f"The force is reversed: it opposes the motion, and the device would generate energy "
+        f"({_format_correlations(f)}). Force is positive in tension, displacement when the device lengthens.",
+        Remedy(Action.REVERSE_FORCE),
+    )
+
+
+_WHY = {
+    "acceleration": "the measured acceleration does not follow that of the displacement",
+    "force": "it is not excited over a wide enough band below the resonance of the device",
+}
+
+
+def _delay_text(f: Finding) -> Text:
+    n = f.numbers
+    if "delay" not in n:
+        return (
+            f"A delay between force and displacement cannot be identified from this record alone: {_WHY[f.about]}. "
+            f"Record a sweep or multisine, or an acceleration, or leave the delay free when the model is fitted.",
+        )
+    late, margin = n["delay"], f"(standard error {1e3 * n['standard_error']:.2g} ms)"
+    if f.severity == "info":
+        return (f"No significant delay between force and motion {margin}.",)
+    how = f"{1e3 * abs(late):.3g} ms {'later' if late >= 0.0 else 'earlier'} than the displacement"
+    said = (
+        f"The measured acceleration is {how}, so presumably is the force"
+        if f.about == "acceleration"
+        else f"The force is {how}, if the device is inertia, losses and elasticity below resonance"
+    )
+    return (f"{said} {margin}. ", Remedy(Action.SHIFT_FORCE, late), " removes it.")
+
+
+def _bandwidth_text(f: Finding) -> Text:
+    n = f.numbers
+    why = "as specified" if n["asked"] else f"the displacement exceeds its noise floor up to {n['highest']:.3g} Hz"
+    return (
+        f"Displacement low-pass filtered at {n['bandwidth']:.4g} Hz ({why}): attenuation "
+        f"{100.0 * n['attenuation']:.2g} % at {n['highest']:.3g} Hz, r.m.s. noise {n['velocity_noise']:.2g} m/s in the "
+        f"velocity and {n['acceleration_noise']:.2g} m/s^2 in the acceleration.",
+    )
+
+
+def _undersampling_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The displacement has components up to {n['highest']:.3g} Hz, close to the Nyquist frequency of "
+        f"{n['limit']:.4g} Hz: faster components are aliased. Sample at five times the highest frequency of the "
+        f"motion.",
+    )
+
+
+_TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
+    RecordFinding.FEW_SAMPLES: _few_samples_text,
+    RecordFinding.SAMPLING: _sampling_text,
+    RecordFinding.GAPS: _gaps_text,
+    RecordFinding.JITTER: _jitter_text,
+    RecordFinding.LOST_SAMPLES: _lost_samples_text,
+    RecordFinding.FILLED: _filled_samples_text,
+    RecordFinding.CUT: _truncated_file_text,
+    RecordFinding.CONSTANT: _constant_channel_text,
+    RecordFinding.IMPLAUSIBLE: _implausible_amplitude_text,
+    RecordFinding.SATURATION: _saturation_text,
+    RecordFinding.DISPLACEMENT_STEPS: _resolution_text,
+    RecordFinding.FORCE_STEPS: _resolution_text,
+    RecordFinding.DISPLACEMENT_OFFSET: _offset_text,
+    RecordFinding.FORCE_OFFSET: _offset_text,
+    RecordFinding.DISPLACEMENT_DRIFT: _drift_text,
+    RecordFinding.FORCE_DRIFT: _drift_text,
+    RecordFinding.SWAPPED: _swapped_columns_text,
+    RecordFinding.SPIKES: _spikes_text,
+    RecordFinding.HELD: _held_values_text,
+    RecordFinding.JOINED: _joint_text,
+    RecordFinding.HIDDEN_JITTER: _hidden_jitter_text,
+    RecordFinding.CLOCK_DRIFT: _clock_drift_text,
+    RecordFinding.HUM: _hum_text,
+    RecordFinding.LINE: _line_text,
+    RecordFinding.SIGN: _sign_text,
+    RecordFinding.FORCE_REVERSED: _reversed_force_text,
+    RecordFinding.DELAY: _delay_text,
+    RecordFinding.BANDWIDTH: _bandwidth_text,
+    RecordFinding.UNDERSAMPLED: _undersampling_text,
+}

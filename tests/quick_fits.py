@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from inerter.identification.concluding import _comparisons
+from inerter.identification.conclusions import _comparisons
+from inerter.identification.diagnosis import explanations
 from inerter.identification.experiment import experiment_of
-from inerter.identification.explaining import explanations
 from inerter.identification.fit import Explanation, Localisation
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.intervals import best_fit_of
-from inerter.identification.judging import check_parts, judge_of
 from inerter.identification.localising import localisation_of
-from inerter.identification.noise import plain
+from inerter.identification.noise import uniform_whitening
 from inerter.identification.options import FitOptions
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
+from inerter.identification.residual_tests import check_parts, judge_of
 from inerter.identification.solving import SolvedFit, _for_fit
-from inerter.identification.space import space_of
 from inerter.identification.sticking import Adhesion
 from inerter.networks.elements import Network
 from inerter.records.record import Record
@@ -31,8 +31,10 @@ def quick_fit(
     rig, whole = Rig(model), [experiment_of(record)]
     space = space_of(rig, assumed)
     experiments = _for_fit(whole, 0.2)
-    problem = FitProblem(rig, space, experiments, [plain(e.kept, 1.0) for e in experiments], assumed=assumed)
-    optimum = best_fit_of(problem, space.placed(values), evaluations=40)
+    problem = FitProblem(
+        rig, space, experiments, [uniform_whitening(e.kept, 1.0) for e in experiments], assumed=assumed
+    )
+    optimum = best_fit_of(problem, space.coordinates_of(values), evaluations=40)
     lead = float(experiments[0].record.time[int(experiments[0].kept.argmax())] - record.time[0])
     checked = tuple(check_parts(experiments, whole, [lead]))
     judge = judge_of(problem, optimum.point, checked, 0)

@@ -26,8 +26,8 @@ from inerter.identification.identify import identify as identify
 from inerter.identification.options import FitOptions as FitOptions
 from inerter.identification.response import linear_response as linear_response
 from inerter.identification.response import model_response as model_response
-from inerter.identification.staged import Staged as Staged
-from inerter.identification.staged import staged as staged
+from inerter.identification.staged_protocol import Staged as Staged
+from inerter.identification.staged_protocol import staged as staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient as DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce as ElementForce

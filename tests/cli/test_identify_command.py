@@ -16,7 +16,7 @@ import inerter as it
 from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
 from inerter.files.identification.loading import load_identification
-from inerter.identification import explaining
+from inerter.identification import diagnosis
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.records.uncertain import Uncertain
 
@@ -193,16 +193,16 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
     rattled: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of three hypotheses, since each is a fit."""
-    whole, tried = explaining.hypotheses, {"delay", "gain", "filtered force"}
-    monkeypatch.setattr(explaining, "hypotheses", lambda *given: [h for h in whole(*given) if h.name in tried])
+    whole, tried = diagnosis.hypotheses, {"delay", "gain", "filtered force"}
+    monkeypatch.setattr(diagnosis, "hypotheses", lambda *given: [h for h in whole(*given) if h.name in tried])
     folder = rattled / "out"
     arguments = [str(rattled / "late.csv"), "--config", str(rattled / "rig.toml"), "-o", str(folder)]
     assert call(["identify", *arguments]) == 1
     out, err = capsys.readouterr()
     first = " ".join(out.partition("\n\n")[0].split())
     assert first.startswith("Not to be relied on: the model leaves ")
-    assert "the displacement is late by 4" in first
-    assert "the displacement is late by 4" in err
+    assert "the displacement is delayed by 4" in first
+    assert "the displacement is delayed by 4" in err
     assert max(map(len, out.splitlines())) <= 80
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert page.index("Not to be relied on:") < page.index("the displacement is late") < page.index("Parameters")
@@ -282,7 +282,7 @@ BAD: dict[str, tuple[str, bytes, list[str], str]] = {
     "constant displacement": ("a.csv", csv_text(TIME, 0 * X + 1, F), MODEL, "displacement is constant"),
     "constant force": ("a.csv", csv_text(TIME, X, 0 * F), MODEL, "force is constant"),
     "three samples": ("a.csv", csv_text(TIME[:3], X[:3], F[:3]), MODEL, "at least 4 samples"),
-    "thirty samples": ("a.csv", csv_text(TIME[:30], X[:30], F[:30]), MODEL, "50 or more"),
+    "thirty samples": ("a.csv", csv_text(TIME[:30], X[:30], F[:30]), MODEL, "at least 50"),
     "times go back": ("a.csv", csv_text(TIME[::-1], X, F), MODEL, "--interval"),
     "uneven": ("a.csv", csv_text(TIME**2, X, F), MODEL, "--resample"),
     "no times": ("a.csv", csv_text(TIME, X, F, "q [1],x [mm],force [N]"), MODEL, "--interval"),
@@ -294,7 +294,7 @@ BAD: dict[str, tuple[str, bytes, list[str], str]] = {
     "trim of no numbers": ("a.csv", GOOD, [*MODEL, "--trim", "all"], "FROM:TO"),
     "unknown model": ("a.csv", GOOD, ["--model", "ball-scew"], 'Did you mean "ball-screw"'),
     "no model": ("a.csv", GOOD, [], "--model"),
-    "few starts": ("a.csv", GOOD, ["--model", "ball-screw", "--starts", "2"], "from 8 on"),
+    "few starts": ("a.csv", GOOD, ["--model", "ball-screw", "--starts", "2"], "at least 8"),
     "negative seed": ("a.csv", GOOD, [*MODEL, "--seed", "-1"], "seed"),
     "no such config": ("a.csv", GOOD, ["--config", "nowhere.toml"], "nowhere.toml"),
     "unknown option": ("a.csv", GOOD, [*MODEL, "--frobnicate"], "frobnicate"),

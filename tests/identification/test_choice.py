@@ -81,9 +81,9 @@ def test_own_models_and_those_that_fail():
 @pytest.mark.parametrize(
     ("models", "check", "said"),
     [
-        (["screw"], 0.2, "no model 'screw'"),
-        ([], 0.2, "no candidate to choose"),
-        (["ideal"], 0.0, "kept for the check"),
+        (["screw"], 0.2, "unknown model 'screw'"),
+        ([], 0.2, "at least one candidate"),
+        (["ideal"], 0.0, "compared on validation data"),
         ({"known": it.Inerter(113.0)}, 0.2, "No candidate can be fitted"),
     ],
 )
@@ -127,7 +127,7 @@ def test_coulomb_friction_shows_no_dependence_on_speed_and_intervals_are_what_th
     assert sum(law.law == "coulomb" for law in laws) >= 57
     for law in laws:
         assert law.level == pytest.approx(10.0, abs=0.02)
-        assert law.law != "coulomb" or "would have shown" in law.sentence
+        assert law.law != "coulomb" or "can be excluded" in law.sentence
     assert np.mean([law.fast_interval[0] < 0.0 < law.fast_interval[1] for law in laws]) > 0.85
     assert np.mean([law.slow_interval[0] < 0.0 < law.slow_interval[1] for law in laws]) > 0.85
     assert np.mean([law.interval[0] < 10.0 < law.interval[1] for law in laws]) > 0.85
@@ -155,11 +155,11 @@ def test_friction_that_falls_with_speed_is_stribecks(size):
 def test_what_is_not_identifiable_is_said():
     none = it.VirtualRig(SHAFT - it.Inerter(5.0), seed=0).run(it.cosine(1e-3, 0.1), 20.0)
     assert friction_law(none, 5.0).law == "not identifiable"
-    assert "no friction shows" in friction_law(none, 5.0).sentence
+    assert "does not exceed the noise" in friction_law(none, 5.0).sentence
     short = slow(0).trim(0.0, 0.3)
     assert friction_law(short, 5.0).law == "not identifiable"
     assert np.isnan(friction_law(short, 5.0).p_value)
-    with pytest.raises(IdentificationError, match="a record or a fit"):
+    with pytest.raises(IdentificationError, match="requires a Record or a Fit"):
         friction_law("record")
 
 

@@ -12,8 +12,8 @@ from quick_fits import explained, quick_fit
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
-from inerter.identification.laws import Chained, stepped
-from inerter.identification.suspects import Suspect
+from inerter.identification.laws import ChainValues, simulate_chain
+from inerter.identification.possible_causes import Suspect
 
 RIG = Rig(duration=2.5, tones=((2e-3, 1.6), (8e-4, 3.1), (3e-4, 5.7)))
 CHANGES = {
@@ -52,9 +52,9 @@ def test_laws_are_stepped_as_the_rig_does(name: str) -> None:
     z, v, _ = motion(rig, 0)
     exact, without = (force_of(r, z, v)[::100] for r in (rig, replace(rig, law="")))
     experiment = experiment_of(it.Record(np.arange(exact.size) * 1e-3, z[::100], exact))
-    chain = Chained(ks=rig.ks, cs=rig.cs, b=rig.b, f=rig.f, **CHANGES[name])
+    chain = ChainValues(ks=rig.ks, cs=rig.cs, b=rig.b, f=rig.f, **CHANGES[name])
     use = slice(50, -50)
-    off = np.std((stepped(chain, experiment, exact.size) - exact)[use])
+    off = np.std((simulate_chain(chain, experiment, exact.size) - exact)[use])
     assert off < 5e-3 * np.std(exact[use])
     assert off < 0.05 * np.std((without - exact)[use])
 

@@ -11,10 +11,10 @@ from scipy.stats import chi2
 
 import inerter as it
 from inerter.identification.experiment import experiment_of, reading_of
-from inerter.identification.guess import chain_of, guess_of
-from inerter.identification.judging import portmanteau
+from inerter.identification.initial_estimate import chain_of, guess_of
 from inerter.identification.noise import yardstick
-from inerter.identification.space import space_of
+from inerter.identification.parameter_space import space_of
+from inerter.identification.residual_tests import portmanteau
 from inerter.systems.piecewise import piecewise
 
 QUIET = {"encoder_noise": 0.0, "encoder_resolution": 0.0, "force_noise": 0.0, "force_resolution": 0.0}
@@ -38,7 +38,7 @@ def test_the_experiment_of_the_paper(paper):
     assert gap.interval[0] == 0.0
     assert gap.interval[1] < 1e-6
     assert not paper.identifiable["gap"]
-    assert "not identifiable; all values from 0 m to" in paper.identifiable["gap"].sentence
+    assert "not identifiable: only an upper bound, " in paper.identifiable["gap"].sentence
     assert any(sentence.startswith("gap:") for sentence in paper.next_experiment)
 
 
@@ -188,11 +188,11 @@ def test_residuals_like_those_of_the_sensors_are_white_and_others_are_not():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"records": []}, "takes a record"),
-        ({"records": "bench.csv"}, "takes a record"),
+        ({"records": []}, "requires a record"),
+        ({"records": "bench.csv"}, "requires a record"),
         ({"model": it.Spring(1.0)}, "no free values"),
-        ({"check": 0.9}, "fraction from 0 to 0.6"),
-        ({"starts": 2}, "from 8 on"),
+        ({"check": 0.9}, "fraction must be from 0 to 0.6"),
+        ({"starts": 2}, "at least 8"),
         ({"delay": -1.0}, "delay"),
         ({"gain": True}, "not identifiable"),
         ({"lead": 99.0}, "shorter"),

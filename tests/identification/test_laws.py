@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from rigs import device, fit_test
 
 from inerter.identification.experiment import experiment_of
-from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis
-from inerter.identification.laws import Chained, laws, stepped
+from inerter.identification.initial_estimate import chain_of
+from inerter.identification.laws import ChainValues, laws, simulate_chain
 
 CHAIN = chain_of(device(f=27.5))
 FASTEST, STROKE = 0.02, 1e-3
@@ -47,7 +47,7 @@ def test_a_skewed_friction_takes_energy_and_differs_by_its_share(skew: float) ->
     """A rigid device without inertance has a force of friction alone, which opposes every motion."""
     experiment = experiment_of(fit_test(seed=1, duration=1.0))
     v = experiment.motion.velocity
-    force = stepped(Chained(f=20.0, skew=skew), experiment, experiment.size)
+    force = simulate_chain(ChainValues(f=20.0, skew=skew), experiment, experiment.size)
     moves = np.abs(v) > 1e-6
     assert np.all((force * v)[moves] > 0.0)
     assert force[moves & (v > 0.0)] == pytest.approx(20.0 * (1.0 + skew))

@@ -113,7 +113,7 @@ def test_spikes_are_told_from_slower_bumps_with_their_length() -> None:
     assert of_force.kind is MisfitPattern.INSTANTS
     assert of_force.numbers["longest"] == 2
     assert of_force.numbers["at"] in of_force.numbers["times"]
-    assert "the force leaps from sample to sample" in of_force.sentence
+    assert "the force jumps from sample to sample" in of_force.sentence
     slow = motion["force"] + 60.0 * np.exp(-(((motion["time"] - 1.5) / 6e-3) ** 2))
     bump = localisation_of(rigid_fit(read(motion, slow, 1))).patterns[0]
     assert bump.kind is MisfitPattern.INSTANTS

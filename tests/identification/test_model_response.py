@@ -8,7 +8,7 @@ from scipy.signal import butter, sosfiltfilt
 
 import inerter as it
 from inerter.errors import LinearSystemError
-from inerter.identification.response import smoothed
+from inerter.identification.response import smooth_record
 
 SHAFT = it.Spring(1e6) | it.Damper(3200.0)
 BALL_SCREW = SHAFT - (it.Inerter(113.0) | it.Friction(10.0))  # Wang and Su (2008), sec. 4.3
@@ -98,10 +98,10 @@ def test_smoothing_takes_the_steps_of_the_encoder_and_leaves_the_motion():
     true = 1e-3 * np.sin(2.0 * np.pi * 2.0 * time)
     record = it.Record(time, 1e-6 * np.round(true / 1e-6), time)
     inner = slice(500, -500)
-    error = [np.std(np.diff(r.displacement - true, 2)[inner]) for r in (record, smoothed(record, 20.0))]
+    error = [np.std(np.diff(r.displacement - true, 2)[inner]) for r in (record, smooth_record(record, 20.0))]
     assert error[1] < 1e-2 * error[0]
-    assert np.abs(smoothed(record, 20.0).displacement - true)[inner].max() < 2e-7
-    assert "half the rate" in smoothed(record, 450.0).notes[-1]
+    assert np.abs(smooth_record(record, 20.0).displacement - true)[inner].max() < 2e-7
+    assert "half the sampling rate" in smooth_record(record, 450.0).notes[-1]
 
 
 def test_frequencies_that_are_none():

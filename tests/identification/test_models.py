@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import inerter as it
 from inerter.errors import IdentificationError
 from inerter.identification.geometry import ball_screw_inertance, rack_and_pinion_inertance
-from inerter.identification.models import MODELS, MOUNT, mounted, rigid, standing
+from inerter.identification.models import MODELS, MOUNT, is_rigid, on_rig, with_mount
 from inerter.networks.transform import with_values
 
 VALUES = {"ks": 1e6, "cs": 3200.0, "gap": 1e-4, "b": 113.0, "f": 10.0, "c": 50.0}
@@ -20,9 +20,9 @@ sizes = st.floats(1e-4, 1e3)
 
 
 def test_every_family_has_a_viscous_twin():
-    plain = [name for name in MODELS if not name.endswith("-viscous")]
-    assert plain == ["ideal", "friction", "elastic", "elastic-friction", "backlash", "ball-screw"]
-    for name in plain:
+    uniform_whitening = [name for name in MODELS if not name.endswith("-viscous")]
+    assert uniform_whitening == ["ideal", "friction", "elastic", "elastic-friction", "backlash", "ball-screw"]
+    for name in uniform_whitening:
         mine, its = names(name), names(f"{name}-viscous")
         assert its == mine | {"c"}
         assert ("f" in mine, "ks" in mine, "gap" in mine) == (
@@ -44,12 +44,12 @@ def test_the_ball_screw_is_that_of_figure_6b():
 
 def test_rigid_devices_stand_on_the_load_cell_and_nothing_rings():
     for name, model in MODELS.items():
-        assert rigid(model) == (name.split("-viscous")[0] in ("ideal", "friction"))
-        assert mounted(model) == model
-        assert (standing(model, None).cell_bandwidth is not None) == rigid(model)
-        assert standing(model, 120.0).cell_bandwidth == 120.0
-    assert mounted(it.Gap(1e-4) - it.Inerter(5.0)) == MOUNT - it.Gap(1e-4) - it.Inerter(5.0)
-    assert mounted(it.Spring(1e4)) == it.Spring(1e4)
+        assert is_rigid(model) == (name.split("-viscous")[0] in ("ideal", "friction"))
+        assert with_mount(model) == model
+        assert (on_rig(model, None).cell_bandwidth is not None) == is_rigid(model)
+        assert on_rig(model, 120.0).cell_bandwidth == 120.0
+    assert with_mount(it.Gap(1e-4) - it.Inerter(5.0)) == MOUNT - it.Gap(1e-4) - it.Inerter(5.0)
+    assert with_mount(it.Spring(1e4)) == it.Spring(1e4)
 
 
 @given(sizes, sizes, st.floats(1e-3, 1.0))

@@ -10,10 +10,10 @@ from campaigns import sampled
 from troubled_records import clean, model_of, record_of
 
 import inerter as it
-from inerter.identification.concluding import fit_of
+from inerter.identification.conclusions import fit_of
 from inerter.identification.identify import solution_of
 from inerter.identification.options import FitOptions
-from inerter.identification.planning import _planned
+from inerter.identification.planning import _possible_motions
 
 IDEAL = it.Inerter(it.free(1.0, 500.0, name="b"))
 
@@ -28,7 +28,7 @@ def solved(force_range: float | None = 981.0):  # type: ignore[no-untyped-def]
 def test_an_inertance_is_known_better_by_its_acceleration() -> None:
     """White noise of the cell: the standard error of log b goes as one over the acceleration, and over root length."""
     solution = solved()
-    motions = {(m.larger, m.faster): float(m.errors[0]) for m in _planned(solution)}
+    motions = {(m.larger, m.faster): float(m.errors[0]) for m in _possible_motions(solution)}
     for (larger, faster), error in motions.items():
         assert error / motions[1.0, 1.0] == pytest.approx(1.0 / (larger * faster**2), rel=0.15), (larger, faster)
     assert {(2.0, 1.0), (4.0, 1.0), (1.0, 2.0), (1.0, 0.5)} <= set(motions)

@@ -14,12 +14,12 @@ import inerter as it
 from inerter.errors import IdentificationError
 from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import best_fit_of, steps_of
-from inerter.identification.noise import plain
+from inerter.identification.noise import uniform_whitening
 from inerter.identification.options import FitOptions
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
 from inerter.identification.scales import ScaleEffects, scale_effects
 from inerter.identification.search import improve
-from inerter.identification.space import space_of
 
 VALUES = {"ks": 2e5, "cs": 2e3, "gap": 1e-4, "b": 50.0, "f": 8.0}
 SHAFT = it.Spring(it.free(1e4, 1e7, name="ks")) | it.Damper(it.free(10, 2e4, name="cs"))
@@ -40,7 +40,7 @@ def problem(model: it.Network, force: float = 1.0, moved: float = 1.0) -> FitPro
     record = rig.run(it.cosine(4e-3, 2.0) + it.cosine(5e-4, 9.0), duration=1.5)
     record = replace(record, displacement=record.displacement * moved, force=record.force * force)
     experiment = experiment_of(record)
-    return FitProblem(it.Rig(model), space_of(it.Rig(model)), [experiment], [plain(experiment.kept, 0.12)])
+    return FitProblem(it.Rig(model), space_of(it.Rig(model)), [experiment], [uniform_whitening(experiment.kept, 0.12)])
 
 
 @pytest.mark.parametrize("name", sampled(MODELS, ["elastic-friction"]))
@@ -48,7 +48,7 @@ def test_effects_are_those_of_fits_to_records_with_other_scales(name: str) -> No
     """Where nothing is known from elsewhere the law is exact; else the other values make up for what is."""
     plainly = problem(MODELS[name])
     space = plainly.space
-    start = space.placed(VALUES)
+    start = space.coordinates_of(VALUES)
     optimum = best_fit_of(plainly, start)
     found = scale_effects(plainly, optimum, FitOptions(force_scale=FORCE, displacement_scale=MOVED))  # type: ignore[arg-type]
     assert found is not None
@@ -59,18 +59,18 @@ def test_effects_are_those_of_fits_to_records_with_other_scales(name: str) -> No
         noise = 2.0 * optimum.errors * space.slopes(optimum.point)
         assert np.all(np.abs(row - moved) <= 0.1 * np.abs(moved) + noise), (row, moved)
         if name != "known inertance":
-            law = [space.named(optimum.point)[n] * POWERS[n][scales[0] == 1.0] for n in space.names]
+            law = [space.values_by_name(optimum.point)[n] * POWERS[n][scales[0] == 1.0] for n in space.names]
             assert row == pytest.approx(np.array(law) * (sum(scales) - 2.0))
 
 
 def test_both_errors_add_up_in_squares_and_a_single_end_moves_by_the_scale() -> None:
     effects = ScaleEffects(np.array([[2.0, 0.0], [0.0, 0.0]]), np.array([0.02, 0.01]))
-    low, high = effects.widened(0, (97.0, 104.0), 100.0, (True, True))
+    low, high = effects.widen(0, (97.0, 104.0), 100.0, (True, True))
     assert (100.0 - low, high - 100.0) == pytest.approx((np.hypot(3.0, 3.92), np.hypot(4.0, 3.92)), rel=1e-3)
-    assert effects.widened(1, (25.0, 500.0), 500.0, (True, False)) == pytest.approx(
+    assert effects.widen(1, (25.0, 500.0), 500.0, (True, False)) == pytest.approx(
         (25.0 * (1 - 0.0196), 500.0), rel=1e-4
     )
-    assert effects.widened(1, (0.0, 2.0), 1.0, (False, True)) == pytest.approx((0.0, 2.0 * 1.0196), rel=1e-4)
+    assert effects.widen(1, (0.0, 2.0), 1.0, (False, True)) == pytest.approx((0.0, 2.0 * 1.0196), rel=1e-4)
 
 
 def test_values_follow_the_scales_that_are_given() -> None:

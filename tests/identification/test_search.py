@@ -10,11 +10,11 @@ import inerter as it
 from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import best_fit_of
-from inerter.identification.noise import plain
+from inerter.identification.noise import uniform_whitening
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
 from inerter.identification.search import basin_hopping, starts
-from inerter.identification.sensors import repeated, unavoidable
-from inerter.identification.space import space_of
+from inerter.identification.sensors import periodic_displacement, unavoidable_residual
 
 FLYWHEEL = it.Inerter(it.free(10, 500, name="b")) | it.Friction(it.free(0, 200, name="f"))
 RATTLING = {"b": 53.0, "f": 82.0, "ks": 4.7e5, "cs": 7900.0, "gap": 1.1e-4}
@@ -33,7 +33,7 @@ def rattle(seed: int = 0) -> it.Record:
 def problem_of(record: it.Record, model: it.Network) -> FitProblem:
     """The whole record with the errors that the virtual rig has."""
     rig, experiment = it.Rig(model), experiment_of(record)
-    return FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
+    return FitProblem(rig, space_of(rig), [experiment], [uniform_whitening(experiment.kept, 0.12)])
 
 
 @pytest.mark.marathon
@@ -75,7 +75,7 @@ def test_part_of_a_record_is_part_of_what_its_force_tells() -> None:
 
 def test_starts_cover_orders_of_magnitude_of_what_may_be_zero() -> None:
     problem = problem_of(fit_test(), BALL_SCREW)
-    gaps = np.array([problem.space.named(p)["gap"] for p in starts(problem, {}, seed=0, count=128)])
+    gaps = np.array([problem.space.values_by_name(p)["gap"] for p in starts(problem, {}, seed=0, count=128)])
     assert np.mean(gaps < 1e-5) > 0.1
     assert np.mean(gaps > 3e-4) > 0.1
 
@@ -83,7 +83,7 @@ def test_starts_cover_orders_of_magnitude_of_what_may_be_zero() -> None:
 @pytest.mark.campaign
 def test_hops_never_lead_to_a_worse_fit() -> None:
     problem = problem_of(rattle(), BALL_SCREW)
-    start = problem.space.placed({**RATTLING, "gap": 1.2e-4, "cs": 7000.0})
+    start = problem.space.coordinates_of({**RATTLING, "gap": 1.2e-4, "cs": 7000.0})
     before = float(np.sum(problem.residual(start) ** 2))
     assert float(np.sum(problem.residual(basin_hopping(problem, start, seed=0)) ** 2)) < before
 
@@ -94,7 +94,7 @@ def test_a_bootstrap_agrees_with_curvature_where_nothing_strikes() -> None:
     truth = it.Spring(2e5) | it.Damper(900.0)
     rig = it.VirtualRig(truth, seed=0, encoder_noise=0.0, encoder_resolution=0.0, force_resolution=0.0, force_range=1e4)
     problem = problem_of(rig.run(it.multisine(it.Road(1e-9, 10.0), seed=1, highest=20.0), duration=4.0), model)
-    optimum = best_fit_of(problem, problem.space.placed({"k": 2e5, "c": 900.0}))
+    optimum = best_fit_of(problem, problem.space.coordinates_of({"k": 2e5, "c": 900.0}))
     drawn = bootstrap(problem, optimum, seed=0, draws=40)
     plain_errors = np.sqrt(np.diag(optimum.covariance))
     assert np.all(drawn.optimum.errors < 2.0 * plain_errors)
@@ -104,19 +104,21 @@ def test_a_bootstrap_agrees_with_curvature_where_nothing_strikes() -> None:
 def test_what_an_encoder_leaves_grows_with_the_stiffness() -> None:
     problem = problem_of(fit_test(), BALL_SCREW)
     point = {"ks": 1e6, "cs": 3200.0, "gap": 0.0, "b": 113.0, "f": 10.0}
-    soft, stiff = (unavoidable(problem, problem.space.placed({**point, "b": b}), seed=0) for b in (20.0, 400.0))
+    soft, stiff = (
+        unavoidable_residual(problem, problem.space.coordinates_of({**point, "b": b}), seed=0) for b in (20.0, 400.0)
+    )
     assert stiff > 1.5 * soft
 
 
 def test_a_motion_repeats_only_without_tones_between_its_harmonics() -> None:
     """Or what a bootstrap draws would lack them."""
     periodic = experiment_of(fit_test(seed=4))
-    moved = repeated(periodic)
+    moved = periodic_displacement(periodic)
     later = moved[1000:4000]
     assert np.abs(later - moved[2000:5000]).max() < 1e-9  # 3 periods are 1 s; the encoder's noise is 2e-7 m
     assert np.abs(moved - periodic.motion.displacement).max() < 2e-6
     mixed = experiment_of(rattle())
-    assert np.array_equal(repeated(mixed), mixed.motion.displacement)
+    assert np.array_equal(periodic_displacement(mixed), mixed.motion.displacement)
 
 
 @pytest.mark.marathon

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import inerter as it
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.sensors import repeated, shaken
+from inerter.identification.sensors import periodic_displacement, simulate_measurement
 
 READINGS = 150
 INTERVAL = 1e-3  # [s]
@@ -52,7 +52,10 @@ def test_where_a_table_starts_is_as_uncertain_as_the_encoder_reads(seed: int) ->
     noise = step * random.uniform(0.05, 0.4)
     motion, wait = starting(random)
     given = experiment(motion, step, noise, random)
-    drawn = [shaken(given, repeated(given), given.record.force, random).motion.displacement for _ in range(READINGS)]
+    drawn = [
+        simulate_measurement(given, periodic_displacement(given), given.record.force, random).motion.displacement
+        for _ in range(READINGS)
+    ]
     true = [given.motion.smooth(read(motion, step, noise, random))[0] for _ in range(READINGS)]
     among = slice(wait + 3, wait + 40)
     assert since_the_start(drawn, among) == pytest.approx(since_the_start(true, among), rel=0.25)

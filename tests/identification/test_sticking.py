@@ -12,10 +12,10 @@ import inerter as it
 from inerter.identification.experiment import experiment_of
 from inerter.identification.identifiability import Verdict
 from inerter.identification.intervals import best_fit_of
-from inerter.identification.noise import plain
+from inerter.identification.noise import uniform_whitening
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.space import space_of
-from inerter.identification.sticking import adhering, profiles_at_rest
+from inerter.identification.sticking import profiles_at_rest, with_adhesion
 
 KS, CS, LEVEL = 2e4, 300.0, 0.12
 SHAFT = it.Spring(it.free(1e3, 1e7, name="ks")) | it.Damper(it.free(1, 2e4, name="cs"))
@@ -28,14 +28,14 @@ def problem(seed: int, friction: float, model: it.Network = MODEL) -> FitProblem
     device = it.Rig(MODEL).with_values({"ks": KS, "cs": CS, "b": 50.0, "f": friction}).device
     record = it.VirtualRig(device, seed=seed, sampling=500.0).run(it.cosine(1.25e-3, 1.0), duration=2.0)
     experiment, rig = experiment_of(record), it.Rig(model)
-    return FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, LEVEL)])
+    return FitProblem(rig, space_of(rig), [experiment], [uniform_whitening(experiment.kept, LEVEL)])
 
 
 def widths(seed: int, start: float) -> tuple[np.ndarray, tuple[float, float], float]:
     """Of ks and cs, over 3.92 of their standard errors; the interval of f; and the largest force held."""
     fit = problem(seed, 2.0 * HELD)
-    near = fit.space.placed({"ks": 1.0005 * KS, "cs": CS, "b": 400.0, "f": start})
-    optimum, adhesion = adhering(fit, best_fit_of(fit, near))
+    near = fit.space.coordinates_of({"ks": 1.0005 * KS, "cs": CS, "b": 400.0, "f": start})
+    optimum, adhesion = with_adhesion(fit, best_fit_of(fit, near))
     assert adhesion
     found = profiles_at_rest(fit, optimum, adhesion)
     shaft = np.array([p.upper.end - p.lower.end for p in found[:2]])
@@ -52,7 +52,7 @@ def test_like_records_have_like_widths_wherever_the_search_ended() -> None:
     for seed, start in ((1, 0.998 * HELD), (2, 300.0), (3, 0.9995 * HELD)):
         found, (low, high), held = widths(seed, start)
         alone = problem(seed, 2.0 * HELD, SHAFT)
-        reference = best_fit_of(alone, alone.space.placed({"ks": KS, "cs": CS}))
+        reference = best_fit_of(alone, alone.space.coordinates_of({"ks": KS, "cs": CS}))
         assert found == pytest.approx(2.0 * 1.96 * reference.errors, rel=0.1)  # of a spring and damper alone
         assert held == pytest.approx(HELD, rel=0.02)
         assert 0.95 * held < low <= held
@@ -63,8 +63,8 @@ def test_like_records_have_like_widths_wherever_the_search_ended() -> None:
 @pytest.mark.parametrize("part", [0.5, 0.9])
 def test_a_device_that_slips_is_not_held(part: float) -> None:
     fit = problem(4, part * HELD)
-    optimum = best_fit_of(fit, fit.space.placed({"ks": KS, "cs": CS, "b": 50.0, "f": part * HELD}))
-    same, adhesion = adhering(fit, optimum)
+    optimum = best_fit_of(fit, fit.space.coordinates_of({"ks": KS, "cs": CS, "b": 50.0, "f": part * HELD}))
+    same, adhesion = with_adhesion(fit, optimum)
     assert not adhesion
     assert same is optimum
 

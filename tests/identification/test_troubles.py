@@ -16,14 +16,14 @@ from troubled_records import Case, clean, fits_fault, model_of, record_of, troub
 from troubled_rig import Device, Sensors, Tones, device_force, measured
 
 import inerter as it
+from inerter.identification.diagnosis import hypotheses
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.explaining import hypotheses
 from inerter.identification.hypotheses import delay
 from inerter.identification.identifiability import Verdict
-from inerter.identification.judging import mean_square
-from inerter.identification.laws import Chained, stepped
+from inerter.identification.laws import ChainValues, simulate_chain
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.space import space_of
+from inerter.identification.residual_tests import mean_square
 
 STARTS = 8
 
@@ -146,13 +146,13 @@ def test_an_unknown_fixture_is_spoken_of() -> None:
     record = replace(record_of(HEAVY, 2), fixture_mass=None)
     unknown = it.identify(record, model_of(HEAVY), starts=STARTS)
     assert unknown.parameters["b"].value == pytest.approx(84.0, abs=0.5)
-    assert any(note.startswith("b: holds what moves with the table") for note in unknown.notes)
+    assert any(note.startswith("b includes the fixture mass") for note in unknown.notes)
 
 
 @pytest.mark.parametrize("duration", sampled([1.0, 2.0], kept=1))
 def test_known_noise_is_what_a_residual_is_judged_by(duration: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a load cell that is said to be much better than it is, a right model leaves too much."""
-    monkeypatch.setattr("inerter.identification.concluding.explanations", lambda *arguments: [])  # which take long
+    monkeypatch.setattr("inerter.identification.conclusions.explanations", lambda *arguments: [])  # which take long
     short = replace(RIGID, duration=duration)
     fit = it.identify(replace(record_of(short, 3), force_noise=0.05), model_of(short), starts=STARTS)
     assert not fit.status.ok
@@ -184,10 +184,10 @@ def test_friction_laws_are_stepped_as_the_rig_does(seed: int) -> None:
     time, z, force = measured(device, motion, quiet, 2.0, 0)
     record = it.Record(time, z, force)
     experiment = experiment_of(record, bandwidth=150.0)
-    chain = Chained(ks, cs, gap, b, f, 10.0, rise * f * changed, speed, skew=0.2 * (not changed))
+    chain = ChainValues(ks, cs, gap, b, f, 10.0, rise * f * changed, speed, skew=0.2 * (not changed))
     fine = np.arange(round(2.0 / 2e-6) + 1) * 2e-6
     exact = device_force(device, *motion.at(fine))[::500]
-    found = stepped(chain, experiment, time.size)
+    found = simulate_chain(chain, experiment, time.size)
     use = slice(50, -100)
     assert np.std((found - exact)[use]) < 0.03 * np.std(exact)
 

@@ -16,11 +16,11 @@ from inerter.identification.experiment import experiment_of
 from inerter.identification.friction_law import friction_law
 from inerter.identification.identifiability import Verdict
 from inerter.identification.intervals import best_fit_of
-from inerter.identification.judging import Judge, mean_square
-from inerter.identification.noise import plain
+from inerter.identification.noise import uniform_whitening
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.space import space_of
-from inerter.identification.staged import _friction
+from inerter.identification.residual_tests import Judge, mean_square
+from inerter.identification.staged_protocol import _friction
 
 LEVEL, STROKE, PERIODS, RATE = 10.0, 400, 12, 100.0  # [N], samples in a stroke, periods of two strokes, [Hz]
 BLOCKS = 24  # of time, over which a friction law sums its errors: here a stroke each
@@ -58,8 +58,8 @@ def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypat
     table = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=0)
     experiment = experiment_of(table.run(it.cosine(1e-3, 3.0), duration=1.0))
     rig = it.Rig(it.Inerter(it.free(10.0, 500.0, name="b")) | it.Friction(10.0))
-    problem = FitProblem(rig, space_of(rig), [experiment], [plain(experiment.kept, 0.12)])
-    optimum = replace(best_fit_of(problem, problem.space.placed({"b": 113.0})), widening=np.ones(1))
+    problem = FitProblem(rig, space_of(rig), [experiment], [uniform_whitening(experiment.kept, 0.12)])
+    optimum = replace(best_fit_of(problem, problem.space.coordinates_of({"b": 113.0})), widening=np.ones(1))
     scatter = np.random.default_rng(draws).normal(0.0, 5.0 * optimum.errors, (draws, 1))
     left = iter(scatter)
 
@@ -94,7 +94,7 @@ def test_a_misfit_may_be_a_tenth_and_three_standard_deviations_of_sound_sensors(
 ) -> None:
     white = 0.01 * np.random.default_rng(4).standard_normal(400)
     sizes = 1.0 + spread * np.array([-1.0, 0.0, 1.0])  # whose standard deviation is the spread
-    judged = plain(np.ones(white.size, dtype=bool), 1.0)
+    judged = uniform_whitening(np.ones(white.size, dtype=bool), 1.0)
     judge = Judge([judged], [judged], [sizes[:, None] * white])
     usual = np.sqrt(np.mean(sizes**2))
     residual = (1.1 + deviations * spread) * usual * white

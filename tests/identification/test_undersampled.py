@@ -29,7 +29,7 @@ def test_the_highest_frequency_of_tones(frequency: float, size: float, seed: int
 def test_a_rig_that_samples_too_slowly_says_so(sampling: float, told: bool) -> None:
     rig = VirtualRig(DEVICE, sampling=sampling, table_bandwidth=80.0, force_bandwidth=100.0)
     record = rig.run(it.cosine(5e-3, 2.0) + it.cosine(2e-4, 41.0), duration=2.0)
-    notes = [note for note in record.notes if "samples a second" in note]
+    notes = [note for note in record.notes if "Nyquist frequency" in note]
     assert bool(notes) is told
     if told:
         assert f"{0.5 * sampling:g} Hz" in notes[0]

@@ -20,11 +20,11 @@ from inerter.errors import InerterError, RecordError, Status, StatusKind
 from inerter.files.study import running
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.loading import load_study
-from inerter.identification import explaining
+from inerter.identification import diagnosis
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability
-from inerter.identification.kinds import FitFinding
-from inerter.identification.suspects import Suspect
+from inerter.identification.possible_causes import Suspect
 from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Remedy
 from inerter.records.writers import write_record
@@ -72,8 +72,8 @@ def opaque(patch: pytest.MonkeyPatch) -> None:
 
 def with_few_rivals(patch: pytest.MonkeyPatch) -> None:
     """Try every eighth hypothesis only, since each is a fit; and draw nothing."""
-    whole = explaining.hypotheses
-    patch.setattr(explaining, "hypotheses", lambda problem, places=(): whole(problem, places)[::8])
+    whole = diagnosis.hypotheses
+    patch.setattr(diagnosis, "hypotheses", lambda problem, places=(): whole(problem, places)[::8])
     patch.setattr("inerter.cli.identify.write_identification", lambda *arguments: None)
 
 

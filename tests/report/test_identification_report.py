@@ -18,11 +18,11 @@ import inerter as it
 from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import Identified, Reading, Responses, responses
 from inerter.identification.choice import Candidate
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, Misfit
-from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.identifiability import Identifiability, Verdict
-from inerter.identification.kinds import FitFinding
+from inerter.identification.initial_estimate import chain_of
 from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import Linear
@@ -132,7 +132,7 @@ def test_what_is_not_identifiable_is_said_everywhere(found: Identified) -> None:
     assert value_and_interval(without(found, "f", (2.0, 100.0)), "f") == ("not identifiable", "above 2 N")
     assert "# not identifiable: below 3 N" in elements_block(less)
     text = identification_text(less)
-    assert "f: not identifiable; all values from 0 N to 3 N explain the records as well." in " ".join(text.split())
+    assert "f: not identifiable: only an upper bound, 3 N, is known (search from 0 N)." in " ".join(text.split())
     assert "b: identified." not in text
 
 
@@ -186,7 +186,7 @@ def test_several_models_are_listed_best_first(found: Identified) -> None:
     clear = Finding(FitFinding.NOT_REACHED, "warning", "ideal", {"other": "friction"})
     text = identification_text(replace(found, candidates=rows, choice=(clear,)))
     assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")
-    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "ideal: does not reach friction"):
+    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "ideal: not converged"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 
@@ -250,7 +250,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: 
         for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
             told = " ".join(text.split())
             assert ("113 kg" in told.partition("estimates")[0].partition("Parameters")[0]) == sound
-            assert "the values with it, where there are any," in told
+            assert "use the values under this hypothesis, where" in told
             assert "above" not in told.partition("records")[0]
     assert len(proposed) == 6
 

@@ -1,1 +1,1 @@
-"""From records to parameters: the virtual rig, the fit, its uncertainty and what is not identifiable."""
+"""From records to parameters: the virtual rig, the fit, its uncertainty and identifiability."""

@@ -1,4 +1,4 @@
-"""Which elements a record asks for: candidate devices by how well they predict the part that was not fitted."""
+"""Model selection: candidate devices compared by their prediction of validation data."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
-from inerter.identification.concluding import fit_of
+from inerter.identification.arguments import checked_records, model_of
+from inerter.identification.conclusions import fit_of
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit
-from inerter.identification.given import checked_records, model_of
 from inerter.identification.identify import solution_of
-from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
@@ -32,17 +32,17 @@ from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
 Matrix = NDArray[np.float64]
-LEAST, MOST = 0.02, 0.1  # of the loss: what a standard error of a difference counts as, at least and at most
+LEAST, MOST = 0.02, 0.1  # of the loss: least and largest allowed difference
 _ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _BLOCKS = 20
-_RANGE = 4.0  # about known values, in which a fit is tried again
-_AGAIN = " again"  # no name of a candidate
+_RANGE = 4.0  # factor about known values, within which a fit is repeated
+_AGAIN = " again"  # not a name of a candidate
 _PAIRS = (("ideal", "friction"), ("elastic", "elastic-friction"), ("backlash", "ball-screw"))
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """How one candidate predicts the check part.
+    """Prediction of the validation data by one candidate.
 
     A loss is a mean square of whitened residuals, about 1 for a right model.
     """
@@ -50,7 +50,7 @@ class Candidate:
     name: str
     unknowns: int
     loss: float
-    behind: float  # the best one's loss less than this one's
+    behind: float  # loss above that of the best candidate
     error: float  # standard error of that difference
     as_good: bool  # as the best one, by the rule of `choose`
     status: Status  # of its fit
@@ -74,7 +74,7 @@ class Choice:
 
     @property
     def fit(self) -> Fit:
-        """That of the chosen candidate."""
+        """Fit of the selected candidate."""
         return self.fits[self.name]
 
 
@@ -87,42 +87,42 @@ def choose(
     executor: Executor | None = None,
     **changes: Unpack[OptionChanges],
 ) -> Choice:
-    """Fit every candidate, and choose the one with the fewest unknowns of those that predict as well as the best.
+    """Fit every candidate, and select the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
-    chosen one with a damper, with and without friction. Options and keywords are those of `identify`.
+    selected one with a damper, with and without friction. Options and keywords are those of `identify`.
 
-    **The criterion.** Each candidate is fitted with the weights that its own residuals ask for, so its likelihood
-    compares with no other's. Here all are judged by one yardstick: the last part `check` of each record, which none
-    was fitted to, whitened by what the errors of the sensors leave there of the candidate that leaves the least.
-    Its loss is the mean square of the whitened residuals (those beyond 3 count less), so about 1 for a right model.
-    A candidate is as good as the best if its loss is larger by no more than the standard error of the difference,
-    from 20 blocks of time; that counts as 2 % of the best loss at least, for what changes less is not worth an
-    element, and as 10 % at most, for an element may show in few blocks only (the rule of one standard error,
-    Breiman et al. 1984). Of those as good, the one with the fewest unknowns is chosen.
+    **The criterion.** Each candidate is fitted with weights from its own residuals, so likelihoods of candidates cannot
+    be compared. All are therefore compared on the same validation data, the last part `check` of each record, whitened
+    by the sensor noise of the candidate with the smallest residual. The loss is the mean square of the whitened
+    residuals (those beyond 3 count less), so about 1 for a correct model. A candidate is as good as the best if its
+    loss is larger by no more than the standard error of the difference, from 20 blocks of time; at least 2 % of the
+    best loss is allowed, because a smaller improvement does not justify an element, and at most 10 %, because an
+    element may matter in few blocks only (the rule of one standard error, Breiman et al. 1984). Of those as good, the
+    one with the fewest unknowns is selected.
 
-    Raises `IdentificationError` if no candidate can be fitted or nothing is kept for the check; a candidate that
-    fails among others is in `findings`.
+    Raises `IdentificationError` if no candidate can be fitted or there are no validation data; a candidate that fails
+    among others is reported in `findings`.
     """
-    asked = options.changed(**changes)
-    given = _named(models)
+    asked = options.replace(**changes)
+    given = _models_by_name(models)
     records = checked_records(records)
     if not asked.check > 0.0:
-        raise IdentificationError(f"Candidates are compared on the part kept for the check, got {asked.check!r}.")
+        raise IdentificationError(f"check: candidates are compared on validation data; got {asked.check!r}.")
     selection = _Selection(records, asked, len(given) + (2 if models is None else 0), progress)
     with running_on(executor) as pool:
         prepare_on(pool, KERNELS)
         selection.enter(given)
         if models is None:
-            first = _chosen(ranking(selection.fits))
+            first = _fewest_unknowns(ranking(selection.fits))
             pair = next(pair for pair in _PAIRS if first in pair)
             selection.enter({VISCOUS[name]: MODELS[VISCOUS[name]] for name in pair})
-        return selection.decided()
+        return selection.choice()
 
 
 @dataclass(eq=False)
 class _Selection:
-    """Candidates that are fitted to the same records, and how far each has come."""
+    """Candidates that are fitted to the same records, with their solutions and failures."""
 
     records: Sequence[Record]
     asked: FitOptions
@@ -134,12 +134,12 @@ class _Selection:
     failed: list[Finding] = field(default_factory=list)
 
     def enter(self, candidates: Mapping[str, Network]) -> None:
-        """Fit some more; raises `IdentificationError` if there is none that can be fitted."""
+        """Fit further candidates; raises `IdentificationError` if none can be fitted."""
         self.models |= candidates
         for name, model in candidates.items():
             done = len(self.fits) + len(self.failed)
             try:
-                self._solved(name, solution_of(self.records, model, self.asked, self._part(done)))
+                self._add_solution(name, solution_of(self.records, model, self.asked, self._part_progress(done)))
             except InerterError as error:
                 self.failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
         if not self.fits:
@@ -147,13 +147,15 @@ class _Selection:
             raise IdentificationError(f"No candidate can be fitted. {why}")
         self._retry()
 
-    def decided(self) -> Choice:
-        """The choice between all that entered."""
+    def choice(self) -> Choice:
+        """The selected candidate of all that entered."""
         ranked = ranking(self.fits)
-        name = _chosen(ranked)
+        name = _fewest_unknowns(ranked)
         fit = self.fits[name] = fit_of(self.solutions[name])
         values = {n: p.best for n, p in fit.parameters.items()}
-        stuck = (Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _stuck(ranked, self.fits))
+        stuck = (
+            Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _not_converged(ranked, self.fits)
+        )
         return Choice(
             name=name,
             fits=self.fits,
@@ -163,13 +165,13 @@ class _Selection:
             findings=(_reason(ranked, name), *stuck, *self.failed),
         )
 
-    def _solved(self, name: str, solution: SolvedFit) -> None:
+    def _add_solution(self, name: str, solution: SolvedFit) -> None:
         fit = fit_of(solution, explain=False)
         self.solutions[name], self.fits[name] = solution, fit
 
     def _retry(self) -> None:
-        """Candidates that a relative shows to be far from their best fit are fitted again near that relative's."""
-        for name, relative in _stuck(ranking(self.fits), self.fits):
+        """Refit candidates that have not converged near the fit of the related candidate that shows it."""
+        for name, relative in _not_converged(ranking(self.fits), self.fits):
             with suppress(InerterError):
                 near = solution_of(self.records, _near(self.models[name], self.fits[relative]), self.asked, None)
                 other = fit_of(near, explain=False)
@@ -178,22 +180,22 @@ class _Selection:
                 if losses[_AGAIN] < losses[name]:
                     self.solutions[name], self.fits[name] = near, other
 
-    def _part(self, done: int) -> Callable[[float], None] | None:
-        """What tells the progress of the next candidate."""
+    def _part_progress(self, done: int) -> Callable[[float], None] | None:
+        """Progress callback of the next candidate."""
         return part(self.progress, done / self.expected, (done + 1) / self.expected)
 
 
 def ranking(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
     """The candidates, the best first, by the criterion of `choose`.
 
-    Raises `IdentificationError` if they have no samples of a check part in common.
+    Raises `IdentificationError` if they have no validation data in common.
     """
     masks = [
         np.logical_and.reduce(parts)
         for parts in zip(*([c.checked for c in f.comparisons] for f in fits.values()), strict=True)
     ]
     if sum(int(mask.sum()) for mask in masks) < 2 * _BLOCKS:
-        raise IdentificationError("Too few samples are kept for the check to compare candidates on; raise `check`.")
+        raise IdentificationError("check: too few validation samples to compare candidates. Increase `check`.")
     left = {name: _spread(fit, masks) for name, fit in fits.items()}
     whitenings = _whitenings(fits[min(left, key=lambda name: left[name])], masks)
     losses = {name: _losses(fit, whitenings) for name, fit in fits.items()}
@@ -210,11 +212,11 @@ def ranking(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
     return tuple(sorted(result, key=lambda c: c.loss))
 
 
-def _chosen(ranked: Sequence[Candidate]) -> str:
+def _fewest_unknowns(ranked: Sequence[Candidate]) -> str:
     return min((c for c in ranked if c.as_good), key=lambda c: (c.unknowns, c.loss)).name
 
 
-def _named(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Network]:
+def _models_by_name(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Network]:
     if models is None:
         return {name: MODELS[name] for name in VISCOUS}
     if isinstance(models, Mapping):
@@ -223,12 +225,12 @@ def _named(models: Mapping[str, Network] | Iterable[str] | None) -> dict[str, Ne
         names = [models] if isinstance(models, str) else list(models)
         chosen = {name: model_of(name) for name in names}
     if not chosen:
-        raise IdentificationError("There is no candidate to choose from.")
+        raise IdentificationError("models: at least one candidate is required.")
     return chosen
 
 
 def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
-    """R.m.s. of what a fit leaves of the check part [N], each record as large as its force."""
+    """R.m.s. residual on the validation data, relative to the force of each record."""
     shares = [
         np.mean(c.residual[mask] ** 2) / np.var(c.record.force)
         for c, mask in zip(fit.comparisons, masks, strict=True)
@@ -255,12 +257,12 @@ def _losses(fit: Fit, whitenings: Sequence[Whitening]) -> Matrix:
 
 def _status(fit: Fit) -> Status:
     if not fit.status.ok:
-        return Status(StatusKind.INACCURATE, f"even the chosen candidate fails: {fit.status.message}")
+        return Status(StatusKind.INACCURATE, f"even the selected candidate fails: {fit.status.message}")
     return fit.status
 
 
 def _reason(ranked: Sequence[Candidate], name: str) -> Finding:
-    """Why a candidate was chosen."""
+    """Finding with the reason for the selection."""
     chosen, best = next(c for c in ranked if c.name == name), ranked[0]
     others = [c for c in ranked if not c.as_good]
     numbers = {
@@ -274,11 +276,11 @@ def _reason(ranked: Sequence[Candidate], name: str) -> Finding:
     return Finding(FitFinding.BEST if chosen is best else FitFinding.FEWEST_UNKNOWNS, "info", name, numbers)
 
 
-def _stuck(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tuple[str, str]]:
-    """Candidates that could predict better than they do, each with the relative that shows it.
+def _not_converged(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tuple[str, str]]:
+    """Candidates that have not converged, each with the related candidate that shows it.
 
-    One that is worse than a part of itself could at least equal that. And a part of the best one could equal that, if
-    nothing that the best one has beyond it is identifiable.
+    One that is worse than a candidate with a subset of its elements could at least equal it. And one with a subset of
+    the elements of the best could equal that, if none of the further elements of the best is identifiable.
     """
     best = ranked[0]
     for c in ranked:
@@ -298,7 +300,7 @@ def _worse(ranked: Sequence[Candidate], one: str, other: str) -> bool:
 
 
 def _near(model: Network, fit: Fit) -> Network:
-    """The model with the values that it has in common with a fit bounded to a range about them."""
+    """The model with its common values with a fit bounded to a range about them."""
 
     def bound(element: Element) -> Network:
         value = element.value

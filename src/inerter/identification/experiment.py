@@ -1,4 +1,4 @@
-"""A record made ready to be compared with a model: the motion that it is given, and the force that it should answer."""
+"""A record prepared for comparison with a model: smoothed motion, force and compared samples."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
-MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours and find nothing new
+MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours without better estimates
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
-_PACE, _MOST_PARTS = 2.0, 7  # steps over the time in which the device answers; parts of an interval, as a power of 2
+_PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
 
 
 class Tally:
-    """How often a record was simulated, by all that share it, in whichever thread."""
+    """Number of simulations of a record, counted over all threads."""
 
     def __init__(self) -> None:
         self.total = 0
         self._lock = Lock()
 
     def add(self, count: int = 1) -> None:
-        """Some more."""
+        """Add simulations."""
         with self._lock:
             self.total += count
 
     def __reduce__(self) -> tuple[type[Tally], tuple[()]]:
-        """Another process counts for itself."""
+        """Pickle as an empty count: each process counts separately."""
         return Tally, ()
 
 
@@ -51,7 +51,7 @@ class Tally:
 class Experiment:
     """One record with its smoothed motion. Samples that are not `kept` are simulated but not compared.
 
-    Times are counted from the first sample. Experiments that are made of one another share its `tally`.
+    Times are counted from the first sample. Copies of an experiment share its `tally`.
     """
 
     record: Record
@@ -59,12 +59,12 @@ class Experiment:
     kept: NDArray[np.bool_]
     table: InputTable  # of the motion
     noise: float  # [N] r.m.s. of the noise of the force
-    information: Matrix  # (samples,) how much of the squared force of all samples kept lies up to each
+    information: Matrix  # (samples,) cumulative share of the squared force of all samples kept
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
     tally: Tally = field(default_factory=Tally)
 
     def __getstate__(self) -> dict[str, object]:
-        """What another process needs: tables are quicker made than sent."""
+        """State for another process, without tables, which are faster to compute than to send."""
         return {**vars(self), "finer": {}}
 
     @property
@@ -72,48 +72,48 @@ class Experiment:
         return int(self.record.time.size)
 
     def table_in(self, parts: int) -> InputTable:
-        """The motion in `parts` steps an interval."""
+        """The motion in `parts` steps per interval."""
         if parts == 1:
             return self.table
         if parts not in self.finer:
             self.finer[parts] = _table(self.motion, parts)
         return self.finer[parts]
 
-    def moved(self, displacement: Matrix, velocity: Matrix) -> Experiment:
-        """The same record, had the table moved so."""
+    def with_motion(self, displacement: Matrix, velocity: Matrix) -> Experiment:
+        """The same record with another motion of the table."""
         motion = replace(self.motion, displacement=displacement, velocity=velocity)
         value, slope = (displacement - displacement[0])[:, None], velocity[:, None]
         table = replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
         return replace(self, motion=motion, table=table, finer={})
 
-    def late(self, delay: float | Matrix) -> Experiment:
-        """The same record, had the table moved `delay` [s] later: what a force that is late answers to.
+    def with_delay(self, delay: float | Matrix) -> Experiment:
+        """The same record with the motion of the table delayed by `delay` [s], as a delayed force requires.
 
-        It may be another one at each sample.
+        The delay may differ from sample to sample.
 
-        Before its first sample and after its last the table is taken to stand still.
+        Before the first sample and after the last the table is assumed at rest.
         """
         time = self.motion.time - self.motion.time[0] - delay
         within = np.clip(time, 0.0, self.motion.time[-1] - self.motion.time[0])
         height, velocity = _signal(self.motion).sample(within)
-        return self.moved(height, np.where(time == within, velocity, 0.0))
+        return self.with_motion(height, np.where(time == within, velocity, 0.0))
 
     def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
-        """The force that the load cell would read of this device at the first `samples` samples; None if it fails."""
+        """Load cell force [N] of this device at the first `samples` samples; None if the simulation fails."""
         run = self.run(system, samples)
         return None if run is None else run[reading_of(self.record)]
 
     def run(self, system: PiecewiseSystem, samples: int | None = None, moving: bool = False) -> Trajectory | None:
-        """The motion of the device, from rest or (`moving`) carried along with the table; None if it fails."""
+        """The motion of the device, from rest or (`moving`) moving with the table; None if the simulation fails."""
         self.tally.add()
         state = initial_state(system, self.table.value[0], "rest")
         if moving:
-            state = _carried(system, state, self.table.slope[0])
+            state = _consistent_velocities(system, state, self.table.slope[0])
         count = self.size if samples is None else min(samples, self.size)
-        integration = event_driven.start(system, _shortened(self.table, count - 1), state)
+        integration = event_driven.start(system, _truncate(self.table, count - 1), state)
         parts = parts_for(integration)
         if parts > 1:
-            integration = event_driven.start(system, _shortened(self.table_in(parts), (count - 1) * parts), state)
+            integration = event_driven.start(system, _truncate(self.table_in(parts), (count - 1) * parts), state)
         integration.advance(integration.table.time.size - 1)
         if not integration.status.ok:
             return None
@@ -129,28 +129,29 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
     """
     if record.time.size > MOST_SAMPLES:
         raise IdentificationError(
-            f"{record.source!r} has {record.time.size} samples; a fit takes up to {MOST_SAMPLES}. Trim or resample it."
+            f"{record.source!r} has {record.time.size} samples; a fit supports at most {MOST_SAMPLES}. Trim or "
+            f"resample the record."
         )
     if np.ptp(record.displacement) == 0.0:
         raise IdentificationError(
-            f"The displacement of {record.source!r} is constant: nothing is identifiable from it."
+            f"The displacement of {record.source!r} is constant, so no parameter is identifiable."
         )
     if np.ptp(record.force) == 0.0:
-        raise IdentificationError(f"The force of {record.source!r} is constant: nothing is identifiable from it.")
+        raise IdentificationError(f"The force of {record.source!r} is constant, so no parameter is identifiable.")
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
     try:
         table = _table(motion)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
-    kept = (
-        np.convolve(saturated_samples(record), np.ones(3), "same") == 0.0
-    )  # within a sample of one cut off it was too
+    # A sample next to a clipped one may be clipped too.
+    kept = np.convolve(saturated_samples(record), np.ones(3), "same") == 0.0
     at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
     wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
     if not 0.0 <= wait < record.duration:
         raise IdentificationError(
-            f"What is left out at the start, {wait:g} s, must be shorter than {record.duration:g} s."
+            f"lead: the part discarded at the start, {wait:g} s, must be non-negative and shorter than the record, "
+            f"{record.duration:g} s."
         )
     kept[: round(wait / interval)] = False
     edge = min(round(1.0 / (motion.bandwidth * interval)), count // 10)
@@ -159,16 +160,16 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         kept[:edge] = False
     if kept.sum() < 50:
         raise IdentificationError(
-            f"Of {record.source!r} only {kept.sum()} samples can be used; a fit needs 50 or more."
+            f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least 50."
         )
     return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept))
 
 
 def _noise(record: Record) -> float:
-    """R.m.s. of the noise of the force [N]: as it is known, or as the quietest half-octave of its spectrum says.
+    """R.m.s. noise of the force [N]: as stated, or from the quietest half-octave of its spectrum.
 
-    Less where impacts now and then are all of that: sixth differences leave little of any force, and their median
-    little of what is not there most of the time.
+    Less where occasional impacts dominate that: sixth differences suppress the force, and their median suppresses rare
+    events.
     """
     if record.force_noise is not None:
         return record.force_noise
@@ -188,25 +189,25 @@ def reading_of(record: Record) -> str:
     return "device_force" if record.force_bandwidth is None else "reading_force"
 
 
-def disturbed(experiment: Experiment, noise: Matrix) -> Experiment:
-    """The same experiment had the encoder's noise been larger by `noise` (samples,) [m]."""
-    return experiment.moved(*experiment.motion.smooth(experiment.record.displacement + noise))
+def add_encoder_noise(experiment: Experiment, noise: Matrix) -> Experiment:
+    """The same experiment with additional encoder noise `noise` (samples,) [m]."""
+    return experiment.with_motion(*experiment.motion.smooth(experiment.record.displacement + noise))
 
 
-def forgotten(experiment: Experiment, system: PiecewiseSystem, level: float) -> int:
-    """The sample from which on it no longer matters, beyond `level` [N], whether the device started at rest or not."""
+def transient_samples(experiment: Experiment, system: PiecewiseSystem, level: float) -> int:
+    """Number of samples after which the initial state of the device changes the force by less than `level` [N]."""
     runs = [experiment.run(system, moving=moving) for moving in (False, True)]
     if runs[0] is None or runs[1] is None:
         return 0
     name = reading_of(experiment.record)
-    apart = np.abs(runs[0][name] - runs[1][name]) > level
-    return int(np.flatnonzero(apart)[-1]) + 1 if apart.any() else 0
+    map_problems = np.abs(runs[0][name] - runs[1][name]) > level
+    return int(np.flatnonzero(map_problems)[-1]) + 1 if map_problems.any() else 0
 
 
 def parts_for(integration: event_driven.Integration) -> int:
-    """Into how many steps to part an interval so that whole steps serve where the device answers much faster.
+    """Number of steps per interval, so that a fast device is resolved by whole steps.
 
-    Else each of them would be gone through in as many pieces, which take a hundred times as long.
+    Otherwise each interval would be subdivided by the integrator, which takes a hundred times as long.
     """
     kinds = integration.system.nonlinear_elements
     reach = np.inf
@@ -235,7 +236,7 @@ def _signal(motion: Motion) -> Signal:
     return Signal.sampled(time, height, derivative=motion.velocity, label="measured displacement")
 
 
-def _shortened(table: InputTable, segments: int) -> InputTable:
+def _truncate(table: InputTable, segments: int) -> InputTable:
     end = segments + 1
     if end == table.time.size:
         return table
@@ -248,13 +249,13 @@ def _shortened(table: InputTable, segments: int) -> InputTable:
     )  # fmt: skip
 
 
-def _carried(system: PiecewiseSystem, state: Matrix, velocity: Matrix) -> Matrix:
-    """The same state with velocities at which springs, dampers and gaps keep their length."""
+def _consistent_velocities(system: PiecewiseSystem, state: Matrix, velocity: Matrix) -> Matrix:
+    """The state with velocities at which springs, dampers and gaps keep their length."""
     E_a, E_w, E_z = system.rates
     laws = (Linear.STIFFNESS, Linear.DAMPING, Linear.CLOSED)
     soft = [i for i, b in enumerate(system.graph.branches) if b.element.linear in laws]
     rows = np.hstack([E_a, E_w])[soft]
     solved = np.linalg.lstsq(rows, -E_z[soft] @ velocity, rcond=1e-10)[0]
-    moved = state.copy()
-    moved[: E_a.shape[1]] = solved[: E_a.shape[1]]
-    return moved
+    with_motion = state.copy()
+    with_motion[: E_a.shape[1]] = solved[: E_a.shape[1]]
+    return with_motion

@@ -1,4 +1,4 @@
-"""What an identification found: parameters with intervals, what is not identifiable, and how well the model fits."""
+"""Result of an identification: parameters with intervals, identifiability, and goodness of fit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.errors import OK, Status
 from inerter.identification.experiment import Experiment
 from inerter.identification.identifiability import Identifiability
 from inerter.identification.misfit_patterns import MisfitPattern
-from inerter.identification.suspects import Details, Suspect
+from inerter.identification.possible_causes import Details, Suspect
 from inerter.networks.elements import Network
 from inerter.records.finding import Finding
 from inerter.records.record import Record
@@ -25,10 +25,9 @@ Matrix = NDArray[np.float64]
 class Parameter:
     """One identified value with its 95 % interval.
 
-    `value` is nan where the records do not identify it: the interval then still holds, and says what is known, such as
-    an upper bound. Of a fit that is not to be relied on there is no value and no standard error, and the interval is
-    nan or, where hypotheses explain the misfit, the range of values under them. `best` is the value of the best fit in
-    any case, to go on computing with.
+    `value` is nan where the records do not identify it: the interval then is still valid, such as an upper bound. An
+    unreliable fit has no value and no standard error, and the interval is nan or, where hypotheses explain the misfit,
+    the range of values under them. `best` is the value of the best fit in any case, for further computation.
     """
 
     name: str
@@ -42,64 +41,64 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Misfit:
-    """The r.m.s. of what a fit leaves, whitened, over that of what errors like those of the sensors leave."""
+    """Normalised residual: r.m.s. whitened residual of a fit over that of sensor noise."""
 
     fitted: float
-    checked: float  # of the part that was not fitted; nan if there is none
-    limits: tuple[float, float]  # what both may be where nothing is wrong
+    checked: float  # of the validation data; nan if there are none
+    limits: tuple[float, float]  # largest values of both that sensor noise alone may cause
 
     @property
     def worst(self) -> float:
-        """The larger one."""
+        """The larger of both."""
         return float(np.nanmax([self.fitted, self.checked]))
 
     @property
     def excess(self) -> float:
-        """The larger one over what it may be."""
+        """The larger of both relative to its limit."""
         return float(np.nanmax([self.fitted / self.limits[0], self.checked / self.limits[1]]))
 
     @property
     def sound(self) -> bool:
-        """Whether the errors of the sensors may be all that is left."""
+        """Whether sensor noise alone may explain the residual."""
         return self.excess <= 1.0
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """A hypothesis about the device or its sensors, and what it explains of a misfit."""
+    """A hypothesis about the device or its sensors, and the share of a misfit that it explains."""
 
     name: Suspect
-    explained: float  # part of the misfit, squared, beyond what the sensors leave; of the check part if it shows there
-    misfit: Misfit  # that it leaves
+    explained: float  # share of the squared misfit beyond sensor noise; on the validation data if present there
+    misfit: Misfit  # under the hypothesis
     values: dict[str, float]  # of the unknowns of the hypothesis
     estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
     details: Details = field(default_factory=dict)  # the numbers of its sentence
 
     @property
     def sentence(self) -> str:
-        """What it says, to go on after a colon."""
+        """The sentence of the hypothesis, for use after a colon."""
         return self.name.sentence(self.details)
 
     @property
     def remedy(self) -> str:
-        """What would put it right, in Python."""
+        """Remedy, in Python."""
         return in_python(self.name.remedy(self.details))
 
 
 @dataclass(frozen=True, eq=False)
 class RecordFit:
-    """One record as used, what the model answers to it, and the tests of what is left."""
+    """One record as used, the force of the model, and the tests of the residual."""
 
     experiment: Experiment
     model: Matrix  # (samples,) [N] force as the load cell would read it, with its offset
     offset: float  # [N] of the load cell
     fitted: NDArray[np.bool_]  # samples that were fitted
-    checked: NDArray[np.bool_]  # samples that were kept for the check
-    draws: Matrix  # (draws, samples) [N] residuals such as errors of the sensors alone would leave
+    checked: NDArray[np.bool_]  # samples of the validation data
+    draws: Matrix  # (draws, samples) [N] residuals that sensor noise alone would cause
     whitened: Matrix  # residuals after weighting and whitening, of the fitted samples
-    lead: float  # [s] at the start that were left out
-    whiteness: float  # p-value of residuals no more autocorrelated than errors of the sensors
-    openings: Mapping[str, int]  # how often each gap opened in the model
+    lead: float  # [s] discarded at the start
+    whiteness: float  # p-value of residuals no more autocorrelated than sensor noise
+    openings: Mapping[str, int]  # number of openings of each gap in the model
 
     @property
     def record(self) -> Record:
@@ -111,17 +110,17 @@ class RecordFit:
         return self.record.force - self.model
 
     def rms(self, check: bool = False) -> float:
-        """R.m.s. of the residual over the fitted, or the checked, samples [N]; nan if there are none."""
+        """R.m.s. residual on the fitted or validation samples [N]; nan if there are none."""
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.residual[mask] ** 2))) if mask.any() else float("nan")
 
     def sound(self, check: bool = False) -> float:
-        """R.m.s. of what errors of the sensors alone would leave of them [N]."""
+        """R.m.s. residual that sensor noise alone would cause on these samples [N]."""
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.draws[:, mask] ** 2))) if mask.any() else float("nan")
 
     def explained(self, check: bool = False) -> float:
-        """Part of the variance of the force that the model explains."""
+        """Share of the variance of the force that the model explains."""
         mask = self.checked if check else self.fitted
         if not mask.any():
             return float("nan")
@@ -138,11 +137,11 @@ class Localisation:
 
     @property
     def sentence(self) -> str:
-        """The strongest pattern, to go on after a colon."""
+        """The strongest pattern, for use after a colon."""
         if not self.patterns:
-            return "the misfit has no pattern that was looked for"
+            return "the residual has none of the patterns tested"
         first = self.patterns[0]
-        return first.sentence if float(first.numbers.get("p", 0.0)) < 1.0 else f"{first.sentence} (which may be chance)"
+        return first.sentence if float(first.numbers.get("p", 0.0)) < 1.0 else f"{first.sentence} (not significant)"
 
     @property
     def changes(self) -> tuple[float, ...]:
@@ -162,16 +161,16 @@ class Fit:
     device: Network  # the model with the best values
     comparisons: tuple[RecordFit, ...]
     criterion: float  # Bayesian information criterion, lower is better
-    costs: tuple[float, ...]  # of the different fits to half of the records that the best starts came to, sorted
+    costs: tuple[float, ...]  # of the different fits to half of the records reached by the best starts, sorted
     simulations: int
-    predicted: float  # part of the variance of the force that errors as small as those of the encoder leave as it is
+    predicted: float  # share of the variance of the force that encoder noise does not change
     misfit: Misfit
-    explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the likeliest first
+    explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the most likely first
     localisations: tuple[Localisation, ...] = ()  # of the misfit, if there is one, in each record
     status: Status = OK
-    doubt: Finding | None = None  # why it is not to be relied on
-    findings: tuple[Finding, ...] = ()  # what has to be known about the estimates
-    suggestions: tuple[Finding, ...] = ()  # what the next experiment may be
+    doubt: Finding | None = None  # reason why the estimates are unreliable
+    findings: tuple[Finding, ...] = ()  # notes on the estimates
+    suggestions: tuple[Finding, ...] = ()  # recommended experiments
     settings: dict[str, object] = field(default_factory=dict)
 
     @property
@@ -186,7 +185,7 @@ class Fit:
 
     @property
     def explained(self) -> float:
-        """Part of the variance of all fitted forces that the model explains."""
+        """Share of the variance of all fitted forces that the model explains."""
         left = sum(float(np.sum(c.residual[c.fitted] ** 2)) for c in self.comparisons)
         total = sum(
             float(np.sum((c.record.force[c.fitted] - c.record.force[c.fitted].mean()) ** 2)) for c in self.comparisons

@@ -15,21 +15,21 @@ from scipy.stats import t as student
 
 from inerter.errors import IdentificationError
 from inerter.identification.fit import Fit
-from inerter.identification.guess import chain_of
+from inerter.identification.initial_estimate import chain_of
 from inerter.networks.elements import Free, Network, Tied
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 
 Matrix = NDArray[np.float64]
 Law = Literal["coulomb", "viscous", "stribeck", "other", "not identifiable"]
-Reason = Literal["", "samples", "friction", "speeds"]  # of which there are too few, or too little
+Reason = Literal["", "samples", "friction", "speeds"]  # insufficient for an identification
 SURE = 0.01  # p-value below which friction depends on the speed
 _BLOCKS = 24
 _FEWEST = 200  # samples in which the device slides
 _SLOW = 0.3  # of the largest speed: where the two slopes meet
-_REACHED, _WOUND = 0.9, 1.5  # part of the level that shows when the shaft is wound up, and how far beyond is left out
-_NOISES = 5.0  # of the velocity, above which its sign is sure
-_RANGE = 4.0  # of speeds, with fewer of which no law shows
+_REACHED, _WOUND = 0.9, 1.5  # share of the level at which the shaft is preloaded, and travel beyond that is discarded
+_NOISES = 5.0  # of the velocity, above which its sign is certain
+_RANGE = 4.0  # ratio of speeds, below which no law is identifiable
 _OUTLIER, _NINETY = 4.0, 1.645  # standard deviations; 90 % of normal errors lie within the second
 
 
@@ -37,12 +37,12 @@ _OUTLIER, _NINETY = 4.0, 1.645  # standard deviations; 90 % of normal errors lie
 class FrictionLaw:
     """The friction of a record: its `level`, and its slopes over the speed.
 
-    `law` is "coulomb" where no dependence shows, "viscous" where it grows with speed, "stribeck" where it falls at low
-    speed, "other" where it does neither, and "not identifiable" where the record does not say, for a `reason`.
+    `law` is "coulomb" where no dependence is significant, "viscous" where the friction grows with speed, "stribeck"
+    where it falls at low speed, "other" where it does neither, and "not identifiable" otherwise, for a `reason`.
     """
 
     law: Law
-    level: float  # [N] mean size of the friction while it slides; of a fit, what its model leaves of it
+    level: float  # [N] mean size of the sliding friction; for a fit, of the friction in its residual
     interval: tuple[float, float]  # [N] of the level, 95 %
     p_value: float  # of a friction that does not depend on the speed; nan if not identifiable
     slow: float  # [N s/m] slope below `_SLOW` of the largest speed
@@ -60,31 +60,30 @@ class FrictionLaw:
 
 
 def friction_law(source: Record | Fit, inertance: float = 0.0) -> FrictionLaw:
-    """Whether friction depends on the speed, from a slow record, or from what a fit left of its records.
+    """Friction law, from a slow record or from the residual of a fit.
 
     Where the device slides, its force is that of the direction of motion times a level and two slopes over the speed,
-    below and above 0.3 of the largest, besides an offset, and a force in proportion to the displacement (`inertance`
-    [kg] times the acceleration is taken away first). After each reversal, what is moved while the shaft winds up is
-    left out. The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of time, so
-    that what is autocorrelated does not count as many (Liang and Zeger 1986), and never less than those of independent
-    errors. Below 0.01 the friction depends on speed: viscous where it grows, Stribeck's where it falls at low speed
-    (Armstrong-Helouvry, Dupont and Canudas de Wit 1994). Of a fit, the slowest record is looked at, and the level is
-    what the model leaves of it.
+    below and above 0.3 of the largest, plus an offset, and a force in proportion to the displacement (`inertance` [kg]
+    times the acceleration is subtracted first). After each reversal, the travel that preloads the shaft is discarded.
+    The p-value is of Wald's test that both slopes are zero, with errors summed over 24 blocks of time to allow for
+    autocorrelation (Liang and Zeger 1986), and never less than those of independent errors. Below 0.01 the friction
+    depends on speed: viscous where it grows, Stribeck's where it falls at low speed (Armstrong-Helouvry, Dupont and
+    Canudas de Wit 1994). For a fit, the slowest record is used, and the level is that of its residual.
 
-    Raises `IdentificationError` for what is neither a record nor a fit, `RecordError` for an uneven record.
+    Raises `IdentificationError` if `source` is neither a record nor a fit, `RecordError` for an uneven record.
     """
     if isinstance(source, Fit):
         parts = [(c.experiment.motion, c.residual, c.fitted | c.checked, c.record) for c in source.comparisons]
         slowest = min(parts, key=lambda part: float(np.abs(part[0].velocity).max()))
         motion, force, kept, record = slowest
-        wound = _beyond(motion, _WOUND * _winding(source.device))
-        return _law(motion, force, _turned(motion) & wound & kept, record, 0.0)
+        wound = _beyond_travel(motion, _WOUND * _windup_travel(source.device))
+        return _law(motion, force, _away_from_reversals(motion) & wound & kept, record, 0.0)
     if not isinstance(source, Record):
-        raise IdentificationError(f"A friction law is of a record or a fit, got {type(source).__name__}.")
+        raise IdentificationError(f"friction_law requires a Record or a Fit, got {type(source).__name__}.")
     motion = smooth_displacement(source)
     force = source.force - inertance * motion.acceleration
     level = 0.5 * float(np.quantile(force, 0.9) - np.quantile(force, 0.1))
-    return _law(motion, force, _wound(motion, force, level), source, level)
+    return _law(motion, force, _is_preloaded(motion, force, level), source, level)
 
 
 def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, rough: float) -> FrictionLaw:
@@ -100,7 +99,7 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     nuisance = [np.ones(v.size), motion.displacement[use] - motion.displacement[use].mean()]
     if not rough:  # of a record, the acceleration was taken away as far as it is known
         nuisance.append(motion.acceleration[use])
-    plain = _solved(y, [direction, *nuisance], blocks)
+    plain = _robust_regression(y, [direction, *nuisance], blocks)
     level, error = float(plain[0][0]), math.sqrt(float(plain[1][0, 0]))
     error = math.hypot(error, _rounding(record, plain[2]))
     quantile = float(student.ppf(0.975, _BLOCKS - 1))
@@ -110,7 +109,7 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     if speeds[0] > top / _RANGE:
         return _not_identifiable("speeds", int(use.sum()), level, interval, speeds)
     low, high = np.minimum(np.abs(v), slow), np.maximum(np.abs(v) - slow, 0.0)
-    solution, covariance, _ = _solved(y, [direction, direction * low, direction * high, *nuisance], blocks)
+    solution, covariance, _ = _robust_regression(y, [direction, direction * low, direction * high, *nuisance], blocks)
     slopes, of_slopes = solution[1:3], covariance[1:3, 1:3]
     degrees = _BLOCKS - 1
     wald = float(slopes @ np.linalg.pinv(of_slopes, hermitian=True) @ slopes) / 2.0 * (degrees - 1) / degrees
@@ -118,7 +117,7 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     widths = quantile * np.sqrt(np.maximum(np.diag(of_slopes), 0.0))
     ends = [(float(s - w), float(s + w)) for s, w in zip(slopes, widths, strict=True)]
     return FrictionLaw(
-        law=_judged(p, *ends),
+        law=_classify(p, *ends),
         level=level,
         interval=interval,
         p_value=p,
@@ -131,7 +130,7 @@ def _law(motion: Motion, force: Matrix, use: NDArray[np.bool_], record: Record, 
     )
 
 
-def _judged(p: float, slow: tuple[float, float], fast: tuple[float, float]) -> Law:
+def _classify(p: float, slow: tuple[float, float], fast: tuple[float, float]) -> Law:
     if p >= SURE:
         return "coulomb"
     if slow[1] < 0.0:
@@ -152,53 +151,56 @@ def _not_identifiable(
     )
 
 
-def _of_coulomb(law: FrictionLaw) -> str:
+def _coulomb_text(law: FrictionLaw) -> str:
     unseen, top = max(abs(end) for end in law.fast_interval), law.speeds[1]
     return (
-        f"No dependence on speed up to {top:.3g} m/s (p = {law.p_value:.2g}); a viscous part of more than {unseen:.3g} "
-        f"N s/m, {unseen * top:.2g} N at that speed, would have shown."
+        f"No dependence on speed up to {top:.3g} m/s (p = {law.p_value:.2g}); a viscous part above {unseen:.3g} N s/m, "
+        f"{unseen * top:.2g} N at that speed, can be excluded."
     )
 
 
-def _of_stribeck(law: FrictionLaw) -> str:
+def _stribeck_text(law: FrictionLaw) -> str:
     return (
         f"Friction falls with speed at low speed, by {-law.slow:.3g} N s/m below {_SLOW * law.speeds[1]:.3g} m/s "
-        f"(p = {law.p_value:.2g}): a Stribeck effect, which Coulomb's law leaves out."
+        f"(p = {law.p_value:.2g}): a Stribeck effect, which Coulomb's law neglects."
     )
 
 
-def _of_viscous(law: FrictionLaw) -> str:
+def _viscous_text(law: FrictionLaw) -> str:
     slope = law.fast if law.fast_interval[0] > 0.0 else law.slow
-    return f"Friction grows with speed, by {slope:.3g} N s/m (p = {law.p_value:.2g}): add a damper beside the inerter."
+    return (
+        f"Friction grows with speed, by {slope:.3g} N s/m (p = {law.p_value:.2g}): add a damper in parallel with the "
+        f"inerter."
+    )
 
 
-def _of_other(law: FrictionLaw) -> str:
+def _other_text(law: FrictionLaw) -> str:
     return (
         f"Friction depends on speed (p = {law.p_value:.2g}), yet neither as a damper nor as Stribeck's law: slopes "
         f"{law.slow:.3g} and {law.fast:.3g} N s/m."
     )
 
 
-def _of_none(law: FrictionLaw) -> str:
+def _not_identifiable_text(law: FrictionLaw) -> str:
     low, high = law.speeds
     why = {
         "samples": f"the device slides in {law.samples} samples only; record more, with larger strokes",
-        "friction": f"no friction shows beside the noise, {law.level:.3g} N",
-        "speeds": f"it slides from {low:.3g} to {high:.3g} m/s only; use larger strokes",
+        "friction": f"the friction, {law.level:.3g} N, does not exceed the noise",
+        "speeds": f"the sliding speeds range from {low:.3g} to {high:.3g} m/s only; use larger strokes",
     }
-    return f"The law of friction is not identifiable: {why[law.reason]}."
+    return f"The friction law is not identifiable: {why[law.reason]}."
 
 
 _SENTENCES: dict[Law, Callable[[FrictionLaw], str]] = {
-    "coulomb": _of_coulomb,
-    "stribeck": _of_stribeck,
-    "viscous": _of_viscous,
-    "other": _of_other,
-    "not identifiable": _of_none,
+    "coulomb": _coulomb_text,
+    "stribeck": _stribeck_text,
+    "viscous": _viscous_text,
+    "other": _other_text,
+    "not identifiable": _not_identifiable_text,
 }
 
 
-def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tuple[Matrix, Matrix, Matrix]:
+def _robust_regression(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tuple[Matrix, Matrix, Matrix]:
     """Least squares without outliers, the covariance from sums over blocks, and the residuals."""
     X = np.stack(columns, axis=1)
     size = np.linalg.norm(X, axis=0)
@@ -219,7 +221,7 @@ def _solved(y: Matrix, columns: list[Matrix], blocks: NDArray[np.int64]) -> tupl
 
 
 def _larger(independent: Matrix, together: Matrix) -> Matrix:
-    """The second covariance, in no direction less than the first, which few blocks may be by chance."""
+    """The second covariance, but in no direction less than the first, as few blocks may cause by chance."""
     values, vectors = np.linalg.eigh(independent)
     kept = values > 1e-12 * float(values.max())
     root = vectors[:, kept] * np.sqrt(values[kept])
@@ -229,7 +231,7 @@ def _larger(independent: Matrix, together: Matrix) -> Matrix:
 
 
 def _rounding(record: Record, residual: Matrix) -> float:
-    """How far the steps of a load cell can move a level whose noise does not smear them [N], at most.
+    """Largest bias [N] of a friction level by the resolution of a load cell with little noise.
 
     The first term of the mean of a rounded value with Gaussian noise (Widrow and Kollar 2008, section 9).
     """
@@ -240,14 +242,14 @@ def _rounding(record: Record, residual: Matrix) -> float:
     return step / math.pi * math.exp(-2.0 * math.pi**2 * noise / step**2)
 
 
-def _turned(motion: Motion) -> NDArray[np.bool_]:
-    """Samples away from reversals by more than the noise of the direction, and a little."""
+def _away_from_reversals(motion: Motion) -> NDArray[np.bool_]:
+    """Samples away from reversals, at more than 3 % of the largest speed."""
     near = np.abs(motion.velocity) <= 0.03 * float(np.abs(motion.velocity).max())
     return ~near
 
 
-def _wound(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
-    """Samples at which the shaft is wound up: in each stroke, beyond the travel that brings the force to its level."""
+def _is_preloaded(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
+    """Samples at which the shaft is preloaded: in each stroke, beyond the travel that brings the force to its level."""
     direction = np.sign(motion.velocity)
     travels = []
     for start, stop in pairwise(_strokes(motion)):
@@ -255,11 +257,11 @@ def _wound(motion: Motion, force: Matrix, level: float) -> NDArray[np.bool_]:
         reached = np.flatnonzero(direction[start:stop] * force[start:stop] >= _REACHED * level)
         if reached.size and stop - start > 8:
             travels.append(float(travel[reached[0]]))
-    return _beyond(motion, _WOUND * float(np.median(travels)) if travels else math.inf)
+    return _beyond_travel(motion, _WOUND * float(np.median(travels)) if travels else math.inf)
 
 
-def _winding(device: Network) -> float:
-    """The travel [m] that turns the friction of a chain from one direction to the other, through its shaft."""
+def _windup_travel(device: Network) -> float:
+    """Travel [m] that reverses the friction of a chain through its shaft."""
     chain = chain_of(device)
     if chain is None or chain.friction is None or chain.spring is None:
         return 0.0
@@ -269,8 +271,8 @@ def _winding(device: Network) -> float:
     return 2.0 * friction / spring
 
 
-def _beyond(motion: Motion, travel: float) -> NDArray[np.bool_]:
-    """Samples that are further than this [m] from where their stroke began."""
+def _beyond_travel(motion: Motion, travel: float) -> NDArray[np.bool_]:
+    """Samples that are further than `travel` [m] from the beginning of their stroke."""
     edges = _strokes(motion)
     use = np.zeros(motion.velocity.size, dtype=bool)
     for start, stop in pairwise(edges):
@@ -279,6 +281,6 @@ def _beyond(motion: Motion, travel: float) -> NDArray[np.bool_]:
 
 
 def _strokes(motion: Motion) -> list[int]:
-    """Where strokes begin, and the end."""
+    """First samples of the strokes, and the end."""
     direction = np.sign(motion.velocity)
     return [0, *(np.flatnonzero(np.diff(direction)) + 1).tolist(), direction.size]

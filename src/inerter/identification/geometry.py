@@ -1,4 +1,4 @@
-"""Inertance from the drawing: what a flywheel weighs against a translation."""
+"""Inertance from the geometry of a flywheel and its drive."""
 
 from __future__ import annotations
 
@@ -43,6 +43,8 @@ def rack_and_pinion_inertance(
     check_positive(IdentificationError, "The radius of a pinion", pinion_radius, "m")
     check_positive(IdentificationError, "The ratio of a gear", gear_ratio, "turns of the flywheel a turn of the pinion")
     if not is_number(pinion_inertia) or pinion_inertia < 0.0:
-        raise IdentificationError(f"The inertia of a pinion is a number of kg m^2 from 0 on, got {pinion_inertia!r}.")
+        raise IdentificationError(
+            f"The inertia of a pinion must be a non-negative number of kg m^2, got {pinion_inertia!r}."
+        )
     turning = float(pinion_inertia) + float(gear_ratio) ** 2 * float(flywheel_inertia)
     return turning / float(pinion_radius) ** 2

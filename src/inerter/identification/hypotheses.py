@@ -1,7 +1,7 @@
-"""What a device or its sensors may do beyond the model: named hypotheses, each with unknowns of its own.
+"""Named hypotheses on effects of the device or its sensors beyond the model, each with its unknowns.
 
-One changes the motion that the device is given, or the force that the load cell reads, or both. With a hypothesis in
-its problem a fit is what it is without: coordinates, residuals, derivatives, intervals.
+A hypothesis changes the motion imposed on the device, or the force read by the load cell, or both. A fit with a
+hypothesis consists of the same parts as without: coordinates, residuals, derivatives, intervals.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.suspects import Details, Suspect
+from inerter.identification.possible_causes import Details, Suspect
 from inerter.networks.elements import Network
 
 Matrix = NDArray[np.float64]
 Values = Mapping[str, float]
 GAIN, DELAY = "sensor gain", "sensor delay"
-LONGEST_DELAY = 0.02  # [s] that is looked for
+LONGEST_DELAY = 0.02  # [s] that is searched
 _GAINS = (0.5, 2.0)
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """A number that a hypothesis leaves open; of this `size` it would be seen."""
+    """An unknown of a hypothesis; `size` is its detectable size."""
 
     name: str
     unit: str
@@ -36,90 +36,93 @@ class Unknown:
     size: float
 
 
-def _as_it_was(experiment: Experiment, values: Values) -> Experiment:
+def _unchanged_motion(experiment: Experiment, values: Values) -> Experiment:
     return experiment
 
 
-def _as_read(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
+def _unchanged_force(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
     return force
 
 
-def _none(values: Values) -> Details:
+def _no_details(values: Values) -> Details:
     return {}
 
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """`moved` makes of an experiment the one that the device feels, `read` of its force what the load cell reads.
+    """A hypothesis: `change_motion` returns the experiment imposed on the device, `read` the force of the load cell.
 
-    `device` takes the place of the model; its free values that the model does not have are unknowns too.
+    `device` replaces the model; its free values that the model does not have are unknowns too.
     """
 
     name: Suspect
     unknowns: tuple[Unknown, ...] = ()
     device: Network | None = None
-    moved: Callable[[Experiment, Values], Experiment] = _as_it_was
-    read: Callable[[Matrix, Experiment, Values], Matrix] = _as_read  # of the first samples
-    details: Callable[[Values], Details] = _none  # the numbers of its sentence
-    slow: int | None = None  # degree over time of what it leaves open in each part of a record
-    starts: tuple[Values, ...] = ({},)  # where to begin, unless it is at the sizes, or at zero if it may be negative
-    alike: Mapping[str, str] = field(default_factory=dict)  # unknowns that begin where those of the model are, by these
+    change_motion: Callable[[Experiment, Values], Experiment] = _unchanged_motion
+    read: Callable[[Matrix, Experiment, Values], Matrix] = _unchanged_force  # of the first samples
+    details: Callable[[Values], Details] = _no_details  # the numbers of its sentence
+    slow: int | None = None  # degree of the polynomial over time that is free in each part of a record
+    starts: tuple[Values, ...] = ({},)  # starting values; default: the sizes, or zero if it may be negative
+    alike: Mapping[str, str] = field(default_factory=dict)  # unknowns that start at these values of the model
 
 
 def gain() -> Hypothesis:
-    """A load cell that reads in proportion."""
+    """Hypothesis of a gain error of the load cell."""
     unknown = Unknown(GAIN, "", *_GAINS, 1.0)
-    return Hypothesis(Suspect.GAIN, (unknown,), read=_in_proportion)
+    return Hypothesis(Suspect.GAIN, (unknown,), read=_scale_force)
 
 
-def _in_proportion(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
+def _scale_force(force: Matrix, experiment: Experiment, values: Values) -> Matrix:
     return values[GAIN] * force
 
 
 def delay(longest: float) -> Hypothesis:
-    """A force that is late against the displacement, or early where the displacement is late."""
+    """Hypothesis of a delay of the force against the displacement, or vice versa."""
     unknown = Unknown(DELAY, "s", -longest, longest, 0.1 * longest)
-    return Hypothesis(Suspect.DELAY, (unknown,), moved=_late, details=_lateness)
+    return Hypothesis(Suspect.DELAY, (unknown,), change_motion=_delay_motion, details=_delay_details)
 
 
-def _late(experiment: Experiment, values: Values) -> Experiment:
-    return experiment.late(values[DELAY])
+def _delay_motion(experiment: Experiment, values: Values) -> Experiment:
+    return experiment.with_delay(values[DELAY])
 
 
-def _lateness(values: Values) -> Details:
+def _delay_details(values: Values) -> Details:
     return {"delay": values[DELAY]}
 
 
 def filtered_displacement(order: int) -> Hypothesis:
-    """A displacement that went through a low pass (Butterworth), which is undone before the device feels it."""
+    """Hypothesis of a low-pass filtered displacement (Butterworth), which is inverted."""
     name = f"displacement filter {order}"
     unknown = Unknown(name, "s", 0.0, 0.02, 2e-3)
     first, second = (1.0, 0.0) if order == 1 else (math.sqrt(2.0), 1.0)
 
-    def moved(e: Experiment, values: Values) -> Experiment:
+    def change_motion(e: Experiment, values: Values) -> Experiment:
         T, motion = values[name], e.motion
         jerk = np.gradient(motion.acceleration, e.record.interval)
         x = motion.displacement + first * T * motion.velocity + second * T**2 * motion.acceleration
-        return e.moved(x, motion.velocity + first * T * motion.acceleration + second * T**2 * jerk)
+        return e.with_motion(x, motion.velocity + first * T * motion.acceleration + second * T**2 * jerk)
 
     return Hypothesis(
-        Suspect.FILTERED_DISPLACEMENT, (unknown,), moved=moved, details=lambda values: {"time": values[name]}
+        Suspect.FILTERED_DISPLACEMENT,
+        (unknown,),
+        change_motion=change_motion,
+        details=lambda values: {"time": values[name]},
     )
 
 
 def filtered_force() -> Hypothesis:
-    """A force that went through a low pass of second order, on top of what is known of the load cell."""
+    """Hypothesis of a force low-pass filtered at second order, in addition to the known load cell."""
     name = "force filter"
     unknown = Unknown(name, "s", 0.0, 0.02, 2e-3)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        return low_passed(force, e.record.interval, values[name])
+        return filter_force(force, e.record.interval, values[name])
 
     return Hypothesis(Suspect.FILTERED_FORCE, (unknown,), read=read, details=lambda values: {"time": values[name]})
 
 
 def drift() -> Hypothesis:
-    """A load cell whose zero moves slowly: a polynomial over the record, which nobody can continue for long."""
+    """Hypothesis of a slow zero drift of the load cell: a polynomial over the record, not to be extrapolated far."""
     unknowns = tuple(Unknown(f"drift, degree {degree}", "N", -1e3, 1e3, 1.0) for degree in range(1, 5))
 
     def path(values: Values, size: int) -> Matrix:
@@ -136,19 +139,19 @@ def drift() -> Hypothesis:
 
 
 def fixture() -> Hypothesis:
-    """A mass that moves with the table between load cell and device."""
+    """Hypothesis of a fixture mass between load cell and device."""
     name = "fixture mass"
     unknown = Unknown(name, "kg", 0.0, 1e3, 1.0)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        moved = e.motion.acceleration[: force.size]
-        return np.asarray(force + values[name] * through_cell(moved, e))
+        acceleration = e.motion.acceleration[: force.size]
+        return np.asarray(force + values[name] * through_cell(acceleration, e))
 
     return Hypothesis(Suspect.FIXTURE_MASS, (unknown,), read=read, details=lambda values: {"mass": values[name]})
 
 
 def sensors(offset: bool) -> list[Hypothesis]:
-    """What the sensors may do; an offset of the load cell that is not free among them."""
+    """Hypotheses on the sensors, with an offset of the load cell if that is not free."""
     found = [
         delay(LONGEST_DELAY),
         filtered_displacement(1),
@@ -172,8 +175,8 @@ def _offset() -> Hypothesis:
     )
 
 
-def low_passed(values: Matrix, interval: float, time: float) -> Matrix:
-    """Through a Butterworth low pass of second order whose corner is 1/(2 pi `time`)."""
+def filter_force(values: Matrix, interval: float, time: float) -> Matrix:
+    """The values after a Butterworth low-pass filter of second order with corner 1/(2 pi `time`)."""
     if time <= 0.0:
         return values
     b, a = bilinear([1.0], [time**2, math.sqrt(2.0) * time, 1.0], 1.0 / interval)
@@ -181,6 +184,6 @@ def low_passed(values: Matrix, interval: float, time: float) -> Matrix:
 
 
 def through_cell(force: Matrix, experiment: Experiment) -> Matrix:
-    """A force as the load cell reads it, as far as its bandwidth is known."""
+    """The force read by the load cell of the record, if its bandwidth is known."""
     bandwidth = experiment.record.force_bandwidth
-    return force if bandwidth is None else low_passed(force, experiment.record.interval, 0.5 / math.pi / bandwidth)
+    return force if bandwidth is None else filter_force(force, experiment.record.interval, 0.5 / math.pi / bandwidth)

@@ -1,4 +1,4 @@
-"""Whether records identify a parameter, as data, and how that is said."""
+"""Identifiability of a parameter, as data, and its sentence."""
 
 from __future__ import annotations
 
@@ -13,47 +13,47 @@ from inerter.units import format_quantity
 
 
 class Verdict(StrEnum):
-    """What records say of a parameter."""
+    """Identifiability of a parameter by the records."""
 
     IDENTIFIED = "identified"
     MAGNITUDE = "order of magnitude"  # both ends are known, and far apart
     ANY = "any value"  # between the bounds of the search
     BELOW = "below"  # the upper end alone is known
     ABOVE = "above"  # the lower end alone is known
-    WITHHELD = "withheld"  # the fit is not to be relied on
+    WITHHELD = "withheld"  # the fit is unreliable
     CONDITIONAL = "conditional"  # the same, but a hypothesis explains why, and gives a range
-    UNPREDICTABLE = "unpredictable"  # nobody can predict the force of the device
+    UNPREDICTABLE = "unpredictable"  # the force of the device cannot be predicted
 
 
 @dataclass(frozen=True)
 class Identifiability:
-    """The verdict on a parameter, with what it rests on. True where the parameter is identified."""
+    """The verdict on a parameter, with its reasons. True where the parameter is identified."""
 
     name: str
     verdict: Verdict
     unit: str = ""
     interval: tuple[float, float] = (math.nan, math.nan)  # of the profile likelihood
-    least: float = 0.0  # where it was sought from
+    least: float = 0.0  # lower bound of the search
     role: Linear | None = None  # of its element; None for one of the sensors
     openings: int = 0  # of its gap in the best fit
-    held: float | None = None  # [N] the largest force that a friction held without slipping, by which it is stuck
+    held: float | None = None  # [N] the largest force at which a friction did not slip
 
     def __bool__(self) -> bool:
         return self.identified
 
     @property
     def identified(self) -> bool:
-        """Whether both ends of its interval are known, and mean anything."""
+        """Whether both ends of its interval are known and valid."""
         return self.verdict in (Verdict.IDENTIFIED, Verdict.MAGNITUDE)
 
     @property
     def plain(self) -> bool:
-        """Whether it is identified, and nothing needs saying about it."""
+        """Whether it is identified without reservation."""
         return self.verdict is Verdict.IDENTIFIED
 
     @property
     def sentence(self) -> str:
-        """For a reader."""
+        """Name and verdict in words."""
         return f"{self.name}: {_SENTENCES[self.verdict](self)}"
 
     @property
@@ -64,54 +64,54 @@ class Identifiability:
 
 
 _CAUSES = {
-    Linear.OPEN: "Friction is lost beside the other forces; move slowly, so that little but friction is left.",
-    Linear.MASS: "The force of inertia is too small; accelerate more.",
-    Linear.STIFFNESS: "It hardly gives way under these forces, or never carries them; excite near its resonance.",
-    Linear.DAMPING: "Its force is small beside that of the spring; excite at a higher frequency.",
+    Linear.OPEN: "Friction is small compared with the other forces; move slowly, so that friction dominates.",
+    Linear.MASS: "The inertial force is too small; accelerate more.",
+    Linear.STIFFNESS: "Its deflection is too small, or it never carries the force; excite near its resonance.",
+    Linear.DAMPING: "Its force is small compared with that of the spring; excite at a higher frequency.",
 }
 
 
 def _cause(i: Identifiability) -> str:
     if i.role is None:
-        return "The records say too little of the sensor."
+        return "The records contain too little information on the sensor."
     if i.held is not None:
-        what = "It never slipped" if i.role is Linear.OPEN else "The friction beside it never slipped"
-        return f"{what}, under forces of up to {_shown(i.held, 'N')}; move it further or faster, so that it does."
+        what = "It never slipped" if i.role is Linear.OPEN else "The friction in parallel with it never slipped"
+        return f"{what}, under forces of up to {_format_value(i.held, 'N')}; excite with larger or faster motion."
     if i.role is not Linear.CLOSED:
         return _CAUSES[i.role]
     if i.openings == 0:
-        return "There is no lift-off in the best fit; excite it so that the force reverses."
-    return f"There are {i.openings} lift-offs, each shorter than the noise shows."
+        return "Contact never opens in the best fit; excite with force reversals."
+    return f"All {i.openings} lift-offs are too short to be resolved in the noise."
 
 
-def _shown(value: float, unit: str) -> str:
+def _format_value(value: float, unit: str) -> str:
     return format_quantity(value, unit) if unit else f"{value:.4g}"
 
 
 def _magnitude(i: Identifiability) -> str:
-    low, high = (_shown(end, i.unit) for end in i.interval)
+    low, high = (_format_value(end, i.unit) for end in i.interval)
     return f"identified; only its order of magnitude, {low} to {high}."
 
 
 def _below(i: Identifiability) -> str:
     least = format_quantity(i.least, i.unit) if i.unit else f"{i.least:g}"
-    upper = _shown(i.interval[1], i.unit)
-    return f"not identifiable; all values from {least} to {upper} explain the records as well. {_cause(i)}"
+    upper = _format_value(i.interval[1], i.unit)
+    return f"not identifiable: only an upper bound, {upper}, is known (search from {least}). {_cause(i)}"
 
 
 _SENTENCES: Mapping[Verdict, Callable[[Identifiability], str]] = {
     Verdict.IDENTIFIED: lambda i: "identified.",
     Verdict.MAGNITUDE: _magnitude,
-    Verdict.ANY: lambda i: f"not identifiable; any value within its bounds explains the records as well. {_cause(i)}",
+    Verdict.ANY: lambda i: f"not identifiable: the confidence interval covers all of its bounds. {_cause(i)}",
     Verdict.BELOW: _below,
     Verdict.ABOVE: lambda i: (
-        f"not identifiable; at least {_shown(i.interval[0], i.unit)}, and larger values explain the records as well. "
-        f"{_cause(i)}"
+        f"not identifiable; at least {_format_value(i.interval[0], i.unit)}, and larger values explain the records as "
+        f"well. {_cause(i)}"
     ),
-    Verdict.WITHHELD: lambda i: "withheld, for the fit is not to be relied on.",
+    Verdict.WITHHELD: lambda i: "withheld: the fit is unreliable.",
     Verdict.CONDITIONAL: lambda i: (
-        f"withheld, for the fit is not to be relied on; {_shown(i.interval[0], i.unit)} to "
-        f"{_shown(i.interval[1], i.unit)} if what explains the misfit is so."
+        f"withheld, for the fit is not to be relied on; {_format_value(i.interval[0], i.unit)} to "
+        f"{_format_value(i.interval[1], i.unit)} if what explains the misfit is so."
     ),
-    Verdict.UNPREDICTABLE: lambda i: "not identifiable: nobody can predict the force of this device.",
+    Verdict.UNPREDICTABLE: lambda i: "not identifiable: the force of this device cannot be predicted.",
 }

@@ -1,4 +1,4 @@
-"""`identify`: from measured records to the parameters of a device, with honest uncertainty."""
+"""`identify`: parameters of a device from measured records, with their uncertainty."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Unpack
 from inerter.checks import is_number
 from inerter.errors import IdentificationError
 from inerter.identification import hypotheses
-from inerter.identification.concluding import fit_of
+from inerter.identification.arguments import checked_records, model_of
+from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
-from inerter.identification.given import checked_records, model_of
-from inerter.identification.models import mounted
+from inerter.identification.models import with_mount
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
-from inerter.identification.scales import scaled
+from inerter.identification.scales import apply_scales
 from inerter.identification.solving import SolvedFit, part, solve
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
@@ -26,7 +26,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
-_SOLVED = 0.8  # of the work, before explanations are looked for
+_SOLVED = 0.8  # of the work, before explanations are sought
 
 
 def identify(
@@ -40,27 +40,27 @@ def identify(
 ) -> Fit:
     """Fit the free values of `model`, the device on the rig, to the force of one record or several together.
 
-    `model` is a network with free values, or the name of one of `inerter.identification.models.MODELS`. What
-    `options` say may be given, or changed, as keywords: `identify(record, model, seed=1, gain=True)`. An `executor`
+    `model` is a network with free values, or the name of one of `inerter.identification.models.MODELS`. Fields of
+    `options` may be given, or changed, as keywords: `identify(record, model, seed=1, gain=True)`. An `executor`
     (of `concurrent.futures`, of a dask client, of mpi4py) shares the searches, profiles and the bootstrap.
 
-    The model is moved as the record's displacement was, smoothed, and its force compared; no measured motion is
-    differentiated twice. Points of a Sobol sequence, and a first guess without simulation for devices that are a
-    chain, are improved by least squares; errors are weighted and whitened by what errors like those of the sensors
-    would leave; intervals are from profile likelihoods at 95 %, at least as wide as a parametric bootstrap scatters. A
-    parameter that is not identifiable has the value nan, with the reason in `fit.identifiable`.
+    The model follows the smoothed displacement of the record, and its force is compared; no measured motion is
+    differentiated twice. Points of a Sobol' sequence, and an initial estimate without simulation for devices that are a
+    chain, are improved by least squares; residuals are weighted and whitened by simulated sensor noise; intervals are
+    from profile likelihoods at 95 %, at least as wide as the scatter of a parametric bootstrap. A parameter that is not
+    identifiable has the value nan, with the reason in `fit.identifiable`.
 
-    Where more is left than the errors of the sensors (`fit.misfit`; those of the record where they are known, such as
-    `Record.force_noise`), on the fitted part or on the check part, the status is not ok, `fit.explanations` names what
-    may be wrong with the model or the sensors, and values are withheld; at most a range under explanations is left.
-    Scales of the sensors are not seen in records: state them with `force_scale` and `displacement_scale`. A mass
-    between load cell and device, `Record.fixture_mass`, has to be known: it looks as an inertance does.
+    Where the residual exceeds sensor noise (`fit.misfit`; that of the record where it is stated, such as
+    `Record.force_noise`), on the estimation or the validation data, the status is not ok, `fit.explanations` lists
+    possible causes in the model or the sensors, and values are withheld; at most a range under explanations is given.
+    Records do not show the scales of the sensors: state them with `force_scale` and `displacement_scale`. A mass
+    between load cell and device, `Record.fixture_mass`, must be known: it cannot be distinguished from an inertance.
     See docs/identification.md.
 
-    Raises `IdentificationError` for a model without free values or a request that cannot be, and `RecordError` for
-    records that cannot be used.
+    Raises `IdentificationError` for a model without free values or invalid options, and `RecordError` for records that
+    cannot be used.
     """
-    asked = options.changed(**changes)
+    asked = options.replace(**changes)
     with running_on(executor) as pool:
         prepare_on(pool, KERNELS)
         fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
@@ -72,13 +72,13 @@ def identify(
 def solution_of(
     records: Record | Sequence[Record], model: Network, asked: FitOptions, progress: Callable[[float], None] | None
 ) -> SolvedFit:
-    """What `identify` finds, before anything is said of it."""
-    given, rig = _checked(records, model)
-    given = [scaled(record, asked) for record in given]
+    """Solution of the least-squares problem of `identify`, before conclusions."""
+    given, rig = _validate(records, model)
+    given = [apply_scales(record, asked) for record in given]
     sought = any(r.force_bandwidth is None for r in given) if asked.delay is None else asked.delay
     longest = hypotheses.LONGEST_DELAY if sought is True else float(sought)
     if not is_number(longest) or not 0.0 <= longest < 0.5 * min(r.duration for r in given):
-        raise IdentificationError(f"A delay is True, False or its largest size in s, got {asked.delay!r}.")
+        raise IdentificationError(f"delay must be True, False or its largest size in s, got {asked.delay!r}.")
     _check_gain(rig, asked.gain)
     assumed = [hypotheses.gain()] if asked.gain else []
     assumed += [hypotheses.delay(longest)] if longest > 0.0 else []
@@ -87,21 +87,21 @@ def solution_of(
         return solve(given, rig, tuple(assumed), asked, progress)
 
 
-def _checked(records: Record | Sequence[Record], model: Network) -> tuple[list[Record], Rig]:
+def _validate(records: Record | Sequence[Record], model: Network) -> tuple[list[Record], Rig]:
     given = checked_records(records)
-    rig = Rig(mounted(model))
+    rig = Rig(with_mount(model))
     if not rig.free_values():
         raise IdentificationError(
-            "The model has no free values: there is nothing to identify. Write Spring(free(1e5, 1e7, name='ks')), ..."
+            "The model has no free values to identify. Write, for example, Spring(free(1e5, 1e7, name='ks'))."
         )
     return given, rig
 
 
 def _check_gain(rig: Rig, gain: bool) -> None:
-    """A gain of the load cell and the size of every element are one and the same, unless one of them is known."""
+    """Raise `IdentificationError` for a free gain unless the size of at least one element is known."""
     known = [e for e in rig.device.elements() if e.linear is not Linear.CLOSED and is_number(e.value)]
     if gain and not known:
         raise IdentificationError(
-            "A gain of the load cell is not identifiable where springs, dampers, inerters and frictions may all be "
-            "larger: fix one of them, such as the inertance from the geometry, or leave the gain out."
+            "gain: a gain of the load cell is not identifiable if all springs, dampers, inerters and frictions are "
+            "free. Fix one of them, such as the inertance from the geometry, or leave the gain out."
         )

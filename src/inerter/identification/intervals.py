@@ -1,4 +1,4 @@
-"""Intervals by profile likelihood: how far a value can be moved, all others following, until the record objects."""
+"""Confidence intervals by profile likelihood: one value fixed, all others re-optimised (Raue et al. 2009)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scipy.optimize import lsq_linear
 from scipy.stats import t as student
 
 from inerter.identification.noise import OPTIMISM
-from inerter.identification.problem import FitProblem, apart
+from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.search import improve
 from inerter.work.progress import counter
 from inerter.work.running import over_threads
@@ -33,7 +33,7 @@ class BestFit:
     point: Matrix
     cost: float  # half the robust sum of squares
     residual: Matrix
-    jacobian: Matrix  # weighted as the robust cost asks
+    jacobian: Matrix  # with the weights of the robust cost
     variance: float  # of a whitened residual
     covariance: Matrix  # of the coordinates
     widening: Matrix  # of the threshold of each profile, for residuals that are still autocorrelated
@@ -46,7 +46,7 @@ class BestFit:
 
     @property
     def threshold(self) -> Matrix:
-        """What each profile may rise by, for an interval of 95 %."""
+        """Rise of each profile at the ends of its 95 % confidence interval."""
         quantile = float(student.ppf(0.5 + 0.5 * LEVEL, max(self.samples - self.point.size, 1)))
         return 0.5 * quantile**2 * self.variance * self.widening
 
@@ -75,8 +75,8 @@ def _best_fit(problem: FitProblem, point: Matrix, cost: float, residual: Matrix,
 def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds: int, accuracy: float) -> BestFit:
     """The fit after some Gauss-Newton steps from `start`, near which the derivatives of the residuals are known.
 
-    Each step takes one simulation, which corrects the derivatives too (Broyden 1965); one that does not help is damped
-    (Levenberg 1944). It ends where a step changes the cost by less than `accuracy`.
+    Each step takes one simulation, which updates the derivatives too (Broyden 1965); a step without improvement is
+    damped (Levenberg 1944). The fit ends where a step changes the cost by less than `accuracy`.
     """
     lower, upper = problem.space.bounds
     size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
@@ -94,7 +94,7 @@ def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds:
             break
         there = problem.residual(other)
         rise = robust_cost(there) - cost
-        if rise < cost:  # else it says nothing of the derivatives here
+        if rise < cost:  # otherwise too far for the derivatives here
             slopes += np.outer((there - residual - slopes @ step) / length, step)
         if rise >= 0.0:
             damping = max(10.0 * damping, 1e-2)
@@ -107,7 +107,7 @@ def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds:
 
 
 def _damped_step(slopes: Matrix, residual: Matrix, damping: float, bounds: tuple[Matrix, Matrix]) -> Matrix:
-    """The step within bounds that leaves least, by linear least squares."""
+    """The step within bounds with the smallest residual, by linear least squares."""
     triangle = np.asarray(np.linalg.qr(np.column_stack([slopes, residual]), mode="r"))
     count = slopes.shape[1]
     rows = np.vstack([triangle[:count, :count], math.sqrt(damping) * np.eye(count)])
@@ -115,7 +115,7 @@ def _damped_step(slopes: Matrix, residual: Matrix, damping: float, bounds: tuple
 
 
 def steps_of(optimum: BestFit) -> Matrix:
-    """Half a standard error, within reason."""
+    """Half a standard error of each coordinate, within limits."""
     return np.clip(0.5 * np.nan_to_num(optimum.errors, nan=_STEPS[1]), *_STEPS)
 
 
@@ -134,7 +134,7 @@ def _widening(jacobian: Matrix, residual: Matrix, variance: float) -> Matrix:
 
 @dataclass(frozen=True)
 class Side:
-    """One end of an interval, in coordinates; `known` if the record sets it and not the bound of the search."""
+    """One end of an interval, in coordinates; `known` if determined by the record, not by the bound of the search."""
 
     end: float
     known: bool
@@ -142,15 +142,15 @@ class Side:
 
 @dataclass(frozen=True, eq=False)
 class CostProfile:
-    """Both ends, the points of the profile (coordinate, rise of the cost over its threshold), and what was met."""
+    """Both ends, the points of the profile (coordinate, rise of the cost over its threshold), and a better fit."""
 
     lower: Side
     upper: Side
     points: tuple[tuple[float, float], ...]
     better: tuple[float, Matrix] | None  # a cost below the optimum's, and where
 
-    def moved(self, by: float) -> CostProfile:
-        """The same profile elsewhere; ends at the bounds of the search stay there."""
+    def shift(self, by: float) -> CostProfile:
+        """The shifted profile; ends at the bounds of the search are kept."""
         lower, upper = (replace(side, end=side.end + by) if side.known else side for side in (self.lower, self.upper))
         return CostProfile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
@@ -159,7 +159,7 @@ def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None 
     """The profile of every coordinate, or of those `among` them."""
     coordinates = list(range(optimum.point.size)) if among is None else among
     tasks = [(problem, (i, sign)) for i in coordinates for sign in (-1, 1)]
-    found = apart(partial(_walk, optimum), tasks, over_threads, counter("sides of intervals", len(tasks)))
+    found = map_problems(partial(_walk, optimum), tasks, over_threads, counter("sides of intervals", len(tasks)))
     result = []
     for n, i in enumerate(coordinates):
         (below, points, better), (above, more, other) = found[2 * n], found[2 * n + 1]
@@ -171,7 +171,7 @@ def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None 
 def _walk(
     optimum: BestFit, problem: FitProblem, way: tuple[int, int]
 ) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
-    """Walk from the optimum along a coordinate, up or down, until the rise of the cost meets its threshold."""
+    """Walk from the optimum along a coordinate, up or down, until the rise of the cost reaches its threshold."""
     i, sign = way
     bound = float(problem.space.bounds[1 if sign > 0 else 0][i])
     start, threshold = float(optimum.point[i]), float(optimum.threshold[i])

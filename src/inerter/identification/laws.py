@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.guess import Chain
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
-from inerter.identification.suspects import Details, Suspect
+from inerter.identification.initial_estimate import Chain
+from inerter.identification.possible_causes import Details, Suspect
 from inerter.kernels.declare import kernel, part
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, Tied, free
 from inerter.networks.parser import written
@@ -32,7 +32,7 @@ _ONE_SIDED = 0.99  # of the friction: what it may differ by to either side, so t
 
 
 @dataclass(frozen=True)
-class Chained:
+class ChainValues:
     """A chain in numbers. A shaft of no softness is rigid: `ks` is infinite."""
 
     ks: float = math.inf
@@ -86,8 +86,8 @@ def _parts(chain: Chain) -> Iterator[Hypothesis]:
         elastic = replace(chain, spring=spring, damper=damper)
         yield _other(Suspect.ELASTIC, elastic, "elastic or elastic-friction", *starts)
         return
-    rigid = replace(chain, spring=None, damper=None, gap=None)
-    yield _other(Suspect.RIGID, rigid, "ideal or friction")
+    is_rigid = replace(chain, spring=None, damper=None, gap=None)
+    yield _other(Suspect.RIGID, is_rigid, "ideal or friction")
     if chain.gap is None:
         play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
         yield _other(Suspect.BACKLASH, play, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
@@ -109,7 +109,7 @@ def _stribeck(chain: Chain, fastest: float) -> Hypothesis:
         return {"at_rest": low + values[rise.name], "beyond": low, "speed": 2.0 * values[speed.name]}
 
     starts = tuple({speed.name: share * fastest} for share in (0.05, 0.2))
-    return _changed(chain, Suspect.STRIBECK, {"rise": rise, "speed": speed}, details, starts)
+    return _changed_values(chain, Suspect.STRIBECK, {"rise": rise, "speed": speed}, details, starts)
 
 
 def _place(chain: Chain, stroke: float) -> Hypothesis:
@@ -121,7 +121,7 @@ def _place(chain: Chain, stroke: float) -> Hypothesis:
         level = _value(chain.friction, values) + values[tilt.name] * x + values[bend.name] * x**2
         return {"range": float(np.ptp(np.maximum(level, 0.0)))}
 
-    return _changed(chain, Suspect.BY_POSITION, {"tilt": tilt, "bend": bend}, details, ({},))
+    return _changed_values(chain, Suspect.BY_POSITION, {"tilt": tilt, "bend": bend}, details, ({},))
 
 
 def _direction(chain: Chain) -> Hypothesis:
@@ -131,13 +131,13 @@ def _direction(chain: Chain) -> Hypothesis:
         mean, more = _value(chain.friction, values), values[skew.name]
         return {"up": mean * (1.0 + more), "down": mean * (1.0 - more)}
 
-    return _changed(chain, Suspect.ASYMMETRIC, {"skew": skew}, details, ({},))
+    return _changed_values(chain, Suspect.ASYMMETRIC, {"skew": skew}, details, ({},))
 
 
 def _presliding(chain: Chain, stroke: float) -> Hypothesis:
     reach = Unknown("presliding distance", "m", 0.0, stroke, 0.02 * stroke)
     starts = tuple({reach.name: share * stroke} for share in (0.01, 0.1))
-    return _changed(
+    return _changed_values(
         chain, Suspect.PRESLIDING, {"reach": reach}, lambda values: {"distance": 2.0 * values[reach.name]}, starts
     )
 
@@ -149,7 +149,7 @@ def _quadratic(chain: Chain, fastest: float, peak: float) -> Hypothesis:
         return {"most": values[square.name] * fastest**2}
 
     starts = tuple({square.name: max(share * peak, 1.0) / fastest**2} for share in (0.05, 0.4))
-    return _changed(chain, Suspect.QUADRATIC, {"square": square}, details, starts)
+    return _changed_values(chain, Suspect.QUADRATIC, {"square": square}, details, starts)
 
 
 def _ripple(chain: Chain, stroke: float) -> Hypothesis:
@@ -161,25 +161,25 @@ def _ripple(chain: Chain, stroke: float) -> Hypothesis:
 
     unknowns = {"cosine": cosine, "sine": sine, "pitch": pitch}
     starts = tuple({pitch.name: share * stroke} for share in (0.25, 0.33, 0.45, 0.6, 0.9, 1.3))
-    return _changed(chain, Suspect.RIPPLE, unknowns, details, starts)
+    return _changed_values(chain, Suspect.RIPPLE, unknowns, details, starts)
 
 
 def _stiffening(chain: Chain, peak: float) -> Hypothesis:
     """A cubic term, over the stiffness at the deflection under the largest force."""
     share = Unknown("stiffening", "", -0.25, 20.0, 0.1)
 
-    def changed(plain: Chained, values: Values) -> Chained:
+    def change(plain: ChainValues, values: Values) -> ChainValues:
         return replace(plain, cubic=values[share.name] * plain.ks**3 / peak**2)
 
     starts = ({share.name: 0.1}, {share.name: 1.0})
-    return _law(chain, Suspect.STIFFENING, (share,), changed, lambda values: {"share": values[share.name]}, starts)
+    return _law(chain, Suspect.STIFFENING, (share,), change, lambda values: {"share": values[share.name]}, starts)
 
 
 def _second_gap(chain: Chain, peak: float) -> Hypothesis:
     """A spring beside the shaft that is met at a part of the deflection under the largest force."""
     part, ratio = Unknown("second gap", "", 0.02, 1.0, 0.3), Unknown("stiffness behind it", "", 0.0, 50.0, 0.3)
 
-    def changed(plain: Chained, values: Values) -> Chained:
+    def change(plain: ChainValues, values: Values) -> ChainValues:
         slack, stiffness = values[part.name] * peak / plain.ks, values[ratio.name] * plain.ks
         return replace(plain, slack=slack, beyond=stiffness)
 
@@ -188,10 +188,10 @@ def _second_gap(chain: Chain, peak: float) -> Hypothesis:
         return {"slack": values[part.name] * peak / ks, "stiffness": values[ratio.name] * ks}
 
     starts = tuple({part.name: share, ratio.name: more} for share, more in ((0.15, 0.5), (0.4, 0.5), (0.3, 4.0)))
-    return _law(chain, Suspect.SECOND_GAP, (part, ratio), changed, details, starts)
+    return _law(chain, Suspect.SECOND_GAP, (part, ratio), change, details, starts)
 
 
-def _changed(
+def _changed_values(
     chain: Chain,
     name: Suspect,
     unknowns: dict[str, Unknown],
@@ -200,17 +200,17 @@ def _changed(
 ) -> Hypothesis:
     """A hypothesis that changes some of the numbers of a chain."""
 
-    def changed(plain: Chained, values: Values) -> Chained:
+    def change(plain: ChainValues, values: Values) -> ChainValues:
         return replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
 
-    return _law(chain, name, tuple(unknowns.values()), changed, details, starts)
+    return _law(chain, name, tuple(unknowns.values()), change, details, starts)
 
 
 def _law(
     chain: Chain,
     name: Suspect,
     unknowns: tuple[Unknown, ...],
-    changed: Callable[[Chained, Values], Chained],
+    change: Callable[[ChainValues, Values], ChainValues],
     details: Callable[[Values], Details],
     starts: tuple[Values, ...],
 ) -> Hypothesis:
@@ -218,17 +218,17 @@ def _law(
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         plain = _numbers(chain, values)
-        difference = stepped(changed(plain, values), e, force.size) - stepped(plain, e, force.size)
+        difference = simulate_chain(change(plain, values), e, force.size) - simulate_chain(plain, e, force.size)
         return np.asarray(force + through_cell(difference, e))
 
     return Hypothesis(name, unknowns, read=read, details=details, starts=starts)
 
 
-def _numbers(chain: Chain, values: Values) -> Chained:
+def _numbers(chain: Chain, values: Values) -> ChainValues:
     parts = {"ks": chain.spring, "cs": chain.damper, "gap": chain.gap, "b": chain.inerter, "f": chain.friction}
     parts["c"] = chain.drag
     known = {what: _value(part, values) for what, part in parts.items() if part is not None}
-    return Chained(**known)
+    return ChainValues(**known)
 
 
 def _value(element: Element | None, values: Values) -> float:
@@ -238,7 +238,7 @@ def _value(element: Element | None, values: Values) -> float:
     return values[str(value.name)] if isinstance(value, Free) else value
 
 
-def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
+def simulate_chain(chain: ChainValues, experiment: Experiment, samples: int) -> Matrix:
     """The force of a chain [N] at the first samples of a record, from rest."""
     motion, interval = experiment.motion, experiment.record.interval
     z, v = motion.displacement[:samples] - motion.displacement[0], motion.velocity[:samples]
@@ -257,7 +257,7 @@ def stepped(chain: Chained, experiment: Experiment, samples: int) -> Matrix:
     return np.asarray(_march(z, v, interval, min(parts, _MOST_PARTS), numbers))
 
 
-def _level(chain: Chained, z: Matrix, v: Matrix) -> Matrix:
+def _level(chain: ChainValues, z: Matrix, v: Matrix) -> Matrix:
     wave = 2.0 * math.pi / chain.pitch * z
     return np.asarray(
         chain.f

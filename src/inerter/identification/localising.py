@@ -1,4 +1,4 @@
-"""Where in a record a fit leaves more than the sensors would: when, at which position, speed, force or frequency.
+"""Localisation of a misfit: time, position, speed, force or frequency at which the residual exceeds sensor noise.
 
 Every pattern is measured by the share of the squared residual that a law of its kind would explain (of a Gaussian
 likelihood: 1 - exp(-2 gain / samples)), so that they can be ranked. Chance is judged by blocks of time of
@@ -24,11 +24,11 @@ from inerter.records.finding import Finding
 from inerter.records.gaps import runs
 
 Matrix = NDArray[np.float64]
-SURE = 0.02  # p-value, of all tests together, below which a pattern is no chance
+SURE = 0.02  # p-value, of all tests together, below which a pattern is significant
 NOTICED = 0.1  # share that a pattern explains, at least
 _COEFFICIENTS = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.COEFFICIENT_TREND)
-_TELLING = 0.15  # share by which a coefficient that changes goes before a size that does: it says of what
-_MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is no more than likely
+_TELLING = 0.15  # share by which a change of a coefficient is preferred to one of the level: it is more specific
+_MAYBE, _MUCH = 0.1, 0.3  # p-value, of one test, and share of a pattern that is only likely
 _DRAWS = 4999
 _FEWEST_BLOCKS, _MOST_BLOCKS = 20, 60  # unless there are fewer strokes
 _BINS, _PLACES = 8, 24
@@ -37,32 +37,32 @@ _SIGNALS = ("constant", "direction", *_QUANTITIES)  # whose coefficients may ste
 _MEANS = (*_QUANTITIES, TRAVEL, FRICTION)  # of which the mean may be a function
 _SCATTERED = ("velocity", "acceleration", "force", "force rate")  # with whose size the scatter may grow
 _TESTS = 2 + 2 * len(_SIGNALS) + len(_MEANS) + len(_SCATTERED) + 2  # level, coefficients, means, scatter; places, line
-_CLIP = 8.0  # r.m.s. residuals (of most samples) beyond which one counts no more in a dependence
-_LEAPS = 0.5  # of the residual: second differences of a force that leaps, of which a spike has 2 and a bump little
+_CLIP = 8.0  # r.m.s. residuals (of most samples) at which one is clipped in a dependence
+_LEAPS = 0.5  # of the residual: second differences of a force that jumps, of which a spike has 2 and a bump little
 _RARE = 0.01  # of the samples: those that may be single instants
-_AS_GOOD = 0.9  # of the best share: quantities that cannot be told apart
-_EDGE = 0.05  # of a record, within which nothing begins
+_AS_GOOD = 0.9  # of the best share: quantities that cannot be distinguished
+_EDGE = 0.05  # of a record, within which no change is sought
 _NONE = 2.0  # times the noise of the sensors: a part without misfit
 _ONE_LINE = 0.9  # of the squared displacement: a motion that mostly consists of one sine ...
-_HIGHEST = 20  # ... of which a nonlinear device answers with such multiples of its frequency
+_HIGHEST = 20  # ... up to whose harmonics of this order lines count as those of a nonlinear device
 _CLEAR_LINE = 8.0  # amplitude over the median within an octave
 
 
 @dataclass(frozen=True, eq=False)
 class LocalisedSamples:
-    """The samples that are looked at: residual in N and over what sensors leave, and the motion there."""
+    """The samples that are tested: residual [N], level of the sensor noise, and the motion."""
 
     time: Matrix
     residual: Matrix  # [N]
-    level: Matrix  # [N] r.m.s. that sound sensors leave
+    level: Matrix  # [N] r.m.s. residual of sensor noise
     motion: Mapping[str, Matrix]
     block: NDArray[np.int64]
     further: Mapping[str, Matrix] = field(default_factory=dict)
-    leaps: Matrix | None = None  # [N] second differences of the force as read, where it was
+    leaps: Matrix | None = None  # [N] second differences of the measured force, where available
 
     @property
     def tests(self) -> int:
-        """How many p-values there are, of which the smallest may be chance."""
+        """Number of p-values, by which each is corrected."""
         return _TESTS + len(self.further)
 
     @property
@@ -72,10 +72,10 @@ class LocalisedSamples:
 
 
 def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
-    """Patterns in the residual of one record, those that explain most of it first; empty where there is none."""
+    """Patterns in the residual of one record, those that explain most of it first."""
     random = np.random.default_rng([seed, 7])
     s = _samples(c)
-    inside = _winsorised(s.residual)
+    inside = _winsorise(s.residual)
     bounded = replace(s, residual=inside - float(inside.mean()))
     found = [
         *_instants(s),
@@ -86,18 +86,18 @@ def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
         *_spectral(s, c),
     ]
     chosen = [f for f in found if _chance(f) * s.tests < SURE and f.numbers["share"] > NOTICED]
-    if not chosen:  # the largest, said to be uncertain
+    if not chosen:  # the largest, reported as not significant
         chosen = [f for f in found if _chance(f) < _MAYBE and f.numbers["share"] > _MUCH]
     chosen.sort(key=lambda f: -f.numbers["share"] - _TELLING * (f.kind in _COEFFICIENTS))
-    return Localisation(c.record.source, tuple(replace(f, numbers=_corrected(f, s.tests)) for f in chosen))
+    return Localisation(c.record.source, tuple(replace(f, numbers=_with_corrected_p(f, s.tests)) for f in chosen))
 
 
 def _chance(f: Finding) -> float:
-    """The p-value of one test; 0 of a pattern that is told by its size alone, and has none."""
+    """p-value of one test; 0 for a pattern that is found by its size alone and has none."""
     return float(f.numbers.get("p", 0.0))
 
 
-def _corrected(f: Finding, tests: int) -> dict[str, object]:
+def _with_corrected_p(f: Finding, tests: int) -> dict[str, object]:
     return {**f.numbers, "p": min(_chance(f) * tests, 1.0)} if "p" in f.numbers else dict(f.numbers)
 
 
@@ -134,18 +134,18 @@ def _samples(c: RecordFit) -> LocalisedSamples:
     )
 
 
-def _winsorised(residual: Matrix) -> Matrix:
+def _winsorise(residual: Matrix) -> Matrix:
     limit = _CLIP * float(np.sqrt(np.quantile(residual**2, 0.9) / 2.7)) + 1e-300
     return np.clip(residual, -limit, limit)
 
 
 def _share(before: float, after: float) -> float:
-    """Part of a mean square that is gone."""
+    """Share of a mean square that is explained."""
     return 1.0 - after / max(before, 1e-300)
 
 
 def _instants(s: LocalisedSamples) -> Iterator[Finding]:
-    """A hundredth of the samples that holds most of the squared residual."""
+    """A hundredth of the samples with most of the squared residual."""
     square = (s.residual / s.level) ** 2
     if not square.any():
         return
@@ -227,7 +227,7 @@ def _p(found: Matrix, drawn: Matrix) -> float:
 
 
 def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
-    """Coefficients of the residual on a signal that step or go steadily over time."""
+    """Coefficients of the residual on a signal that step or drift over time."""
     signals = {"constant": np.ones(s.time.size), "direction": np.sign(s.motion["velocity"])}
     signals |= {name: s.motion[name] for name in _QUANTITIES}
     order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
@@ -257,7 +257,7 @@ def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[
 
 
 def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, float, float]:
-    """The sample at which a coefficient steps, the squares that two leave, and by how much it changes."""
+    """The sample at which a coefficient steps, the residual squares with two values, and its change."""
     n = both.size
     edge = max(int(_EDGE * n), 8)
     a, b = np.cumsum(both), np.maximum(np.cumsum(own), 1e-300)
@@ -270,7 +270,7 @@ def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, f
 
 
 def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
-    """The quantity of which the residual is a function, and that with which the scatter of the rest grows."""
+    """The quantity on which the residual depends, and that with which the scatter of the rest grows."""
     best, fitted = _mean(s, random)
     yield best
     explains = _chance(best) * s.tests < SURE and best.numbers["share"] > NOTICED
@@ -281,7 +281,7 @@ def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[F
 
 
 def _mean(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Matrix]:
-    """The quantity of which the mean residual is a function, with those that do as well, and that function [N]."""
+    """The quantity on which the mean residual depends, with equally good ones, and that function [N]."""
     found, laws = [], {}
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
     direction = np.sign(s.motion["velocity"])
@@ -289,7 +289,7 @@ def _mean(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Ma
     for name, q in quantities.items():
         way = direction if name in (FRICTION, TRAVEL) else 1.0
         bins, centre = _bins(q, _PLACES if name == FRICTION else _BINS)
-        means, share, p = _flipped(s.residual * way, bins, s.block, signs)
+        means, share, p = _sign_flip_test(s.residual * way, bins, s.block, signs)
         laws[name] = way * means[bins]
         low, high = int(np.argmin(means)), int(np.argmax(means))
         numbers = {
@@ -304,7 +304,7 @@ def _mean(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Ma
     return replace(best, numbers={**best.numbers, "others": others}), np.asarray(laws[best.about])
 
 
-def _flipped(
+def _sign_flip_test(
     values: Matrix, bins: NDArray[np.int64], block: NDArray[np.int64], signs: Matrix
 ) -> tuple[Matrix, float, float]:
     """Means in each bin, the share of the squares that they explain beyond chance, and its p-value."""
@@ -319,14 +319,14 @@ def _flipped(
 
 
 def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
-    """The bin of each sample, all with as many samples, and the medians in each."""
+    """Bin of each sample, all with equally many samples, and the medians in each."""
     edges = np.unique(np.quantile(q, np.arange(1, count) / count))
     bins = np.searchsorted(edges, q, side="right")
     return bins, np.array([float(np.median(q[bins == i])) if np.any(bins == i) else 0.0 for i in range(edges.size + 1)])
 
 
 def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
-    """The quantity with whose size the scatter of the residual grows, and few positions at which it sits."""
+    """The quantity with whose size the scatter of the residual grows, and few positions with most of it."""
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
     scaled = np.abs(s.residual) / s.level * float(np.median(s.level))
     square, sizes = scaled**2, np.bincount(s.block)
@@ -334,7 +334,7 @@ def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Findi
     found = []
     for name in _SCATTERED:
         bins, _ = _bins(np.abs(s.motion[name]), _BINS)
-        _, _, p = _flipped(within, bins, s.block, signs)
+        _, _, p = _sign_flip_test(within, bins, s.block, signs)
         count = np.bincount(bins)
         means, count = (np.bincount(bins, square) / np.maximum(count, 1))[count > 0], count[count > 0]
         share = _log_share(means, count)
@@ -352,7 +352,7 @@ def _log_share(means: Matrix, weights: NDArray[np.int64]) -> float:
 
 
 def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
-    """Up to three stretches of the travel, a quarter of it together, that hold most of the misfit."""
+    """Up to three parts of the travel, together a quarter of it, with most of the misfit."""
     x = s.motion["displacement"]
     low, high = np.quantile(x, (0.002, 0.998))
     if not high > low:
@@ -361,7 +361,7 @@ def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matri
     count = np.bincount(bins, minlength=_PLACES)
     means = np.bincount(bins, square, _PLACES) / np.maximum(count, 1)
     share = _log_share(means[count > 0], count[count > 0])
-    _, _, p = _flipped(within, bins, s.block, signs)
+    _, _, p = _sign_flip_test(within, bins, s.block, signs)
     high_places = means > 0.5 * float(means.max())
     number, places = label(high_places)
     held = float(means[high_places] @ count[high_places]) / max(float(square.sum()), 1e-300)
@@ -373,7 +373,7 @@ def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matri
 
 
 def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
-    """Further channels, such as a temperature, with which the level of the residual goes from block to block."""
+    """Further channels, such as a temperature, with which the level of the residual is correlated over blocks."""
     square = (s.residual / s.level) ** 2
     sizes = np.bincount(s.block)
     log = np.log(np.maximum(np.bincount(s.block, square) / sizes, 1e-12))
@@ -389,21 +389,21 @@ def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Find
 
 
 def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
-    """A line that stands alone in the spectrum of the residual, or a band that holds most of it."""
+    """An isolated line in the spectrum of the residual, or a band with most of it."""
     at = np.flatnonzero(c.fitted | c.checked)
-    at -= at[0]  # where samples are left out in between there is nothing, and those beside stay apart in time
+    at -= at[0]  # samples left out in between are zero, which keeps the times of the others
     n = int(at[-1]) + 1
     window = get_window("hann", n)[at]
     scale = 2.0 / float(window.sum())
 
-    def transformed(rows: Matrix) -> Matrix:
+    def amplitudes(rows: Matrix) -> Matrix:
         spread = np.zeros((*rows.shape[:-1], n))
         spread[..., at] = window * rows
         return np.abs(np.fft.rfft(spread))
 
-    amplitude = scale * transformed(s.residual - s.residual.mean())
-    moved = transformed(s.motion["displacement"] - s.motion["displacement"].mean())
-    sound = scale * np.sqrt(np.mean(transformed(c.draws[:, c.fitted | c.checked]) ** 2, axis=0))
+    amplitude = scale * amplitudes(s.residual - s.residual.mean())
+    moved = amplitudes(s.motion["displacement"] - s.motion["displacement"].mean())
+    sound = scale * np.sqrt(np.mean(amplitudes(c.draws[:, c.fitted | c.checked]) ** 2, axis=0))
     frequency = np.asarray(np.fft.rfftfreq(n, c.record.interval), dtype=float)
     excess = np.asarray(np.maximum(amplitude**2 - sound**2, 0.0), dtype=float)
     excess[:2] = 0.0
@@ -426,7 +426,7 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
 
 
 def _multiple(peak: int, moved: Matrix) -> int:
-    """Which multiple of the sine that a motion mostly consists of is at this place of its spectrum; 0 if none is."""
+    """Order of the harmonic of a nearly sinusoidal motion at this line of its spectrum; 0 if it is none."""
     main = int(np.argmax(moved[2:])) + 2
     own = moved[max(main - 3, 0) : main + 4]
     if float(np.sum(own**2)) < _ONE_LINE * float(np.sum(moved[2:] ** 2)):
@@ -437,7 +437,7 @@ def _multiple(peak: int, moved: Matrix) -> int:
 
 
 def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> Iterator[Finding]:
-    """The middle 70 % of the excess, if it is little more than an octave wide and lies above the motion."""
+    """The middle 70 % of the excess, if little more than an octave wide and above the motion."""
     part = np.cumsum(excess)
     if part[-1] < NOTICED * total:
         return

@@ -1,4 +1,4 @@
-"""Patterns in what a fit leaves of the force, and how each is said: when, where, at which speed or frequency."""
+"""Patterns in the force residual of a fit, and their sentences: time, position, speed or frequency."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ UNITS = {  # of what the residual may depend on
     TRAVEL: "m",
     FRICTION: "m",
 }
-COEFFICIENTS = {  # of the residual on a signal: what it is like, and its unit
+COEFFICIENTS = {  # of the residual on a signal: its physical meaning and unit
     "constant": ("an offset of the load cell", "N"),
     "displacement": ("a stiffness", "N/m"),
     "velocity": ("a damping", "N s/m"),
@@ -48,16 +48,16 @@ class MisfitPattern(StrEnum):
     INSTANTS = "instants"
 
     def text(self, finding: Finding) -> Text:
-        """The parts of the sentence of such a pattern, to go on after a colon."""
+        """The parts of the sentence of such a pattern, for use after a colon."""
         return (_TEXTS[self](finding),)
 
 
-def _times(f: Finding) -> str:
+def _times_text(f: Finding) -> str:
     n = f.numbers
     return f"{n['before']:.2g} times the sensor noise before, {n['after']:.2g} times after"
 
 
-def _grows(f: Finding) -> str:
+def _grows_text(f: Finding) -> str:
     n = f.numbers
     way = "grows" if n["after"] > n["before"] else "decreases"
     return f"the misfit {way} over the record, from {n['before']:.2g} to {n['after']:.2g} times the sensor noise"
@@ -69,93 +69,93 @@ def _size(f: Finding, key: str) -> str:
     return format_quantity(size, unit, 3) if unit else f"{100.0 * size:.3g} %"
 
 
-def _coefficient_step(f: Finding) -> str:
+def _coefficient_step_text(f: Finding) -> str:
     like = COEFFICIENTS[f.about][0]
     return f"the misfit is like {like} that changes by {_size(f, 'change')} at {f.numbers['time']:.4g} s"
 
 
-def _coefficient_trend(f: Finding) -> str:
+def _coefficient_trend_text(f: Finding) -> str:
     like = COEFFICIENTS[f.about][0]
     return f"the misfit is like {like} that changes steadily, by {_size(f, 'change')} over the record"
 
 
-def _channel(f: Finding) -> str:
+def _channel_text(f: Finding) -> str:
     n = f.numbers
     return f"the misfit {'grows' if n['correlation'] > 0.0 else 'decreases'} with the {f.about} of the run"
 
 
-def _also(f: Finding) -> str:
-    """Quantities with which the residual goes as well, as in a motion of one frequency."""
+def _other_quantities_text(f: Finding) -> str:
+    """Quantities on which the residual depends as well, as in a motion of one frequency."""
     others = f.numbers.get("others", ())
-    return f" or, which this motion does not separate, the {' or the '.join(others)}" if others else ""
+    return f" or the {' or the '.join(others)} (not separated by this motion)" if others else ""
 
 
-def _mean(f: Finding) -> str:
+def _mean_text(f: Finding) -> str:
     if f.about == FRICTION:
-        return f"the misfit is a friction that depends on the position{_also(f)}: {_range(f)}"
-    return f"the misfit depends on the {f.about}{_also(f)}: {_range(f)}"
+        return f"the misfit is position-dependent friction{_other_quantities_text(f)}: {_range_text(f)}"
+    return f"the misfit depends on the {f.about}{_other_quantities_text(f)}: {_range_text(f)}"
 
 
-def _range(f: Finding) -> str:
+def _range_text(f: Finding) -> str:
     n, unit = f.numbers, UNITS[f.about]
     low, high = (format_quantity(n[which], unit, 2) for which in ("at_least", "at_most"))
     least, most = (format_quantity(n[which], "N", 2) for which in ("least", "most"))
     return f"{least} at {low}, {most} at {high}"
 
 
-def _spread(f: Finding) -> str:
+def _spread_text(f: Finding) -> str:
     n = f.numbers
     how = "grows" if n["high"] > n["low"] else "decreases"
     return (
-        f"the scatter of the misfit {how} with the size of the {f.about}{_also(f)}, "
+        f"the scatter of the misfit {how} with the size of the {f.about}{_other_quantities_text(f)}, "
         f"from {format_quantity(n['low'], 'N', 2)} to {format_quantity(n['high'], 'N', 2)}"
     )
 
 
-def _positions(f: Finding) -> str:
+def _positions_text(f: Finding) -> str:
     at = [format_quantity(place, "m", 3) for place in f.numbers["places"]]
     where = "one position" if len(at) == 1 else f"{len(at)} positions"
-    return f"the misfit sits at {where}: {', '.join(at)}"
+    return f"the misfit is concentrated at {where}: {', '.join(at)}"
 
 
-def _line(f: Finding) -> str:
+def _line_text(f: Finding) -> str:
     n = f.numbers
-    foreign = "which the motion does not excite" if n["foreign"] else "which the motion excites"
+    foreign = "not excited by the motion" if n["foreign"] else "excited by the motion"
     if n["multiple"] > 1:
-        foreign = f"{n['multiple']} times that of the motion: not a disturbance, but a nonlinear law"
+        foreign = f"{n['multiple']} times that of the motion: a nonlinear law, not a disturbance"
     size = format_quantity(n["amplitude"], "N", 3)
-    return f"the misfit is a line of {size} at {n['frequency']:.4g} Hz, {foreign}"
+    return f"the misfit is a spectral line of {size} at {n['frequency']:.4g} Hz, {foreign}"
 
 
-def _band(f: Finding) -> str:
+def _band_text(f: Finding) -> str:
     n = f.numbers
     where = ", above the motion" if n["low"] > n["highest"] else ""
     return f"the misfit lies between {n['low']:.3g} and {n['high']:.3g} Hz{where}"
 
 
-def _instants(f: Finding) -> str:
+def _instants_text(f: Finding) -> str:
     n = f.numbers
     times = ", ".join(f"{t:.4g}" for t in n["times"])
     more = ", ..." if n["count"] > len(n["times"]) else ""
     where = "one instant" if n["count"] == 1 else f"{n['count']} instants"
     lasting = "one sample" if n["longest"] == 1 else f"up to {n['longest']} samples"
-    leaps = ", where the force leaps from sample to sample" if n["leaps"] else ""
+    leaps = ", where the force jumps from sample to sample" if n["leaps"] else ""
     size = format_quantity(n["largest"], "N", 3)
-    return f"the misfit sits at {where}, up to {size} for {lasting}: at {times}{more} s{leaps}"
+    return f"the misfit is concentrated at {where}, up to {size} for {lasting}: at {times}{more} s{leaps}"
 
 
 _TEXTS: Mapping[MisfitPattern, Callable[[Finding], str]] = {
-    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {f.numbers['time']:.4g} s: {_times(f)}",
-    MisfitPattern.ENDS: lambda f: f"the misfit ends at {f.numbers['time']:.4g} s: {_times(f)}",
-    MisfitPattern.LEVEL_STEP: lambda f: f"the misfit changes at {f.numbers['time']:.4g} s: {_times(f)}",
-    MisfitPattern.GROWS: _grows,
-    MisfitPattern.COEFFICIENT_STEP: _coefficient_step,
-    MisfitPattern.COEFFICIENT_TREND: _coefficient_trend,
-    MisfitPattern.CHANNEL: _channel,
-    MisfitPattern.MEAN: _mean,
-    MisfitPattern.SPREAD: _spread,
-    MisfitPattern.POSITIONS: _positions,
-    MisfitPattern.LINE: _line,
-    MisfitPattern.BAND: _band,
-    MisfitPattern.INSTANTS: _instants,
+    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {f.numbers['time']:.4g} s: {_times_text(f)}",
+    MisfitPattern.ENDS: lambda f: f"the misfit ends at {f.numbers['time']:.4g} s: {_times_text(f)}",
+    MisfitPattern.LEVEL_STEP: lambda f: f"the misfit changes at {f.numbers['time']:.4g} s: {_times_text(f)}",
+    MisfitPattern.GROWS: _grows_text,
+    MisfitPattern.COEFFICIENT_STEP: _coefficient_step_text,
+    MisfitPattern.COEFFICIENT_TREND: _coefficient_trend_text,
+    MisfitPattern.CHANNEL: _channel_text,
+    MisfitPattern.MEAN: _mean_text,
+    MisfitPattern.SPREAD: _spread_text,
+    MisfitPattern.POSITIONS: _positions_text,
+    MisfitPattern.LINE: _line_text,
+    MisfitPattern.BAND: _band_text,
+    MisfitPattern.INSTANTS: _instants_text,
 }

@@ -1,4 +1,4 @@
-"""Candidate devices by name, with every value free within wide bounds: what a record may turn out to be of."""
+"""Candidate devices by name, with every value free within wide bounds."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ELEMENTS: dict[str, Network] = {
     "f": Friction(free(0.0, 500.0, name="f")),
     "c": Damper(free(1.0, 2e4, name="c")),
 }
-# before the inerter, and beside it: Wang and Su (2008), Figure 6b, and its parts
+# in series with the inerter, and in parallel: Wang and Su (2008), Figure 6b, and its parts
 _ROWS = {
     "ideal": ("", "b"),
     "friction": ("", "b | f"),
@@ -43,7 +43,7 @@ _ROWS = {
     "ball-screw": ("(ks | cs) - gap - ", "b | f"),
 }
 VISCOUS: Mapping[str, str] = MappingProxyType({name: f"{name}-viscous" for name in _ROWS})
-"""The names of models without a damper beside the inerter, and the name of each with one."""
+"""Names of models without a damper in parallel with the inerter, and the name of each with one."""
 
 
 def _model(before: str, beside: str) -> Network:
@@ -61,44 +61,47 @@ MODELS: Mapping[str, Network] = MappingProxyType(
         **{VISCOUS[name]: _model(before, f"{beside} | c") for name, (before, beside) in _ROWS.items()},
     }
 )
-"""From the ideal inerter to the ball screw of Wang and Su (2008): shaft `ks` [N/m] beside `cs` [N s/m], backlash `gap`
-[m] to each side, inertance `b` [kg], friction `f` [N]; each also `-viscous`, with a damper `c` [N s/m] beside the
-inerter. Shorter chains are parts of longer ones, so that a fit can be compared with those of its parts."""
-MOUNT = Spring(2e8, name="mount_k") | Damper(2e4, name="mount_c")  # gives way by 1 um under 200 N
-_STANDING = 300.0  # [Hz] of the load cell that a rigid device stands on where none is known; its force is the same
+"""From the ideal inerter to the ball screw of Wang and Su (2008): shaft `ks` [N/m] in parallel with `cs` [N s/m],
+backlash `gap` [m] to each side, inertance `b` [kg], friction `f` [N]; each also `-viscous`, with a damper `c` [N s/m]
+in parallel with the inerter. Shorter chains are parts of longer ones, so that a fit can be compared with those of its
+parts."""
+MOUNT = Spring(2e8, name="mount_k") | Damper(2e4, name="mount_c")  # deflects by 1 um under 200 N
+_STANDING = 300.0  # [Hz] default bandwidth of the load cell under a rigid device; the force does not depend on it
 
 
-def standing(model: Network, cell_bandwidth: float | None) -> Rig:
+def on_rig(model: Network, cell_bandwidth: float | None) -> Rig:
     """`model` on a rig with a load cell of this bandwidth [Hz].
 
-    The force of dry friction that sticks on a table is determined only if something gives way: for a device in which
-    nothing does, that is a load cell of 1e13 N/m, whether its bandwidth is known or not.
+    The force of sticking dry friction on a table is determined only with some compliance: for a rigid device that is a
+    load cell of 1e13 N/m, whether its bandwidth is known or not.
 
-    >>> standing(Inerter(113.0), None).cell_bandwidth, standing(Spring(1e4), None).cell_bandwidth
+    >>> on_rig(Inerter(113.0), None).cell_bandwidth, on_rig(Spring(1e4), None).cell_bandwidth
     (300.0, None)
     """
-    return Rig(model, _STANDING if cell_bandwidth is None and rigid(model) else cell_bandwidth)
+    return Rig(model, _STANDING if cell_bandwidth is None and is_rigid(model) else cell_bandwidth)
 
 
-def mounted(model: Network) -> Network:
-    """`model` as it can be simulated: with a very stiff mount in series if its gaps would strike between inertias.
+def with_mount(model: Network) -> Network:
+    """`model` with a very stiff mount in series if its gaps would strike between inertias, else unchanged.
 
-    >>> mounted(Gap(1e-4) - Inerter(113.0)) == MOUNT - Gap(1e-4) - Inerter(113.0)
+    >>> with_mount(Gap(1e-4) - Inerter(113.0)) == MOUNT - Gap(1e-4) - Inerter(113.0)
     True
-    >>> mounted(Inerter(113.0)) == Inerter(113.0)
+    >>> with_mount(Inerter(113.0)) == Inerter(113.0)
     True
     """
-    return MOUNT - model if rigid(model) and any(e.switches_by(Guard.ELONGATION) for e in model.elements()) else model
+    return (
+        MOUNT - model if is_rigid(model) and any(e.switches_by(Guard.ELONGATION) for e in model.elements()) else model
+    )
 
 
-def unmounted(model: Network) -> Network:
-    """The device without the mount that `mounted` gave it."""
+def without_mount(model: Network) -> Network:
+    """The device without the mount of `with_mount`."""
     parts = model.parts if isinstance(model, Series) else ()
     return reduce(sub, parts[1:]) if len(parts) > 1 and parts[0] == MOUNT else model
 
 
-def rigid(model: Network) -> bool:
-    """Whether nothing in a device gives way, so that its admittance grows without end."""
+def is_rigid(model: Network) -> bool:
+    """Whether a device is rigid, so that its admittance grows without bound."""
     check_network(model)
     low, high = (complex(abs(map_elements(model, _midway).admittance(1j * omega))) for omega in _FAST)
     return abs(high) > _RISES * abs(low) or not abs(high) < float("inf")

@@ -1,4 +1,4 @@
-"""What is known of the errors of a record: how they grow where the force jumps, and how they are autocorrelated."""
+"""Noise model of a record: larger errors where the force jumps, and their autocorrelation."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from scipy.fft import next_fast_len
 from inerter.records.dropouts import MAD
 
 Matrix = NDArray[np.float64]
-_LEAST = 1.0 / 3.0  # of the level, what errors are at least
+_LEAST = 1.0 / 3.0  # of the level: smallest error
 _BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
-_NEAR = 2  # samples before and after, whose errors count as alike
+_NEAR = 2  # samples before and after, whose errors are averaged
 OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals themselves make variances too small
 
 
 @dataclass(frozen=True, eq=False)
 class Whitening:
-    """Makes residuals of a record independent and of size one, as far as is known.
+    """Weighting and whitening of the residuals of a record, to independent values of size one.
 
-    An instant at which the force jumps is known only as well as the displacement: samples there count less. What is
-    left has a spectrum of its own, because the smoothed noise of the encoder passes through the device; it is divided
-    away.
+    The instant at which the force jumps is as uncertain as the displacement: samples there count less. The weighted
+    residuals are still coloured, because the smoothed encoder noise passes through the device; their spectrum is
+    divided out.
     """
 
     weight: Matrix  # (samples,) 1/N, zero where samples are not compared
     centre: Matrix  # (bands,) frequencies in cycles a sample, and ...
     density: Matrix  # ... the spectrum of the weighted residuals there, 1 if they were white and of size one
-    offsets: dict[int, Matrix] = field(default_factory=dict)  # remembered, by size
+    offsets: dict[int, Matrix] = field(default_factory=dict)  # cached, by size
 
     def __call__(self, residual: Matrix) -> Matrix:
         """Whitened residuals (samples,) or (samples, columns), zero where samples are not compared."""
@@ -45,28 +45,28 @@ class Whitening:
         return np.asarray(np.where(weight > 0.0, white, 0.0))
 
     def of_offset(self, size: int) -> Matrix:
-        """What becomes of an offset of 1 N over the first `size` samples."""
+        """Whitened offset of 1 N over the first `size` samples."""
         if size not in self.offsets:
             self.offsets[size] = self(np.ones(size))
         return self.offsets[size]
 
 
-def plain(kept: NDArray[np.bool_], level: float) -> Whitening:
-    """Every sample with the same error `level` [N], independent of the others."""
+def uniform_whitening(kept: NDArray[np.bool_], level: float) -> Whitening:
+    """Whitening of independent errors of equal size `level` [N]."""
     return Whitening(kept / level, np.zeros(0), np.zeros(0))
 
 
 def whitening_of(residual: Matrix, by: Whitening) -> Whitening:
-    """A whitening as coarse as residuals ask for: by the spectrum of others, but their own size."""
+    """The whitening `by` rescaled to the size of these residuals."""
     white = by(residual)[by.weight > 0.0]
     size = MAD * float(np.median(np.abs(white - np.median(white))))
     return replace(by, weight=by.weight / max(size, _LEAST), offsets={})
 
 
 def yardstick(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> Whitening:
-    """The whitening of residuals (draws, samples) [N] that sound sensors leave, on the samples that are compared.
+    """The whitening by residuals of sensor noise (draws, samples) [N], on the samples that are compared.
 
-    `noise` [N] is the load cell's own; what else there is comes from the encoder, at some instants more than at others.
+    `noise` [N] is that of the load cell; the rest comes from the encoder, at some instants more than at others.
     """
     of_encoder = np.maximum(np.mean(draws**2, axis=0) - noise**2, 0.0)
     window = np.ones(2 * _NEAR + 1)

@@ -1,9 +1,9 @@
-"""The record that would halve an interval: the same motion, larger, faster or longer, with the width to expect.
+"""Recommended experiment to halve an interval: a larger, faster or longer motion, with the expected width.
 
-Intervals follow from what the force says of each parameter (Fisher's information), and that is known for motions that
-were never made: the device that was found is moved so, and its force is differentiated by every unknown and weighted by
-what errors like those of the sensors would leave. A width to expect is the present one times the ratio of the standard
-errors that this gives for the other motion and for the present one; twice the length counts as twice the information.
+Intervals follow from the information on each parameter in the force (Fisher's information), which can be computed for
+any motion: the identified device is simulated, and its force is differentiated by every unknown and weighted by
+simulated sensor noise. The expected width is the present one times the ratio of the standard errors for the other
+motion and for the present one; twice the length counts as twice the information.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.identification.experiment import MOST_SAMPLES, Experiment, experiment_of
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Parameter
 from inerter.identification.intervals import steps_of
-from inerter.identification.kinds import FitFinding
 from inerter.identification.noise import yardstick
-from inerter.identification.sensors import encoder_noise, sound
+from inerter.identification.sensors import encoder_noise, noise_residuals
 from inerter.identification.solving import SolvedFit
 from inerter.records.finding import Finding
 from inerter.records.smoothing import resolution
@@ -29,7 +29,7 @@ from inerter.signals.signal import Signal
 from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
-_TARGET = 0.4  # of the present width, so that half of it is met by nearly all records
+_TARGET = 0.4  # of the present width, so that nearly all records reach half of it
 _AMPLITUDES, _SPEEDS = (1.0, 2.0, 4.0), (1.0, 2.0, 4.0, 0.5)
 _LONGEST = 16  # times as long
 _ROOM, _WITHOUT = 0.8, 4.0  # of the load cell's range; times the present force where no range is known
@@ -41,7 +41,7 @@ _DRAWS = 6
 
 @dataclass(frozen=True, eq=False)
 class PlannedMotion:
-    """The present motions, `larger` and `faster`, and the standard errors [coordinates] that they would leave."""
+    """The present motions, scaled by `larger` and `faster`, and the standard errors [coordinates] to expect."""
 
     larger: float
     faster: float
@@ -49,8 +49,8 @@ class PlannedMotion:
 
 
 def advice(solution: SolvedFit, parameters: Mapping[str, Parameter]) -> Iterator[Finding]:
-    """For each identified parameter the mildest change of the motion that leaves less than half of its interval."""
-    motions = list(_planned(solution))
+    """For each identified parameter, the mildest change of the motion that halves its interval."""
+    motions = list(_possible_motions(solution))
     present = next((m for m in motions if m.larger == m.faster == 1.0), None)
     if present is None:
         return
@@ -70,15 +70,17 @@ def advice(solution: SolvedFit, parameters: Mapping[str, Parameter]) -> Iterator
         if found:
             best, ratio, times = min(found, key=lambda f: (_effort(f[0], f[2]), f[1]))
             expected = math.hypot(moving * ratio / math.sqrt(max(times, 1)), fixed)
-            yield Finding(FitFinding.NARROWER, "info", name, _described(solution, best, max(times, 1), p, expected))
+            yield Finding(
+                FitFinding.NARROWER, "info", name, _motion_numbers(solution, best, max(times, 1), p, expected)
+            )
 
 
 def _effort(motion: PlannedMotion, times: int) -> float:
-    """How much a rig is asked for: doublings of the amplitude, the speed and the length."""
+    """Effort of a motion: doublings of the amplitude, the speed and the length."""
     return abs(math.log2(motion.larger)) + abs(math.log2(motion.faster)) + math.log2(max(times, 1))
 
 
-def _described(
+def _motion_numbers(
     solution: SolvedFit, motion: PlannedMotion, times: int, p: Parameter, expected: float
 ) -> dict[str, object]:
     experiments = solution.problem.experiments
@@ -96,15 +98,15 @@ def _described(
     }
 
 
-def _planned(solution: SolvedFit) -> Iterator[PlannedMotion]:
-    """The motions that the rig can make, the sensors can read and the device follows in one way only."""
+def _possible_motions(solution: SolvedFit) -> Iterator[PlannedMotion]:
+    """The motions within the range of rig and sensors for which the response of the device is predictable."""
     problem, optimum = solution.problem, solution.optimum
     steps = steps_of(optimum)
     largest = max(float(np.abs(e.record.force).max()) for e in problem.experiments)
     for row, faster in enumerate(_SPEEDS):
         for column, larger in enumerate(_AMPLITUDES):
             report("next experiment", row * len(_AMPLITUDES) + column, len(_SPEEDS) * len(_AMPLITUDES))
-            experiments = [_moved(e, larger, faster) for e in problem.experiments]
+            experiments = [_planned_experiment(e, larger, faster) for e in problem.experiments]
             present = larger == faster == 1.0
             if any(e is None for e in experiments):
                 continue
@@ -116,7 +118,7 @@ def _planned(solution: SolvedFit) -> Iterator[PlannedMotion]:
             other.experiments = [
                 replace(e, record=replace(e.record, force=f)) for e, f in zip(other.experiments, known, strict=True)
             ]
-            left = sound(other, optimum.point, (solution.options.seed, 7), _DRAWS)
+            left = noise_residuals(other, optimum.point, (solution.options.seed, 7), _DRAWS)
             if left is None or not (present or _predictable(left, other.experiments)):
                 continue
             other.whitenings = [
@@ -131,7 +133,7 @@ def _planned(solution: SolvedFit) -> Iterator[PlannedMotion]:
 
 
 def _bearable(solution: SolvedFit, forces: list[Matrix | None], largest: float) -> bool:
-    """Whether each load cell can read a force."""
+    """Whether each force is within the range of its load cell."""
     return all(
         f is not None
         and float(np.abs(f).max())
@@ -141,17 +143,17 @@ def _bearable(solution: SolvedFit, forces: list[Matrix | None], largest: float) 
 
 
 def _predictable(left: list[Matrix], experiments: Sequence[Experiment]) -> bool:
-    """Whether errors of the encoder change little of the forces."""
+    """Whether encoder noise hardly changes the forces."""
     return all(
         float(np.mean(draws**2)) - e.noise**2 <= _UNPREDICTABLE * float(np.var(e.record.force))
         for draws, e in zip(left, experiments, strict=True)
     )
 
 
-def _moved(e: Experiment, larger: float, faster: float) -> Experiment | None:
-    """An experiment of the same sensors on the same motion, larger and faster; None where they could not follow.
+def _planned_experiment(e: Experiment, larger: float, faster: float) -> Experiment | None:
+    """An experiment with the same sensors on a larger and faster motion; None where they cannot follow.
 
-    A faster motion is over sooner.
+    A faster motion is shorter.
     """
     record, motion = e.record, e.motion
     interval, highest = record.interval, faster * motion.highest

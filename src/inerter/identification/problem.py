@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from inerter.errors import InerterError
 from inerter.identification.experiment import Experiment, Tally, reading_of
 from inerter.identification.hypotheses import Hypothesis, through_cell
-from inerter.identification.models import standing
+from inerter.identification.models import on_rig
 from inerter.identification.noise import Whitening
-from inerter.identification.space import Space
+from inerter.identification.parameter_space import Space
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.records.record import Record
@@ -26,59 +26,60 @@ from inerter.work.running import mapped, over_threads
 
 Matrix = NDArray[np.float64]
 _FEWEST = 100  # samples that are compared
-FAILED = 1e3  # whitened residual of a simulation that cannot go on
+FAILED = 1e3  # whitened residual of a simulation that fails
 
 
 @dataclass(eq=False)
 class FitProblem:
-    """A rig with unknowns and the records that they should explain."""
+    """A rig with unknowns and the records to which they are fitted."""
 
     rig: Rig
     space: Space
     experiments: Sequence[Experiment]
     whitenings: Sequence[Whitening]
-    offset: bool = True  # whether the load cell may have one, its own in each record
+    offset: bool = True  # whether the load cell has a free offset in each record
     assumed: tuple[Hypothesis, ...] = ()
-    horizon: float = 1.0  # part of each record that is compared, as its force counts
+    horizon: float = 1.0  # share of the information of each record that is compared
     systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
 
     def __getstate__(self) -> dict[str, object]:
-        """What another process needs: systems are quicker made than sent."""
+        """State for another process, without systems, which are faster to build than to send."""
         return {**vars(self), "systems": {}}
 
     def system(self, coordinates: Matrix, record: Record) -> PiecewiseSystem | None:
-        """The rig with these values and a record's load cell; None where such a device cannot be simulated.
+        """The rig with these values and the load cell of a record; None where such a device cannot be simulated.
 
-        It is made once, and revalued: so what is possible does not depend on the values that came first.
+        It is built once, and its values replaced, so that feasibility does not depend on the first values.
         """
         kinds = dict(zip(self.space.names, self.space.kinds, strict=True))
-        values = {n: v for n, v in self.space.named(coordinates).items() if kinds[n] is not None}
+        values = {n: v for n, v in self.space.values_by_name(coordinates).items() if kinds[n] is not None}
         layout = (record.force_bandwidth, *(value == 0.0 for value in values.values()))
         try:
             known = self.systems.get(layout)
             if known is None:
                 largest = dict(zip(self.space.names, self.space.upper.tolist(), strict=True))
-                known = self._made(record, {n: v and largest[n] for n, v in values.items()})
+                known = self._build_system(record, {n: v and largest[n] for n, v in values.items()})
                 self.systems[layout] = known
             if set(values) <= {b.label for b in known.graph.branches} and not known.kinematics.weighs:
                 return revalued(known, {n: v for n, v in values.items() if v != 0.0})
-            return self._made(record, values)
+            return self._build_system(record, values)
         except InerterError:
             return None
 
-    def _made(self, record: Record, values: Mapping[str, float]) -> PiecewiseSystem:
-        return piecewise(standing(_labelled(self.rig), record.force_bandwidth).with_values(values))
+    def _build_system(self, record: Record, values: Mapping[str, float]) -> PiecewiseSystem:
+        return piecewise(on_rig(_label_elements(self.rig), record.force_bandwidth).with_values(values))
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
-        """What the load cells would read, for each record as far as the horizon; None where the device fails."""
-        answers = (self.answer(e, coordinates) for e in self.experiments)
-        return [None if answer is None else answer[0] for answer in answers]
+        """Load cell forces of each record up to the horizon; None where the simulation fails."""
+        answers = (self.simulate(e, coordinates) for e in self.experiments)
+        return [None if simulate is None else simulate[0] for simulate in answers]
 
-    def answer(self, experiment: Experiment, coordinates: Matrix) -> tuple[Matrix, Trajectory] | None:
-        """What the load cell would read in one record, and the motion of the device."""
-        system, values, e = self.system(coordinates, experiment.record), self.space.named(coordinates), experiment
+    def simulate(self, experiment: Experiment, coordinates: Matrix) -> tuple[Matrix, Trajectory] | None:
+        """Load cell force in one record, and the motion of the device; None where the simulation fails."""
+        system, e = self.system(coordinates, experiment.record), experiment
+        values = self.space.values_by_name(coordinates)
         for hypothesis in self.assumed:
-            e = hypothesis.moved(e, values)
+            e = hypothesis.change_motion(e, values)
         run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))
         if run is None:
             return None
@@ -90,7 +91,7 @@ class FitProblem:
         return force, run
 
     def samples(self, experiment: Experiment) -> int:
-        """How many samples of a record hold this part of all the information in its force."""
+        """Number of samples of a record up to the horizon."""
         if self.horizon == 1.0:
             return experiment.size
         return min(max(_FEWEST, int(np.searchsorted(experiment.information, self.horizon))), experiment.size)
@@ -117,8 +118,8 @@ class FitProblem:
     def jacobian(self, coordinates: Matrix, steps: Matrix, among: Sequence[int] | None = None) -> Matrix:
         """Central differences of the residuals over these steps, one-sided at a bound: by all coordinates, or `among`.
 
-        Steps are as wide as the coordinates are uncertain: friction and backlash leave corners in the residuals, on
-        which a tiny step would stumble.
+        Steps are as wide as the coordinates are uncertain: with friction and backlash the residuals are not smooth, so
+        tiny steps would fail.
         """
         lower, upper = self.space.bounds
         points, widths = [], []
@@ -145,18 +146,18 @@ class FitProblem:
         return result
 
 
-def apart(
+def map_problems(
     work: Callable[[FitProblem, Item], Result],
     calls: Sequence[tuple[FitProblem, Item]],
     otherwise: Callable[..., Iterable[tuple[Result, list[int]]]] = map,
     progress: Callable[[float], None] | None = None,
 ) -> list[Result]:
-    """Results of `work` on each problem and item, on what was said to work on, else by `otherwise`.
+    """Results of `work` on each problem and item, on the current executor, else by `otherwise`.
 
-    Wherever they are made, the simulations count for the problem's records.
+    The simulations of any process count for the records of the problem.
     """
     found = []
-    answers = mapped(partial(_apart, work), calls, otherwise, progress)
+    answers = mapped(partial(_run_on_problem, work), calls, otherwise, progress)
     for (problem, _), (result, counts) in zip(calls, answers, strict=True):
         for experiment, count in zip(problem.experiments, counts, strict=True):
             experiment.tally.add(count)
@@ -164,15 +165,17 @@ def apart(
     return found
 
 
-def _apart(work: Callable[[FitProblem, Item], Result], call: tuple[FitProblem, Item]) -> tuple[Result, list[int]]:
+def _run_on_problem(
+    work: Callable[[FitProblem, Item], Result], call: tuple[FitProblem, Item]
+) -> tuple[Result, list[int]]:
     problem, item = call
     own = replace(problem, experiments=[replace(e, tally=Tally()) for e in problem.experiments])
     result = work(own, item)
     return result, [e.tally.total for e in own.experiments]
 
 
-def _labelled(rig: Rig) -> Network:
-    """The device of a rig with every free element named as its value is."""
+def _label_elements(rig: Rig) -> Network:
+    """The device of a rig with every free element labelled by the name of its value."""
 
     def label(element: Element) -> Network:
         value = element.value

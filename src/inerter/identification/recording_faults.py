@@ -1,7 +1,7 @@
-"""Further hypotheses on the sensors, the frame and the recorder, some of them prompted by where the misfit is.
+"""Further hypotheses on the sensors, the frame and the recorder, some of them suggested by the localised misfit.
 
-A line, a change at an instant and faulty samples are looked for where the residual or the record shows them; the others
-are tried in any record.
+A spectral line, a change at an instant and faulty samples are tested where the residual or the record shows them; the
+others are tested in any record.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from inerter.identification.experiment import Experiment, experiment_of, reading
 from inerter.identification.fit import Localisation
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
 from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.identification.possible_causes import Details, Suspect
 from inerter.identification.problem import FitProblem
-from inerter.identification.suspects import Details, Suspect
 from inerter.records.instants import Instant
 from inerter.records.record import Record
 from inerter.records.repair import faulty_instants, repair
@@ -27,16 +27,16 @@ from inerter.records.repair import faulty_instants, repair
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
-_RESONANCES = (15.0, 40.0, 100.0)  # [Hz] where a resonance of the frame is looked for
+_RESONANCES = (15.0, 40.0, 100.0)  # [Hz] starting values of a frame resonance
 _BESIDE = 10  # samples to either side of repaired ones that are not compared
-_SETTLED = 0.3  # [s] after a joint that are not compared, while the device forgets
-_NOTHING = 1e-5  # of its largest value, below which a parameter that changes is none
-_FITTED = 0.75  # of a record, after which a change is hardly fitted
+_SETTLED = 0.3  # [s] after a joint that are not compared, until the transient has decayed
+_NOTHING = 1e-5  # of its largest value, below which a change of a parameter is ignored
+_FITTED = 0.75  # of a record, after which a change is hardly in the estimation data
 _INDEX = (MisfitPattern.COEFFICIENT_STEP, MisfitPattern.BEGINS, MisfitPattern.ENDS, MisfitPattern.LEVEL_STEP)
 
 
 def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Iterator[Hypothesis]:
-    """What sensors, frame and recorder may do beyond the usual, in these records and with this misfit."""
+    """Hypotheses on sensors, frame and recorder that these records and this misfit suggest."""
     peak = max(float(np.abs(e.record.force).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
@@ -57,7 +57,7 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
 
 
 def _saturation(experiments: Sequence[Experiment]) -> Hypothesis:
-    """A force that is cut off at an upper and a lower limit, which are about the extremes that were read."""
+    """A force clipped at an upper and a lower limit, which start near the measured extremes."""
     upper, lower = Unknown("upper limit", "N", 1e-3, 1e6, 1.0), Unknown("lower limit", "N", 1e-3, 1e6, 1.0)
     centred = [e.record.force - float(np.median(e.record.force)) for e in experiments]
     high, low = max(float(f.max()) for f in centred), max(float(-f.min()) for f in centred)
@@ -73,31 +73,31 @@ def _saturation(experiments: Sequence[Experiment]) -> Hypothesis:
 
 
 def _clock(delay_known: bool, experiments: Sequence[Experiment]) -> Hypothesis:
-    """A delay that grows with time; where it begins is free too, unless a delay is assumed already."""
+    """A delay that grows with time; its initial value is free too, unless a delay is assumed already."""
     rate, begun = (
         Unknown("clock rate", "", -_FASTEST_CLOCK, _FASTEST_CLOCK, 2e-4),
         Unknown("first delay", "s", -0.02, 0.02, 1e-3),
     )
     duration = max(e.record.duration for e in experiments)
 
-    def moved(e: Experiment, values: Values) -> Experiment:
+    def change_motion(e: Experiment, values: Values) -> Experiment:
         time = e.motion.time - e.motion.time[0]
-        return e.late(values.get(begun.name, 0.0) + values[rate.name] * time)
+        return e.with_delay(values.get(begun.name, 0.0) + values[rate.name] * time)
 
     def details(values: Values) -> Details:
         return {"rate": values[rate.name], "growth": values[rate.name] * duration}
 
     unknowns = (rate,) if delay_known else (rate, begun)
-    return Hypothesis(Suspect.CLOCK_DRIFT, unknowns, moved=moved, details=details)
+    return Hypothesis(Suspect.CLOCK_DRIFT, unknowns, change_motion=change_motion, details=details)
 
 
 def _cross_talk(signal: str, unit: str, size: float) -> Hypothesis:
-    """A load cell that reads some of the displacement or velocity too."""
+    """Cross-talk of displacement or velocity into the force."""
     unknown = Unknown(f"cross-talk of the {signal}", unit, -10.0 * size, 10.0 * size, 0.05 * size)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        moved = getattr(e.motion, signal)[: force.size]
-        return np.asarray(force + values[unknown.name] * through_cell(moved, e))
+        reading = getattr(e.motion, signal)[: force.size]
+        return np.asarray(force + values[unknown.name] * through_cell(reading, e))
 
     def details(values: Values) -> Details:
         return {"signal": signal, "unit": unit, "size": values[unknown.name]}
@@ -106,7 +106,7 @@ def _cross_talk(signal: str, unit: str, size: float) -> Hypothesis:
 
 
 def _frame() -> Hypothesis:
-    """A load cell on a frame that resonates: it reads the force times the response of a mass on a spring."""
+    """A load cell on a resonant frame: the force times the response of a mass on a spring."""
     frequency, ratio = Unknown("frame frequency", "Hz", 3.0, 1e4, 1.0), Unknown("frame damping", "", 1e-3, 2.0, 0.05)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
@@ -150,7 +150,7 @@ def _hum(record: Record, frequency: float, amplitude: float) -> Hypothesis:
 
 
 def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothesis:
-    """A device with other values from one instant of a record on."""
+    """A device whose values change at one instant of a record."""
     space = problem.space
     later = {
         name: f"{name} afterwards" for name, kind in zip(space.names, space.kinds, strict=True) if kind is not None
@@ -162,7 +162,7 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
 
     def force_with(e: Experiment, values: Values, size: int) -> Matrix | None:
         known = {n: values.get(n, bounds[n][0]) for n in space.names}
-        system = bare.system(space.placed(known), e.record)
+        system = bare.system(space.coordinates_of(known), e.record)
         run = None if system is None else e.run(system, size)
         return None if run is None else run[reading_of(e.record)]
 
@@ -184,28 +184,30 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
 
 
 def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
-    """Spikes and held values, interpolated; and joints, closed up and not compared for a while."""
+    """Spikes and held values, interpolated; and joints, closed and not compared for a while."""
     found = [(e, faulty_instants(e.record)) for e in experiments]
     rows: list[Hypothesis] = []
     kinds = ((Suspect.SPIKES, "spikes"), (Suspect.HELD, "held"))
     for name, kind in kinds:
         marked = {id(e.record): [i for role in getattr(f, kind).values() for i in role] for e, f in found}
         if any(marked.values()):
-            rows.append(_repaired(name, experiments, marked, repair, _BESIDE))
+            rows.append(_repair_hypothesis(name, experiments, marked, repair, _BESIDE))
     joints = {id(e.record): f.joints for e, f in found}
     if any(joints.values()):
-        rows.append(_repaired(Suspect.JOINED, experiments, joints, lambda r: _closed(r, joints[id(r)]), None))
+        rows.append(
+            _repair_hypothesis(Suspect.JOINED, experiments, joints, lambda r: _close_joints(r, joints[id(r)]), None)
+        )
     return rows
 
 
-def _repaired(
+def _repair_hypothesis(
     name: Suspect,
     experiments: Sequence[Experiment],
     marked: dict[int, list[Instant]],
     mend: Callable[[Record], Record],
     beside: int | None,
 ) -> Hypothesis:
-    """Records without their faulty samples, near which nothing is compared."""
+    """Records with faulty samples repaired, near which no samples are compared."""
     whole: dict[int, Experiment] = {}
     doubtful: dict[int, Mask] = {}
     places = []
@@ -222,7 +224,7 @@ def _repaired(
         whole[id(e.record)] = replace(experiment_of(mended), record=e.record, kept=e.kept, tally=e.tally)
         doubtful[id(e.record)] = mask
 
-    def moved(e: Experiment, values: Values) -> Experiment:
+    def change_motion(e: Experiment, values: Values) -> Experiment:
         return whole.get(id(e.record), e)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
@@ -230,12 +232,12 @@ def _repaired(
         return force if mask is None else np.where(mask[: force.size], e.record.force[: force.size], force)
 
     details = {"times": tuple(places[:6]), "count": len(places)}
-    return Hypothesis(name, moved=moved, read=read, details=lambda values: details)
+    return Hypothesis(name, change_motion=change_motion, read=read, details=lambda values: details)
 
 
-def _closed(record: Record, joints: Sequence[Instant]) -> Record:
-    """The record with the jumps of its displacement taken away."""
-    moved = np.zeros(record.time.size)
+def _close_joints(record: Record, joints: Sequence[Instant]) -> Record:
+    """The record with the jumps of its displacement removed."""
+    jumps = np.zeros(record.time.size)
     for joint in joints:
         jump = record.displacement[joint.start + 1] - record.displacement[joint.start]
         usual = 0.5 * (
@@ -244,5 +246,5 @@ def _closed(record: Record, joints: Sequence[Instant]) -> Record:
             + record.displacement[joint.start + 2]
             - record.displacement[joint.start + 1]
         )
-        moved[joint.start + 1 :] += jump - usual
-    return record.with_notes(displacement=record.displacement - moved)
+        jumps[joint.start + 1 :] += jump - usual
+    return record.with_notes(displacement=record.displacement - jumps)

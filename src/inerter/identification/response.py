@@ -1,4 +1,4 @@
-"""What a model answers to the displacement of a record, beside what the rig did; and its linear response."""
+"""Frequency response of a model on the displacement of a record, and its linear response."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from inerter.vehicle.rig import Rig
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _STEP = 2e-4  # [s] longest of the simulation
-_ABOVE = 1.25  # times the highest frequency of the response: where the displacement is cut off
-_HIGHEST = 0.8  # of half the rate: a cut-off above that is none
+_ABOVE = 1.25  # times the highest frequency of the response: cut-off frequency of the displacement
+_HIGHEST = 0.8  # of half the rate: no filter is applied above that
 _ORDER = 4  # of the Butterworth filter, which goes forward and backward
 
 
@@ -39,17 +39,17 @@ def model_response(
     segment: float | None = None,
     step: float = _STEP,
 ) -> Response:
-    """The response of a device on the rig to the records' own displacement, by the estimator that the records get.
+    """The response of a device on the rig to the displacement of the records, with the estimator of the records.
 
-    Friction and backlash make it depend on the amplitude, so it is a model's only fair comparison with a measurement.
-    The displacement is smoothed before the device feels it, for the steps of an encoder are no motion of the table:
-    where it repeats, to the harmonics of its mean period that stand out of the scatter, and the device is in its
-    steady state; where it does not, by a Butterworth filter, forward and backward, a quarter above the highest
-    frequency of their response, and the device starts from rest. The frequencies are those that
-    `frequency_response(records)` finds. `step` [s] is the longest of the simulation.
+    With friction and backlash the response depends on the amplitude, so a model and a measurement must be compared at
+    the same displacement. The displacement is smoothed first, to remove encoder quantisation: where it is periodic, to
+    the harmonics of its mean period that exceed the scatter, with the device in its steady state; otherwise by a
+    Butterworth filter, forward and backward, a quarter above the highest frequency of their response, with the device
+    starting from rest. The frequencies are those of `frequency_response(records)`. `step` [s] is the longest of the
+    simulation.
 
-    Raises `RecordError` as `frequency_response` does, and where a simulation has to stop; `DesignError`,
-    `MechanismError` and `SimulationError` as `simulate` does. What a simulation says of its accuracy is the `status`.
+    Raises `RecordError` as `frequency_response` does, and where a simulation fails; `DesignError`, `MechanismError` and
+    `SimulationError` as `simulate` does. The accuracy of the simulation is the `status`.
 
     >>> import inerter as it, numpy as np
     >>> t = np.arange(2000) * 1e-3
@@ -66,9 +66,9 @@ def model_response(
         answered = [_in_steady_state(rig, motion, record, step) for motion, record in zip(moved, chosen, strict=True)]
     else:
         cutoff = _ABOVE * measured.frequency[-1]
-        answered = [_from_rest(rig, smoothed(record, cutoff), step) for record in chosen]
+        answered = [_from_rest(rig, smooth_record(record, cutoff), step) for record in chosen]
     answers = [record for record, _ in answered]
-    if not any(np.ptp(record.force) for record in answers):  # such as in the play of a gap
+    if not any(np.ptp(record.force) for record in answers):  # such as within the backlash of a gap
         found = exact_response(measured.omega, np.zeros(measured.omega.size, dtype=complex), measured.amplitude)
     else:
         found = frequency_response(answers, estimator=estimator, segment=segment)
@@ -79,23 +79,23 @@ def model_response(
     status = next((status for _, status in answered if not status.ok), found.status)
     found = replace(found, source="model", status=status, notes=tuple(dict.fromkeys(notes)))
     bands = {record.force_bandwidth for record in chosen}
-    return as_read(found, bands.pop()) if len(bands) == 1 else found
+    return with_load_cell(found, bands.pop()) if len(bands) == 1 else found
 
 
-def as_read(response: Response, bandwidth: float | None) -> Response:
-    """A model's response as a load cell of this bandwidth [Hz] reads it: Butterworth, of second order."""
+def with_load_cell(response: Response, bandwidth: float | None) -> Response:
+    """The response of a model with a load cell of this bandwidth [Hz]: Butterworth, second order."""
     if bandwidth is None:
         return response
     s = 1j * response.frequency / bandwidth
     read = exact_response(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude)
-    note = f"As read by a load cell of {bandwidth:g} Hz."
+    note = f"With a load cell bandwidth of {bandwidth:g} Hz."
     return replace(read, source=response.source, status=response.status, notes=(*response.notes, note))
 
 
 def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: float | None = None) -> Response:
-    """The linear response of a device, j omega times its admittance: friction left out, gaps closed.
+    """The linear response of a device, j omega times its admittance: friction neglected, gaps closed.
 
-    As read by a load cell of `cell_bandwidth` [Hz], if that is given.
+    With a load cell of `cell_bandwidth` [Hz], if that is given.
 
     Raises `DesignError` if a value is free, `LinearSystemError` unless omega holds positive frequencies [rad/s].
     """
@@ -105,39 +105,39 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     except (TypeError, ValueError):
         frequencies = np.full(1, np.nan)
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies) & (frequencies > 0.0)):
-        raise LinearSystemError("A linear response needs a list of positive frequencies [rad/s].")
+        raise LinearSystemError("omega must be a list of positive frequencies [rad/s].")
     value = np.asarray(1j * frequencies * device.admittance(1j * frequencies))
     linear = linearise(device)
     left_out = {e.key: [o.label for o in linear.left_out if o.key == e.key] for e in linear.left_out}
-    notes = [f"{key.capitalize()} left out: {', '.join(labels)}." for key, labels in left_out.items()]
+    notes = [f"{key.capitalize()} neglected: {', '.join(labels)}." for key, labels in left_out.items()]
     notes += [f"Gaps closed: {', '.join(linear.gaps)}."] if linear.gaps else []
-    return as_read(
+    return with_load_cell(
         replace(exact_response(frequencies, value), source="linear model", notes=tuple(notes)), cell_bandwidth
     )
 
 
-def smoothed(record: Record, cutoff: float) -> Record:
-    """A record whose displacement has nothing above `cutoff` [Hz]: Butterworth, of fourth order, forward and backward.
+def smooth_record(record: Record, cutoff: float) -> Record:
+    """The record with its displacement low-pass filtered at `cutoff` [Hz]: Butterworth, order 4, forward and backward.
 
-    As it is where the cut-off is close to half the rate.
+    Unchanged where the cut-off is close to half the rate.
     """
     if cutoff >= _HIGHEST * 0.5 / record.interval:
-        return record.with_notes("The displacement is as measured: it reaches up to nearly half the rate.")
+        return record.with_notes("Displacement not filtered: it extends to nearly half the sampling rate.")
     filter_ = scipy.signal.butter(_ORDER, cutoff, fs=1.0 / record.interval, output="sos")
     return record.with_notes(
-        f"The displacement smoothed up to {cutoff:.4g} Hz (Butterworth, forward and backward).",
+        f"Displacement low-pass filtered at {cutoff:.4g} Hz (Butterworth, forward and backward).",
         displacement=scipy.signal.sosfiltfilt(filter_, record.displacement),
     )
 
 
 def _among(omega: Matrix, others: Matrix) -> NDArray[np.bool_]:
-    """Which frequencies are also among others, which increase."""
+    """Mask of the frequencies that are also among `others`, which increase."""
     after = np.searchsorted(others, omega * (1.0 - 1e-6))
     return np.asarray(np.append(others, np.inf)[after] <= omega * (1.0 + 1e-6))
 
 
 def _mean_period(record: Record, period: float) -> Harmonics:
-    """The mean period of a displacement, of the harmonics that stand out of its scatter."""
+    """The mean period of a displacement, with the harmonics that exceed its scatter."""
     part = whole_periods(record, period)
     lines = lines_of([part])
     significant = lines.excited() | lines.significant()
@@ -152,7 +152,7 @@ def _mean_period(record: Record, period: float) -> Harmonics:
 
 
 def _in_steady_state(rig: Rig, motion: Harmonics, record: Record, step: float) -> tuple[Record, Status]:
-    """Two periods, which are the same, of the record of a model, and how the simulation ended."""
+    """Two equal periods of the record of a model, and the status of the simulation."""
     count = max(round(motion.period / record.interval), 2 * motion.coefficient.size + 2, 4)
     every = math.ceil(motion.period / count / step * (1.0 - 1e-9))
     run = simulate(rig, displacement=motion, initial="periodic", step=motion.period / (count * every), every=every)
@@ -161,12 +161,12 @@ def _in_steady_state(rig: Rig, motion: Harmonics, record: Record, step: float) -
     time = np.asarray(np.arange(2 * count) * (motion.period / count))
     x, force = (np.tile(run[name][:count], 2) for name in ("displacement", "device_force"))
     count_significant = np.count_nonzero(motion.coefficient)
-    notes = (f"The model's steady state on the mean period of the displacement, of {count_significant} harmonics.",)
+    notes = (f"Steady state of the model on the mean period of the displacement, of {count_significant} harmonics.",)
     return Record(time, x, force, source=record.source, notes=notes, period=motion.period), run.status
 
 
 def _from_rest(rig: Rig, record: Record, step: float) -> tuple[Record, Status]:
-    """The record that the model would have left, from rest, and how the simulation ended."""
+    """The record of the model from rest, and the status of the simulation."""
     every = math.ceil(record.interval / step * (1.0 - 1e-9))
     signal = Signal.sampled(np.arange(record.time.size) * record.interval, record.displacement)
     run = simulate(rig, displacement=signal, duration=record.duration, step=record.interval / every, every=every)

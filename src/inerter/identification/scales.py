@@ -1,8 +1,8 @@
-"""What no record shows of its own sensors, their scales and the mass of the fixture, in the intervals of a fit.
+"""Uncertainties of sensor scales and fixture mass, which no record shows, in the intervals of a fit.
 
-A load cell that reads 1 % too much makes every stiffness, damping, inertance and friction 1 % larger, and the model
-explains the record as well as before. Such an error has the same sign in all samples, so that a longer record is of no
-help: its standard uncertainty is added to that of the estimates in squares (JCGM 100:2008, 5.1.2).
+A load cell that reads 1 % too much makes every stiffness, damping, inertance and friction 1 % larger, with the same
+residual. Such an error has the same sign in all samples, so that a longer record does not reduce it: its standard
+uncertainty is added to that of the estimates in squares (JCGM 100:2008, 5.1.2).
 """
 
 from __future__ import annotations
@@ -38,32 +38,32 @@ _POWERS = {  # of the force's and of the displacement's scale in the value of an
 
 @dataclass(frozen=True, eq=False)
 class ScaleEffects:
-    """Changes of every estimate [its unit] with one standard uncertainty of each thing that the records do not show."""
+    """Changes of every estimate [its unit] by one standard uncertainty of each scale and mass."""
 
     changes: Matrix  # (things, parameters)
     relative: Matrix  # (parameters,) the same of the end of an interval that has one end, over that end
 
     @property
     def covariance(self) -> Matrix:
-        """What they add to the covariance of the estimates."""
+        """Contribution to the covariance of the estimates."""
         return np.asarray(self.changes.T @ self.changes)
 
     @property
     def errors(self) -> Matrix:
-        """The standard uncertainty that they add to each estimate."""
+        """Contribution to the standard uncertainty of each estimate."""
         return np.sqrt(np.diag(self.covariance))
 
     def width(self, i: int) -> float:
-        """The width of a 95 % interval that had no other errors."""
+        """The width of a 95 % interval from these uncertainties alone."""
         return 2.0 * _QUANTILE * float(self.errors[i])
 
-    def widened(
+    def widen(
         self, i: int, interval: tuple[float, float], best: float, known: tuple[bool, bool]
     ) -> tuple[float, float]:
         """The 95 % interval of a parameter with its scale errors.
 
-        Two known ends go outward as the squares of both errors add up. A single end, which is no distance from an
-        estimate, is moved by all of the scale's.
+        Two known ends are widened by the root of the sum of squares. A single end, which is not a distance from an
+        estimate, is moved by all of the error of the scale.
         """
         error = _QUANTILE * float(self.errors[i])
         alone = _QUANTILE * float(self.relative[i])
@@ -75,27 +75,26 @@ class ScaleEffects:
         return max(low, 0.0) if interval[0] >= 0.0 else low, high
 
 
-def scaled(record: Record, options: FitOptions) -> Record:
-    """A record in true units: its readings times the scales that are given."""
+def apply_scales(record: Record, options: FitOptions) -> Record:
+    """The record with its readings multiplied by the given scales."""
     force, moved = options.force_scale, options.displacement_scale
     if force is not None and force.value != 1.0:
         changes = {
             n: v * force.value for n in ("force", "force_range", "force_noise") if (v := getattr(record, n)) is not None
         }
-        record = record.with_notes(f"The force was multiplied by {force.value:.6g}, its scale.", **changes)
+        record = record.with_notes(f"Force multiplied by its scale, {force.value:.6g}.", **changes)
     if moved is not None and moved.value != 1.0:
         names = ("displacement", "velocity", "acceleration", "displacement_noise")
         changes = {n: v * moved.value for n in names if (v := getattr(record, n)) is not None}
-        record = record.with_notes(f"The displacement was multiplied by {moved.value:.6g}, its scale.", **changes)
+        record = record.with_notes(f"Displacement multiplied by its scale, {moved.value:.6g}.", **changes)
     return record
 
 
 def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) -> ScaleEffects | None:
-    """The effects of the uncertainties that are stated; None where there are none.
+    """The effects of the stated uncertainties; None where there are none.
 
-    Where all elements are free, each value follows the scales by a power. Where some are known from elsewhere, the
-    others make up for them: then the records are fitted again with a scale, or a fixture mass, one standard
-    uncertainty larger and smaller.
+    Where all elements are free, each value follows the scales by a power. Where some are fixed, the others compensate:
+    then the records are fitted again with a scale, or a fixture mass, one standard uncertainty larger and smaller.
     """
     space = problem.space
     values = space.to_values(optimum.point)
@@ -106,10 +105,10 @@ def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) ->
     for column, (uncertainty, apply) in enumerate(_scales(options)):
         if uncertainty > 0.0:
             along = uncertainty * powers[:, column]
-            rows.append(values * along if follows else _refitted(problem, optimum, uncertainty, apply))
+            rows.append(values * along if follows else _refit_difference(problem, optimum, uncertainty, apply))
             relative = np.hypot(relative, along)
     if any(e.record.fixture_mass_error for e in problem.experiments):
-        rows.append(_refitted(problem, optimum, 1.0, _heavier))
+        rows.append(_refit_difference(problem, optimum, 1.0, _heavier))
     return ScaleEffects(np.array(rows), relative) if rows else None
 
 
@@ -118,7 +117,7 @@ def _scales(options: FitOptions) -> Iterator[tuple[float, Callable[[Experiment, 
         yield 0.0 if scale is None else scale.relative, apply
 
 
-def _refitted(
+def _refit_difference(
     problem: FitProblem, optimum: BestFit, uncertainty: float, apply: Callable[[Experiment, float], Experiment]
 ) -> Matrix:
     """Half the difference of the values between fits to records with one error and with its opposite."""
@@ -136,7 +135,7 @@ def _stronger(e: Experiment, by: float) -> Experiment:
 
 def _longer(e: Experiment, by: float) -> Experiment:
     moved = replace(e, record=replace(e.record, displacement=e.record.displacement * (1.0 + by)))
-    return moved.moved(e.motion.displacement * (1.0 + by), e.motion.velocity * (1.0 + by))
+    return moved.with_motion(e.motion.displacement * (1.0 + by), e.motion.velocity * (1.0 + by))
 
 
 def _heavier(e: Experiment, by: float) -> Experiment:

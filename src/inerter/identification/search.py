@@ -1,7 +1,7 @@
-"""From anywhere within the bounds to the best fit: many points on the first part of the records, fewer on ever more.
+"""Global search for the best fit: many points on the first part of the records, fewer on increasing parts.
 
-A device that rattles forgets in a few impacts where it came from, so over a whole record the cost has a valley beside
-every value. Over the first moments it has one, which leads into the right one of the next longer part.
+A rattling device depends on its past for a few impacts only, so over a whole record the cost has many local minima.
+Over the first moments it has one, which leads to the right one of the next longer part.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 from inerter.identification.options import POINTS
-from inerter.identification.problem import FitProblem, apart
+from inerter.identification.problem import FitProblem, map_problems
 from inerter.work.progress import counter, report
 
 Matrix = NDArray[np.float64]
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
 QUICK: Stages = ((1 / 16, 12, 6), (1 / 8, 8, 6), (1 / 4, 5, 6), (1 / 2, 3, 6), (1.0, 2, 12))
 THOROUGH: Stages = ((1 / 16, 24, 10), (1 / 8, 12, 8), (1 / 4, 6, 8), (1 / 2, 4, 8), (1.0, 2, 12))
-_ROUGH, _SAME = 1e-3, 3e-3  # accuracy on parts of the records, and coordinates that are taken to be equal
+_ROUGH, _SAME = 1e-3, 3e-3  # accuracy on parts of the records, and difference of coordinates that count as equal
 STEP = 1e-3  # of a coordinate, before its uncertainty is known
 _HOPS, _PATIENCE, _EVALUATIONS = 12, 4, 8
 _REACH = (1.0, 0.3, 2.0)  # of hops, over the distance at which the linearised cost would double
@@ -38,9 +38,9 @@ def search(
     stages: Stages = QUICK,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Matrix, list[float]]:
-    """The best coordinates, and the costs that the last candidates came to on half of the records.
+    """The best coordinates, and the costs of the last candidates on half of the records.
 
-    `guess`: values that are known in advance, each with the half-width of the range to look in.
+    `guess`: initial estimates, each with the half-width of its search range.
     """
     candidates = starts(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
@@ -53,7 +53,9 @@ def search(
         candidates = _distinct(candidates, costs)[:kept]
         what = f"search on {'all' if horizon == 1.0 else f'{100.0 * horizon:.3g} %'} of the information"
         tasks = [(part, candidate) for candidate in candidates]
-        found = apart(partial(_improved, evaluations, accuracy), tasks, progress=counter(what, len(tasks)))
+        found = map_problems(
+            partial(_improve_candidate, evaluations, accuracy), tasks, progress=counter(what, len(tasks))
+        )
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
         if progress is not None:
@@ -61,13 +63,13 @@ def search(
     return candidates[int(np.argmin(costs))], halfway
 
 
-def _improved(evaluations: int, accuracy: float, problem: FitProblem, start: Matrix) -> tuple[Matrix, float]:
+def _improve_candidate(evaluations: int, accuracy: float, problem: FitProblem, start: Matrix) -> tuple[Matrix, float]:
     point, cost, _, _ = improve(problem, start, evaluations, accuracy=accuracy)
     return point, cost
 
 
 def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
-    """From the best on, without those that came to where a better one is."""
+    """The candidates, the best first, without those equal to a better one."""
     result: list[Matrix] = []
     for i in np.argsort(costs):
         if all(np.abs(candidates[i] - other).max() > _SAME for other in result):
@@ -76,9 +78,9 @@ def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
 
 
 def starts(problem: FitProblem, guess: Mapping[str, tuple[float, float]], seed: int, count: int) -> list[Matrix]:
-    """Points of a Sobol sequence: three quarters of them around the guess, if there is one, and some without backlash.
+    """Points of a Sobol' sequence: three quarters of them around the guess, if there is one, and some without backlash.
 
-    A value that may be zero is drawn as the cube of an even one, for its order of magnitude is not known.
+    A value that may be zero is drawn as the cube of a uniform one, because its order of magnitude is unknown.
     """
     space = problem.space
     lower, upper = space.bounds
@@ -91,20 +93,22 @@ def starts(problem: FitProblem, guess: Mapping[str, tuple[float, float]], seed: 
             for i, name in enumerate(space.names):
                 if name in guess:
                     value, width = guess[name]
-                    point[i] = space.placed_one(i, value + width * (2.0 * draw[i] - 1.0))
+                    point[i] = space.coordinate_of(i, value + width * (2.0 * draw[i] - 1.0))
         elif n % 8 == 7:
             point[space.nonlinear] = lower[space.nonlinear]
         result.append(np.clip(point, lower, upper))
     if guess:
-        middle = {n: guess[n][0] if n in guess else float(v) for n, v in space.named(0.5 * (lower + upper)).items()}
-        result.append(space.placed(middle))
+        middle = {
+            n: guess[n][0] if n in guess else float(v) for n, v in space.values_by_name(0.5 * (lower + upper)).items()
+        }
+        result.append(space.coordinates_of(middle))
     return result
 
 
 def basin_hopping(problem: FitProblem, start: Matrix, seed: int) -> Matrix:
     """The best fit that can be reached from `start` by hops to nearby points, each improved.
 
-    Hops go as far as the linearised cost would rise by about itself: far along valleys, and far from bad fits.
+    Hops go as far as the linearised cost would about double: far in flat directions, and far from bad fits.
     Source: basin hopping (Wales and Doye 1997), here without steps upwards.
     """
     random = np.random.default_rng([seed, 3])
@@ -127,7 +131,7 @@ def basin_hopping(problem: FitProblem, start: Matrix, seed: int) -> Matrix:
 
 
 def soft(residual: Matrix) -> float:
-    """Sum of squares that grow like their roots beyond 10: far from the best fit every residual is an outlier."""
+    """Robust sum of squares, linear beyond 10: far from the best fit every residual is an outlier."""
     return float(np.sum(2.0 * (np.sqrt(1.0 + (residual / 10.0) ** 2) - 1.0)) * 100.0)
 
 
@@ -141,8 +145,8 @@ def improve(
 ) -> tuple[Matrix, float, Matrix, Matrix]:
     """Trust-region least squares from `start`: coordinates, cost, residuals and their derivatives.
 
-    `scale`: residuals beyond it count less than their square (soft l1). It ends where a step changes the cost or the
-    coordinates by less than `accuracy`.
+    `scale`: residuals beyond it count less than their square (soft l1). The fit ends where a step changes the cost or
+    the coordinates by less than `accuracy`.
     """
     space = problem.space
     lower, upper = space.bounds

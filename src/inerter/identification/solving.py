@@ -1,4 +1,4 @@
-"""From records and a model to the best fit: searched, refined, with profiles, and judged."""
+"""Solution of an identification: search, refinement, profiles, and tests of the residual."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError
 from inerter.identification.bootstrap import bootstrap
-from inerter.identification.experiment import Experiment, experiment_of, forgotten
+from inerter.identification.experiment import Experiment, experiment_of, transient_samples
 from inerter.identification.fit import Misfit
-from inerter.identification.guess import chain_of, guess_of, sign_of
 from inerter.identification.hypotheses import Hypothesis
+from inerter.identification.initial_estimate import chain_of, guess_of, sign_of
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
-from inerter.identification.judging import Judge, check_parts, judge_of
-from inerter.identification.noise import plain, whitening_of, yardstick
+from inerter.identification.noise import uniform_whitening, whitening_of, yardstick
 from inerter.identification.options import FitOptions
+from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
+from inerter.identification.residual_tests import Judge, check_parts, judge_of
 from inerter.identification.scales import ScaleEffects, scale_effects
 from inerter.identification.search import QUICK, THOROUGH, basin_hopping, search, soft
-from inerter.identification.sensors import sound, unavoidable
-from inerter.identification.space import space_of
-from inerter.identification.sticking import Adhesion, adhering, profiles_at_rest
+from inerter.identification.sensors import noise_residuals, unavoidable_residual
+from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adhesion
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -32,21 +32,21 @@ from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 Progress = Callable[[float], None]
-_ROUGH = 0.003  # of the r.m.s. force: what a residual counts as until the errors are known
+_ROUGH = 0.003  # of the r.m.s. force: assumed error until it is known
 _ROUNDS = 3
-_FINE, _POOR = 2.0, 20.0  # whitened residual (its last tenth) that needs no further search, and that which always does
-_FAIR = 1.5  # between them: over what the errors of the sensors leave
-_SAME = 1e-3  # relative difference of what two searches leave that have come to the same
+_FINE, _POOR = 2.0, 20.0  # whitened residual (90th percentile) that requires no further search, and always does
+_FAIR = 1.5  # between them: limit over that of sensor noise
+_SAME = 1e-3  # relative difference of the costs of two searches with the same result
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedFit:
-    """The best fit of a model, what is known about it, and the judge of what it leaves."""
+    """The best fit of a model, with profiles, validation data and tests of the residual."""
 
     problem: FitProblem
     optimum: BestFit
     profiles: tuple[CostProfile, ...]
-    checked: tuple[NDArray[np.bool_], ...]  # samples of each record that were kept for the check
+    checked: tuple[NDArray[np.bool_], ...]  # validation samples of each record
     leads: tuple[float, ...]
     costs: tuple[float, ...]
     findings: tuple[Finding, ...]
@@ -61,9 +61,10 @@ class SolvedFit:
 def solve(
     records: Sequence[Record], rig: Rig, assumed: tuple[Hypothesis, ...], asked: FitOptions, progress: Progress | None
 ) -> SolvedFit:
-    """The best fit of a rig's free values to records.
+    """The best fit of the free values of a rig to records.
 
-    Raises `IdentificationError` and `RecordError` for records that cannot be used, or that no best fit can follow.
+    Raises `IdentificationError` and `RecordError` for records that cannot be used, or a best fit that cannot be
+    simulated.
     """
     chain = chain_of(rig.device)
     whole, findings = [], []
@@ -74,24 +75,24 @@ def solve(
         findings += found_of_sign
     problem = FitProblem(rig, space_of(rig, assumed), _for_fit(whole, asked.check), [], asked.offset, assumed)
     problem.whitenings = [
-        plain(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
+        uniform_whitening(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
     ]
     report("first guess", 0, 1)
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
-    point, costs = _searched(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
+    point, costs = _search_thoroughly(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
     report("start of records", 0, len(records))
     problem.experiments, leads = _leads(problem, point, asked.lead)
-    optimum, adhesion = adhering(problem, _refined(problem, point, asked.seed))
+    optimum, adhesion = with_adhesion(problem, _refine(problem, point, asked.seed))
     drawn = bootstrap(problem, optimum, asked.seed)
     if progress is not None:
         progress(0.7)
-    optimum, found = _profiled(problem, drawn.optimum, adhesion)
+    optimum, found = _profile_all(problem, drawn.optimum, adhesion)
     report("errors of the sensors", 0, 1)
-    optimum, found = _unbiased(problem, optimum, found, drawn.bias)
+    optimum, found = _remove_bias(problem, optimum, found, drawn.bias)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = judge_of(problem, optimum.point, checked, asked.seed)
     if judge is None:
-        raise _lost(problem)
+        raise _not_simulated(problem)
     if progress is not None:
         progress(1.0)
     return SolvedFit(
@@ -101,7 +102,7 @@ def solve(
     )  # fmt: skip
 
 
-def _lost(problem: FitProblem) -> IdentificationError:
+def _not_simulated(problem: FitProblem) -> IdentificationError:
     sources = ", ".join(repr(e.record.source) for e in problem.experiments)
     return IdentificationError(f"The best fit to {sources} cannot be simulated.")
 
@@ -116,16 +117,16 @@ def _for_fit(experiments: Sequence[Experiment], check: float) -> list[Experiment
     return result
 
 
-def _searched(
+def _search_thoroughly(
     problem: FitProblem,
     guess: Mapping[str, tuple[float, float]],
     seed: int,
     starts: int,
     progress: Callable[[float], None] | None,
 ) -> tuple[Matrix, list[float]]:
-    """The best of a search; while it leaves more than the sensors' errors, of more thorough ones.
+    """The best of a search, repeated more thoroughly while the residual exceeds sensor noise.
 
-    Two that come to the same need no third: it is the model that leaves so much.
+    If two searches agree there is no third: the residual is that of the model.
     """
     kept = np.concatenate([e.kept for e in problem.experiments])
     found: list[tuple[float, Matrix, list[float]]] = []
@@ -138,21 +139,21 @@ def _searched(
         cost, left = soft(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
         again = any(math.isclose(cost, earlier, rel_tol=_SAME) for earlier, _, _ in found)
         found.append((cost, point, costs))
-        if again or left < _FINE or left < min(_FAIR * unavoidable(problem, point, seed), _POOR):
+        if again or left < _FINE or left < min(_FAIR * unavoidable_residual(problem, point, seed), _POOR):
             break
     _, point, costs = min(found, key=lambda f: f[0])
     return point, costs
 
 
 def _leads(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
-    """Leave out as much of the start of records that begin in motion as the unknown start of the device matters."""
+    """Discard the start of records that begin in motion, as long as the unknown initial state of the device matters."""
     result, leads = [], []
     for e in problem.experiments:
         system = problem.system(point, e.record)
         first = int(np.argmax(e.kept))
         if lead is None and first > 0 and system is not None:
             kept = e.kept.copy()
-            first = min(max(first, forgotten(e, system, e.noise)), e.size // 2)
+            first = min(max(first, transient_samples(e, system, e.noise)), e.size // 2)
             kept[:first] = False
             e = replace(e, kept=kept)
         result.append(e)
@@ -160,14 +161,14 @@ def _leads(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list
     return result, leads
 
 
-def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
-    """The best fit with the weights that the errors of the sensors ask for, and the steps that it asks for itself."""
+def _refine(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
+    """The best fit with weights from simulated sensor noise, and steps from its standard errors."""
     point, steps, optimum = start, None, None
     for number in range(_ROUNDS):
         report("refinement", number, _ROUNDS)
-        forces, left = problem.forces(point), sound(problem, point, (seed, 1))
+        forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
         if left is None or any(force is None for force in forces):
-            raise _lost(problem)
+            raise _not_simulated(problem)
         problem.whitenings = [
             whitening_of(e.record.force - force, yardstick(draws, e.noise, e.kept))
             for e, force, draws in zip(problem.experiments, forces, left, strict=True)
@@ -179,8 +180,8 @@ def _refined(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
     return optimum
 
 
-def _profiled(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) -> tuple[BestFit, list[CostProfile]]:
-    """Profiles of all parameters; a better fit met on the way becomes the optimum, and all are walked once more."""
+def _profile_all(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) -> tuple[BestFit, list[CostProfile]]:
+    """Profiles of all parameters; a better fit found on the way becomes the optimum, and all are repeated."""
     if adhesion:
         return optimum, profiles_at_rest(problem, optimum, adhesion)
     found = profiles(problem, optimum)
@@ -194,12 +195,12 @@ def _profiled(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) -> tupl
     return optimum, found
 
 
-def _unbiased(
+def _remove_bias(
     problem: FitProblem, optimum: BestFit, found: Sequence[CostProfile], bias: Matrix
 ) -> tuple[BestFit, list[CostProfile]]:
-    """The best fit and its profiles without what the sensors' errors did to them.
+    """The best fit and its profiles, corrected for the bias by sensor noise.
 
-    Where a record bounds a value on one side only, or not at all, the curvature says nothing of how far that is.
+    Values that a record bounds on one side only, or not at all, are not corrected.
     """
     lower, upper = problem.space.bounds
     on_both_sides = np.array([p.lower.known and p.upper.known for p in found])
@@ -207,7 +208,7 @@ def _unbiased(
     if robust_cost(problem.residual(point)) > optimum.cost + 2.0 * float(np.max(optimum.threshold)):
         return optimum, list(found)
     by = point - optimum.point
-    return replace(optimum, point=point), [p.moved(float(d)) for p, d in zip(found, by, strict=True)]
+    return replace(optimum, point=point), [p.shift(float(d)) for p, d in zip(found, by, strict=True)]
 
 
 def part(progress: Callable[[float], None] | None, first: float, last: float) -> Callable[[float], None] | None:

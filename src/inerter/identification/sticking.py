@@ -1,9 +1,9 @@
-"""Frictions that never slip in the records: known from below only, with an inertance that never moved beside them.
+"""Frictions that never slip in the records: only a lower bound is known, and no inertance in parallel with them.
 
-A device that sticks is stiff and damped, and nothing else. A fit that is free to let it slip may do so by a micrometre
-where the noise of the force is largest, and stands on an edge then: on one side the friction and the inertance count,
-on the other they do not, and differences across it say nothing. So the best fit that never slips is looked for, and
-taken where the records do not ask for more.
+A sticking device is a spring and a damper only. A free fit may let it slip by a micrometre where the noise of the force
+is largest, where the residual is discontinuous: on one side friction and inertance matter, on the other they do not,
+and differences across it are meaningless. So the best fit that never slips is sought, and used unless the records
+require slip.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ from inerter.systems.outputs import force_of
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS, _ACCURACY = 8, 1e-7
-_FAR = 100.0  # times the least cost, beyond which a device that sticks is no neighbour of the best fit
+_FAR = 100.0  # times the least cost, beyond which a sticking device is not near the best fit
 _LEVEL = 0.99
-_BESIDE = (0.0, 0.25, 0.5, 0.75, 1.0)  # between the bounds, of what does not matter while nothing slips
+_BESIDE = (0.0, 0.25, 0.5, 0.75, 1.0)  # between the bounds, of parameters without effect while sticking
 _FIRST, _WIDER, _STEPS = 1e-3, 4.0, 14  # of the force held; of a step to the last; evaluations
 _NEAR = 0.05  # of the root of a rise, to which an end is found
 
@@ -47,41 +47,41 @@ class Adhesion:
         return bool(self.held)
 
     def of(self, i: int) -> float | None:
-        """The force that friction i held, or, beside one, the largest that any did; None where all slip."""
+        """The force [N] that friction i held, or the largest that any held; None where all slip."""
         return self.held.get(i, max(self.held.values(), default=None))
 
 
-def adhering(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, Adhesion]:
-    """The best fit in which frictions do not slip that need not, and how much those held.
+def with_adhesion(problem: FitProblem, optimum: BestFit) -> tuple[BestFit, Adhesion]:
+    """The best fit without unnecessary slip, and the largest forces held by sticking frictions.
 
-    Slipping adds two unknowns at least, a friction and what moves then: it is believed where the cost falls by more
-    than chance takes from two.
+    Slip adds at least two unknowns, a friction and the moving inertance: it is accepted where the cost decreases by
+    more than two unknowns would by chance.
     """
     held: dict[int, float] = {}
     for i in _frictions(problem):
         point = optimum.point.copy()
         point[i] = problem.space.bounds[1][i]
         far = robust_cost(problem.residual(point)) > _FAR * optimum.cost
-        if far or _held(problem, point, i) is None:
+        if far or _largest_held_force(problem, point, i) is None:
             continue
         still = best_fit_of(problem, point, steps_of(optimum), _EVALUATIONS, _ACCURACY)
-        force = _held(problem, still.point, i)
+        force = _largest_held_force(problem, still.point, i)
         allowed = 0.5 * float(chi2.ppf(_LEVEL, 2)) * still.variance * float(np.max(still.widening))
         if force is not None and still.cost <= optimum.cost + allowed:
             optimum, held[i] = still, force
     return optimum, Adhesion(held)
 
 
-def silent(optimum: BestFit) -> NDArray[np.bool_]:
-    """Which coordinates the residuals do not depend on at all."""
+def is_unobservable(optimum: BestFit) -> NDArray[np.bool_]:
+    """Mask of the coordinates on which the residuals do not depend."""
     sizes = np.linalg.norm(optimum.jacobian, axis=0)
     return np.asarray(sizes <= 1e-9 * float(sizes.max()))
 
 
 def profiles_at_rest(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) -> list[CostProfile]:
-    """The profiles where frictions do not slip: those have a lower end, and what they hold still may be anything."""
+    """The profiles of a sticking device: frictions have a lower end, and the values at rest are unbounded."""
     lower, upper = problem.space.bounds
-    unseen = silent(optimum)
+    unseen = is_unobservable(optimum)
     seen = np.flatnonzero(~unseen).tolist()
     found = dict(zip(seen, profiles(problem, optimum, seen), strict=True))
     for i in np.flatnonzero(unseen).tolist():
@@ -102,11 +102,11 @@ def _frictions(problem: FitProblem) -> list[int]:
     ]
 
 
-def _held(problem: FitProblem, point: Matrix, i: int) -> float | None:
+def _largest_held_force(problem: FitProblem, point: Matrix, i: int) -> float | None:
     """The largest force [N] that a friction held; None if it slipped, or the device cannot be simulated."""
     name, largest = problem.space.names[i], 0.0
     for e in problem.experiments:
-        answer = problem.answer(e, point)
+        answer = problem.simulate(e, point)
         if answer is None or any(event.element == name for event in answer[1].events):
             return None
         largest = max(largest, float(np.abs(answer[1][force_of(name)]).max()))
@@ -114,14 +114,14 @@ def _held(problem: FitProblem, point: Matrix, i: int) -> float | None:
 
 
 def _from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> CostProfile:
-    """The profile of a friction that held `force` [N], from the bound of the search down to where the cost rises."""
+    """The profile of a friction that held `force` [N], from the bound of the search down to the rise of the cost."""
     space, threshold = problem.space, float(optimum.threshold[i])
     top, bottom = float(space.bounds[1][i]), float(space.bounds[0][i])
-    points = [(space.placed_one(i, force), 0.0), (top, 0.0)]
+    points = [(space.coordinate_of(i, force), 0.0), (top, 0.0)]
     inside, outside, root = force, 0.0, 0.0
     value, step = force * (1.0 - _FIRST), _FIRST
     for _ in range(_STEPS):
-        at = space.placed_one(i, value)
+        at = space.coordinate_of(i, value)
         root = np.sqrt(max(_least_cost(problem, optimum, i, at) - optimum.cost, 0.0) / threshold)
         points.append((at, float(root) ** 2))
         if abs(root - 1.0) < _NEAR:
@@ -137,7 +137,7 @@ def _from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> 
             value = force * max(1.0 - step, 0.0)
         else:
             value = 0.5 * (inside + outside)
-    return _one_sided(space.placed_one(i, outside), True, top, points)
+    return _one_sided(space.coordinate_of(i, outside), True, top, points)
 
 
 def _one_sided(end: float, known: bool, top: float, points: list[tuple[float, float]]) -> CostProfile:
@@ -145,9 +145,9 @@ def _one_sided(end: float, known: bool, top: float, points: list[tuple[float, fl
 
 
 def _least_cost(problem: FitProblem, optimum: BestFit, i: int, value: float) -> float:
-    """The least cost with a friction at `value`, whatever moves when it slips."""
+    """The least cost with a friction at `value`, over the parameters that matter only in slip."""
     lower, upper = problem.space.bounds
-    free = silent(optimum)
+    free = is_unobservable(optimum)
     free[i] = False
     costs = []
     for share in _BESIDE if free.any() else (0.0,):

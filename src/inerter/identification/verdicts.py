@@ -1,4 +1,4 @@
-"""Which parameters the records identify and which they do not, and the experiment that would identify more."""
+"""Identifiability of each parameter, and the recommended experiments for those not identified."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import CostProfile
-from inerter.identification.kinds import FitFinding
-from inerter.identification.space import Space
+from inerter.identification.parameter_space import Space
 from inerter.networks.elements.roles import Linear
 from inerter.records.finding import Finding
 
 _WIDE = 3.0  # ends of an interval this far apart, as a ratio, give an order of magnitude only
-_ROOM = 1.5  # times the largest force: a load cell that bears more has room
+_ROOM = 1.5  # times the largest force: a load cell with a larger range has a margin
 
 
 def identifiability(
     parameter: Parameter, profile: CostProfile, space: Space, index: int, comparisons: Sequence[RecordFit]
 ) -> Identifiability:
-    """Whether the records identify a parameter, and why not."""
+    """Verdict on a parameter, with the reason where it is not identified."""
     low, high = parameter.interval
     below, above = profile.lower.known, profile.upper.known
     if below and above:
@@ -48,7 +48,7 @@ def suggestions(
     identifiable: Mapping[str, Identifiability],
     comparisons: Sequence[RecordFit],
 ) -> Iterator[Finding]:
-    """The next experiment, for each parameter that the records do not identify."""
+    """The recommended experiment for each parameter that the records do not identify."""
     peak = max(float(np.abs(c.record.force).max()) for c in comparisons)
     travel = max(0.5 * float(np.ptp(c.record.displacement)) for c in comparisons)
     fastest = max(c.experiment.motion.highest for c in comparisons)

@@ -1,4 +1,4 @@
-"""A test rig with a known truth: a motion table, an encoder and a load cell, with the faults that real ones have."""
+"""A test rig with a known device: a motion table, an encoder and a load cell, with realistic faults."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
 from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
-from inerter.identification.models import mounted
+from inerter.identification.models import with_mount
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
@@ -22,7 +22,7 @@ Matrix = NDArray[np.float64]
 GRAVITY = 9.80665  # [m/s^2] standard, for load cells that are rated in kg
 _FINEST = 1e-4  # [s] between the knots of the table's motion, at most
 _TABLE_DAMPING = 0.7
-_SEEN, _SMALL = 3.0, 1e-4  # r.m.s. over the error of the encoder, and over the motion, from which on motion counts
+_SEEN, _SMALL = 3.0, 1e-4  # least r.m.s. of relevant motion, over the encoder error and over the motion
 
 
 @dataclass(frozen=True)
@@ -36,29 +36,29 @@ class _Times:
 
     @property
     def steps(self) -> int:
-        """From the beginning of the command to the last sample."""
+        """Number of steps from the beginning of the command to the last sample."""
         return (self.first + self.samples - 1) * self.parts
 
     @property
-    def sampled(self) -> NDArray[np.int64]:
+    def sample_steps(self) -> NDArray[np.int64]:
         """Numbers of the steps at which samples are taken."""
         return np.asarray((self.first + np.arange(self.samples)) * self.parts)
 
 
 @dataclass(frozen=True)
 class VirtualRig:
-    """A rig whose device is known, so that what is identified from its records can be compared with the truth.
+    """A simulated rig with a known device, so that identified values can be compared with the true ones.
 
-    The command goes through a motion table of second order, which follows up to `table_bandwidth` [Hz] and does not
-    yield to the device. The encoder and the load cell are sampled `sampling` times a second; both have normal noise
+    The command drives a motion table of second order with bandwidth `table_bandwidth` [Hz], on which the device has no
+    effect. The encoder and the load cell are sampled `sampling` times a second; both have normal noise
     (r.m.s.) before they are rounded to their resolution. The load cell has a bandwidth (Butterworth, second order),
     a range beyond which it saturates, an offset, a gain and a delay; it counts tension as positive unless
     `reversed`.
 
     The defaults are those of the rig of Wang and Su (2008), section 4: a load cell of 100 kg with a resolution of
-    0.02 kg, an encoder of 1 um; what the paper does not print is an assumption.
+    0.02 kg, an encoder of 1 um; values that the paper does not print are assumptions.
 
-    Raises `IdentificationError` for numbers that no sensor can have, `DesignError` if a value of the device is free.
+    Raises `IdentificationError` for invalid sensor values, `DesignError` if a value of the device is free.
     """
 
     device: Network
@@ -82,27 +82,27 @@ class VirtualRig:
         for name in ("encoder_resolution", "encoder_noise", "force_resolution", "force_noise", "force_delay"):
             value = getattr(self, name)
             if not is_number(value) or value < 0.0:
-                raise IdentificationError(f"The {name} of a rig must be a number from 0 on, got {value!r}.")
+                raise IdentificationError(f"The {name} of a rig must be a non-negative number, got {value!r}.")
         if not is_number(self.force_offset) or not is_number(self.force_gain) or self.force_gain <= 0.0:
             raise IdentificationError(
-                f"The offset of a load cell is a number of N and its gain a positive one, got {self.force_offset!r} "
-                f"and {self.force_gain!r}. A load cell that counts compression is `reversed`."
+                f"The offset of a load cell must be a number of N and its gain positive, got {self.force_offset!r} and "
+                f"{self.force_gain!r}. For a load cell that is positive in compression use `reversed`."
             )
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise IdentificationError(f"A seed is a whole number from 0 on, got {self.seed!r}.")
+            raise IdentificationError(f"The seed must be a non-negative integer, got {self.seed!r}.")
         Rig(self.device)
 
     def check(self, command: Signal, duration: float, start: float = 0.0) -> int:
-        """The number of samples; raises what `run` would raise before it simulates."""
+        """Number of samples; raises the errors that `run` would raise before it simulates."""
         check_positive(IdentificationError, "The duration of a run", duration, "s")
         if not is_number(start) or start < 0.0:
-            raise IdentificationError(f"A record starts at a time from 0 s on, got {start!r}.")
+            raise IdentificationError(f"The start of a record must be a non-negative time in s, got {start!r}.")
         if not isinstance(command, Signal):
-            raise IdentificationError(f"A table is moved by a signal, such as cosine(...), got {command!r}.")
+            raise IdentificationError(f"The command must be a signal, such as cosine(...), got {command!r}.")
         times = self._times(duration, start)
         if times.samples < 4:
             raise IdentificationError(f"{duration:g} s are less than 4 samples at {self.sampling:g} Hz.")
-        rig, end = Rig(mounted(self.device), self.force_bandwidth), times.steps * times.step
+        rig, end = Rig(with_mount(self.device), self.force_bandwidth), times.steps * times.step
         command.sample(end)
         table = Signal.sampled([0.0, end], [0.0, 0.0], label=command.label)  # at rest: the motion does not matter
         check_simulation(rig, {"displacement": table}, RunSettings(duration=end, step=times.step))
@@ -114,28 +114,27 @@ class VirtualRig:
         return _Times(parts, first, count, 1.0 / self.sampling / parts)
 
     def run(self, command: Signal, duration: float, start: float = 0.0) -> Record:
-        """What the sensors read from `start` to `start` + `duration` [s] while the table is moved as commanded.
+        """The record of the sensors from `start` to `start` + `duration` [s] under the command.
 
-        The rig is at rest at t = 0 where the command begins. The record's time begins at zero. The same rig reads the
-        same noise for the same number of samples. A note says so where the table moves faster than half the sampling
-        rate shows.
+        The rig is at rest at t = 0 where the command begins. The time of the record begins at zero. The same rig has
+        the same noise for the same number of samples. A note reports motion above half the sampling rate.
 
-        Raises `IdentificationError` for a command or times that cannot be, and as `simulate` does.
+        Raises `IdentificationError` for an invalid command or times, and errors as `simulate` does.
         """
         self.check(command, duration, start)
         times = self._times(duration, start)
         step, steps, interval = times.step, times.steps, 1.0 / self.sampling
-        position, velocity = self._moved(command.grid(0.0, step, steps + 1)[0], step)
+        position, velocity = self._table_motion(command.grid(0.0, step, steps + 1)[0], step)
         time, moved = (
             step * np.arange(steps + 1),
             position - position[0],
         )  # the device is at rest where the table starts
         table = Signal.sampled(time, moved, derivative=velocity, label=command.label)
-        rig = Rig(mounted(self.device), self.force_bandwidth)
+        rig = Rig(with_mount(self.device), self.force_bandwidth)
         run = simulate(rig, displacement=table, duration=steps * step, step=step)
         if not run.status.ok:
             raise IdentificationError(f"The virtual rig cannot be simulated: {run.status}.")
-        at = times.sampled
+        at = times.sample_steps
         delayed = np.interp(step * at - self.force_delay, table.time, run[rig.reading])
         record = self._read(position[at], delayed, interval, command)
         error = math.hypot(self.encoder_noise, self.encoder_resolution / math.sqrt(12.0))
@@ -143,11 +142,11 @@ class VirtualRig:
         if highest <= 0.5 * self.sampling:
             return record
         return record.with_notes(
-            f"The table moves at up to {highest:.3g} Hz, but {self.sampling:g} samples a second show no more than "
-            f"{0.5 * self.sampling:g} Hz: faster motion appears as slower. Sample at {2.5 * highest:.3g} Hz or more."
+            f"The table has components up to {highest:.3g} Hz, above the Nyquist frequency of "
+            f"{0.5 * self.sampling:g} Hz: faster motion is aliased. Sample at {2.5 * highest:.3g} Hz or more."
         )
 
-    def _moved(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
+    def _table_motion(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:
         """Position and velocity of the table, which begins at rest."""
         position, velocity = _low_pass(command - command[0], self.table_bandwidth, _TABLE_DAMPING, step)
         return command[0] + position, velocity
@@ -155,10 +154,10 @@ class VirtualRig:
     def _read(self, displacement: Matrix, force: Matrix, interval: float, command: Signal) -> Record:
         random = np.random.default_rng(self.seed)
         count = displacement.size
-        position = _rounded(displacement + self.encoder_noise * random.standard_normal(count), self.encoder_resolution)
+        position = _quantise(displacement + self.encoder_noise * random.standard_normal(count), self.encoder_resolution)
         sign = -1.0 if self.reversed else 1.0
         load = sign * self.force_gain * force + self.force_offset + self.force_noise * random.standard_normal(count)
-        load = np.clip(_rounded(load, self.force_resolution), -self.force_range, self.force_range)
+        load = np.clip(_quantise(load, self.force_resolution), -self.force_range, self.force_range)
         return Record(
             time=np.asarray(interval * np.arange(count, dtype=np.float64)),
             displacement=position,
@@ -182,14 +181,14 @@ def highest_frequency(motion: Matrix, step: float, least: float) -> float:
     return float(seen[-1]) / (motion.size * step) if seen.size else 0.0
 
 
-def _rounded(values: Matrix, resolution: float) -> Matrix:
+def _quantise(values: Matrix, resolution: float) -> Matrix:
     return np.asarray(values if resolution == 0.0 else resolution * np.rint(values / resolution))
 
 
 def _low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> tuple[Matrix, Matrix]:
     """A signal after a low pass of second order, and its derivative; exact for a signal that is linear over a step.
 
-    It starts as if the signal had always had its first value.
+    It starts in the steady state of the first value.
     """
     w = 2.0 * math.pi * bandwidth
     A = np.array([[0.0, 1.0], [-w * w, -2.0 * damping * w]])

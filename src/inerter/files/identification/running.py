@@ -17,7 +17,7 @@ from inerter.identification.choice import Candidate, choose
 from inerter.identification.fit import Fit, RecordFit
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
-from inerter.identification.models import VISCOUS, mounted
+from inerter.identification.models import VISCOUS, with_mount
 from inerter.identification.options import FitOptions
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Free, Network
@@ -137,7 +137,7 @@ def _identified(readings: Sequence[Reading], request: IdentificationRequest, pro
     if request.chooses:
         return _chosen(title, readings, request, settings, progress)
     ((name, model),) = request.models().items()
-    fit = identify(records, mounted(model), FitOptions(**settings), progress=progress)
+    fit = identify(records, with_mount(model), FitOptions(**settings), progress=progress)
     named = Rig(model).device
     return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identification.staged import staged
+from inerter.identification.staged_protocol import staged
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Damper, Friction, Inerter, Network, Spring
 from inerter.records.result import Response

@@ -16,10 +16,10 @@ from scipy.optimize import least_squares
 from test_further_causes import CAUSES, rig_under
 
 import inerter as it
-from inerter.identification.explaining import Causes, hypotheses
+from inerter.identification.diagnosis import Causes, hypotheses
 from inerter.identification.fit import Misfit
 from inerter.identification.intervals import fit_by_secants, robust_cost
-from inerter.identification.problem import apart
+from inerter.identification.problem import map_problems
 from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
@@ -107,7 +107,7 @@ def test_causes_are_made_anew_in_another_process() -> None:
     there, other = pickle.loads(pickle.dumps((causes, problem)))
     assert there.made is None
     assert [h.name for h in there.of(other)] == here
-    assert apart(lambda p, n: there.of(p)[n].name, [(other, n) for n in range(len(here))]) == here
+    assert map_problems(lambda p, n: there.of(p)[n].name, [(other, n) for n in range(len(here))]) == here
 
 
 @pytest.mark.marathon

@@ -1,4 +1,4 @@
-"""What `identify` is given: records that count once each, and a model, which may be named."""
+"""Arguments of `identify`: distinct records, and a model, which may be given by name."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from inerter.networks.elements import Network
 from inerter.records.record import Record
 
 _FEWEST = 4  # samples of two records at the same times that show that they are the same
-_SAME = 1e-9  # of the largest value: differences that other units and formats leave of one and the same sample
+_SAME = 1e-9  # of the largest value: differences of one sample by conversion of units and formats
 
 
 def checked_records(records: object) -> list[Record]:
@@ -26,19 +26,20 @@ def checked_records(records: object) -> list[Record]:
     given = [records] if isinstance(records, Record) else list(records) if isinstance(records, Sequence) else []
     if not given or not all(isinstance(r, Record) for r in given):
         raise IdentificationError(
-            f"identify(...) takes a record or a list of records, such as [read_record('bench.csv')], got {records!r}."
+            f"identify(...) requires a record or a list of records, such as [read_record('bench.csv')], got "
+            f"{records!r}."
         )
     for (i, one), (j, other) in combinations(enumerate(given, 1), 2):
         if share_samples(one, other):
             raise IdentificationError(
-                f"Record {i} ({one.source}) and record {j} ({other.source}) hold the same samples, which would count "
-                f"twice and make the intervals too narrow: leave one of them out."
+                f"Record {i} ({one.source}) and record {j} ({other.source}) contain the same samples, which would "
+                f"count twice and make the intervals too narrow. Leave one of them out."
             )
     return given
 
 
 def share_samples(one: Record, other: Record) -> bool:
-    """Whether all that two records have at the same times is the same, as of a record and a part or copy of it."""
+    """Whether two records are equal at all common times, as a record and a part or copy of it."""
     tick = 1e-3 * one.interval
     _, mine, its = np.intersect1d(np.round(one.time / tick), np.round(other.time / tick), return_indices=True)
     moves = mine.size >= _FEWEST and float(np.ptp(one.displacement[mine])) > 0.0
@@ -49,7 +50,7 @@ def share_samples(one: Record, other: Record) -> bool:
 
 
 def model_of(model: object) -> Network:
-    """A device as it is, or one of `MODELS` by its name.
+    """The device itself, or one of `MODELS` by its name.
 
     Raises `IdentificationError` for anything else.
     """
@@ -60,6 +61,6 @@ def model_of(model: object) -> Network:
     close = get_close_matches(model.lower(), MODELS, n=1) if isinstance(model, str) else []
     hint = f" Did you mean {close[0]!r}?" if close else ""
     raise IdentificationError(
-        f"There is no model {model!r} (there are: {', '.join(MODELS)}).{hint} Or write one of your own, such as "
+        f"model: unknown model {model!r}; available: {', '.join(MODELS)}.{hint} Or define a network, such as "
         f"Spring(free(1e5, 1e7, name='ks')) - Inerter(free(1, 500, name='b'))."
     )

@@ -1,4 +1,4 @@
-"""The unknowns of a fit: free values of the device and of the sensors, and the coordinates in which they are sought."""
+"""The unknowns of a fit: free values of the device and of the sensors, and their search coordinates."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ Matrix = NDArray[np.float64]
 class Space:
     """Names, units and bounds of the unknowns, in the order of every vector here.
 
-    Coordinates are logarithms where the lower bound is positive, else the value over its upper bound: sizes then
-    differ little, and stiffnesses of any order of magnitude are alike.
+    Coordinates are logarithms where the lower bound is positive, else the value over its upper bound, so that their
+    scales are similar for values of any order of magnitude.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     lower: Matrix
     upper: Matrix
-    kinds: tuple[type[Element] | None, ...]  # of the element; None for what hypotheses add
+    kinds: tuple[type[Element] | None, ...]  # of the element; None for unknowns of hypotheses
 
     @property
     def logarithmic(self) -> NDArray[np.bool_]:
@@ -35,7 +35,7 @@ class Space:
 
     @property
     def nonlinear(self) -> NDArray[np.bool_]:
-        """Which unknowns are frictions and gaps."""
+        """Mask of the unknowns that are frictions and gaps."""
         return np.array([kind is not None and kind.switch is not None for kind in self.kinds])
 
     @property
@@ -52,15 +52,15 @@ class Space:
         values = np.where(log, np.exp(np.where(log, coordinates, 0.0)), coordinates * self.upper)
         return np.clip(values, self.lower, self.upper)
 
-    def named(self, coordinates: Matrix) -> dict[str, float]:
+    def values_by_name(self, coordinates: Matrix) -> dict[str, float]:
         return dict(zip(self.names, map(float, self.to_values(coordinates)), strict=True))
 
-    def placed(self, values: Mapping[str, float]) -> Matrix:
+    def coordinates_of(self, values: Mapping[str, float]) -> Matrix:
         """Coordinates of named values, moved within the bounds."""
         array = np.array([values[name] for name in self.names])
         return self.to_coordinates(np.clip(array, self.lower, self.upper))
 
-    def placed_one(self, index: int, value: float) -> float:
+    def coordinate_of(self, index: int, value: float) -> float:
         """Coordinate of one value, moved within its bounds."""
         value = min(max(value, float(self.lower[index])), float(self.upper[index]))
         return float(np.log(value) if self.lower[index] > 0.0 else value / self.upper[index])

@@ -1,4 +1,4 @@
-"""The staged protocol of Wang and Su (2008), section 4: friction alone, then the shaft, then a look at frequencies."""
+"""The staged protocol of Wang and Su (2008), section 4: friction, then shaft and backlash, then frequency response."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import IdentificationError, Status
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit, Parameter
 from inerter.identification.friction_law import FrictionLaw, friction_law
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.identify import identify
-from inerter.identification.kinds import FitFinding
 from inerter.identification.models import MODELS
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Element, Free, Network, free
@@ -34,10 +34,10 @@ from inerter.simulation.simulate import simulate
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
-_LIGHT = 1.0  # [kg] of a shaft that is not known, for the friction test alone
-_NARROWEST = 1e-3  # of the friction: the least range in which the second stage may move it
+_LIGHT = 1.0  # [kg] of an unknown shaft, for the friction test alone
+_NARROWEST = 1e-3  # of the friction: the smallest range in the second stage
 _FRICTION, _INERTANCE = "f", "b"
-_CLOSE = (0.05, math.radians(3.0))  # of gain and phase, within which a band agrees whatever the scatter
+_CLOSE = (0.05, math.radians(3.0))  # of gain and phase, within which a band agrees for any scatter
 _STEP = 2e-4  # [s] of the simulation of the friction test, at most
 
 
@@ -65,15 +65,15 @@ class Band:
 
     @property
     def verdict(self) -> str:
-        """For a reader."""
+        """The verdict in words."""
         how = "agrees" if self.agrees else "differs"
-        sizes = f"gain is {_signed(100.0 * self.gain)} %, its phase {_signed(math.degrees(self.phase))} degrees off"
+        gain, phase = _format_signed(100.0 * self.gain), _format_signed(math.degrees(self.phase))
         band = f"{self.lower:.3g} to {self.upper:.3g}" if self.lines > 1 else f"{self.lower:.3g}"
-        return f"{band} Hz: {how}; the model's {sizes}."
+        return f"{band} Hz: {how}; deviation of the model {gain} % in gain, {phase} degrees in phase."
 
 
-def _signed(value: float) -> str:
-    """With its sign, and without one where it rounds to nothing."""
+def _format_signed(value: float) -> str:
+    """The value with its sign, and without one where it rounds to zero."""
     text = f"{value:+.1f}"
     return "0.0" if float(text) == 0.0 else text
 
@@ -97,7 +97,7 @@ class Staged:
     identifiable: dict[str, Identifiability]
     device: Network  # with the best values
     friction: FrictionTest
-    fit: Fit  # of the second stage, in which the friction could move within its interval
+    fit: Fit  # of the second stage, in which the friction is free within its interval
     response: ResponseCheck | None
     status: Status
     findings: tuple[Finding, ...] = ()
@@ -130,21 +130,21 @@ def staged(
     """The parameters of a ball-screw inerter from three short tests, one after the other.
 
     **Friction.** `friction` is of the device without its flywheel, moved slowly: its force is a square wave, whose
-    level is f. What the shaft alone weighs, `shaft_inertance` [kg], is taken away if it is given.
-    **Shaft and backlash.** `fit` is of the whole device in a faster motion: least squares give k_s, c_s and the
-    backlash, and the inertance unless `inertance` [kg] is given, such as from the geometry. The friction may move
-    within its interval, so that the intervals of the others know of its uncertainty.
-    **Check.** `check`, a sweep or multisine, was fitted to by nothing: its frequency response is compared, octave by
-    octave, with the identified device's at the same amplitude. An octave agrees if model and measurement differ by no
-    more than the measurement's own 95 % band, or by 5 % and 3 degrees.
+    level is f. The inertia of the shaft alone, `shaft_inertance` [kg], is subtracted if it is given. **Shaft and
+    backlash.** `fit` is of the whole device in a faster motion: least squares give k_s, c_s and the backlash, and the
+    inertance unless `inertance` [kg] is given, such as from the geometry. The friction is free within its interval, so
+    that the intervals of the others include its uncertainty. **Validation.** `check`, a sweep or multisine, is not
+    fitted: its frequency response is compared, octave by octave, with that of the identified device at the same
+    amplitude. An octave agrees if model and measurement differ by no more than the 95 % band of the measurement, or by
+    5 % and 3 degrees.
 
-    `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other needs a friction named f, and an
-    inerter named b. `seed` and `starts` are those of `identify`, and so is an `executor`.
+    `model` is by default the ball screw of Wang and Su (2008), Figure 6b; any other requires a friction named f and an
+    inerter named b. `seed`, `starts` and `executor` are those of `identify`.
 
     Raises `IdentificationError` where the friction is not identifiable or the model does not fit; `RecordError` and
     `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
     """
-    device = _checked(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
+    device = _validate_model(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
     law = friction_law(friction, shaft_inertance or 0.0)
     if not law.level > 0.0 or not math.isfinite(law.interval[1]):
         raise IdentificationError(
@@ -153,11 +153,11 @@ def staged(
         )
     half = max(law.level - law.interval[0], _NARROWEST * law.level)
     within = free(max(law.level - half, 0.0), law.level + half, _FRICTION)
-    found = identify(fit, _with(device, _FRICTION, within), progress=progress, executor=executor, **search)
+    found = identify(fit, _with_value(device, _FRICTION, within), progress=progress, executor=executor, **search)
     parameters, identifiable = dict(found.parameters), dict(found.identifiable)
     parameters[_FRICTION], identifiable[_FRICTION] = _friction(law)
     values = {name: p.best for name, p in parameters.items()}
-    best = with_values(_with(device, _FRICTION, within), values)
+    best = with_values(_with_value(device, _FRICTION, within), values)
     order = [e.label for e in device.elements() if e.label in parameters]
     response = None if check is None else _response(best, check)
     return Staged(
@@ -172,20 +172,20 @@ def staged(
     )
 
 
-def _checked(model: Network, inertance: float | None, shaft_inertance: float | None) -> Network:
+def _validate_model(model: Network, inertance: float | None, shaft_inertance: float | None) -> Network:
     device = Rig(model).device
     labels = {e.label for e in device.elements()}
     if not {_FRICTION, _INERTANCE} <= labels:
         raise IdentificationError(
-            f"The staged protocol needs a friction named f and an inerter named b, got {', '.join(sorted(labels))}."
+            f"The staged protocol requires a friction named f and an inerter named b, got {', '.join(sorted(labels))}."
         )
     for what, value in (("inertance", inertance), ("inertance of the shaft", shaft_inertance)):
         if value is not None:
             check_positive(IdentificationError, f"The {what}", value, "kg")
-    return device if inertance is None else _with(device, _INERTANCE, inertance)
+    return device if inertance is None else _with_value(device, _INERTANCE, inertance)
 
 
-def _with(device: Network, label: str, value: float | Free) -> Network:
+def _with_value(device: Network, label: str, value: float | Free) -> Network:
     def change(element: Element) -> Network:
         return element.with_value(value) if element.label == label else element
 
@@ -201,7 +201,7 @@ def _friction(law: FrictionLaw) -> tuple[Parameter, Identifiability]:
 
 def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_inertance: float | None) -> FrictionTest:
     """The device without its flywheel on the smoothed motion of the test."""
-    shaft = _with(device, _INERTANCE, shaft_inertance or _LIGHT)
+    shaft = _with_value(device, _INERTANCE, shaft_inertance or _LIGHT)
     motion = smooth_displacement(record)
     every = math.ceil(record.interval / _STEP * (1.0 - 1e-9))
     moved = Signal.sampled(
@@ -227,7 +227,7 @@ def _response(device: Network, record: Record) -> ResponseCheck:
 
 
 def _bands(measured: Response, model: Response) -> list[Band]:
-    """Octaves from the lowest frequency that both have."""
+    """Octaves from the lowest common frequency."""
     both = np.abs(model.omega[:, None] / measured.omega - 1.0) < 1e-6
     mine, its = np.nonzero(both)
     if not mine.size:

@@ -1,8 +1,8 @@
-"""What may be wrong with a model or the sensors where a fit leaves more than sound sensors would.
+"""Diagnosis of a misfit: possible causes in the model or the sensors where the residual exceeds sensor noise.
 
-Each hypothesis is fitted from the best fit on, device and all, to the part that was fitted, and judged by how much of
-what was left on the check part it explains. All are fitted by a few steps of which each takes one simulation; only
-those that come closest are fitted to the end (decision 0056).
+Each hypothesis is fitted together with the device, from the best fit, to the estimation data, and assessed by the share
+of the residual on the validation data that it explains. All are fitted by a few steps of one simulation each; only the
+best of them are fitted to convergence (decision 0056).
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, Misfit
-from inerter.identification.guess import chain_of
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
+from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
-from inerter.identification.judging import Judge
 from inerter.identification.laws import laws
-from inerter.identification.problem import FitProblem, apart
+from inerter.identification.parameter_space import Space, space_of
+from inerter.identification.possible_causes import Suspect
+from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import faulty_samples, recording_faults
+from inerter.identification.residual_tests import Judge
 from inerter.identification.search import improve
-from inerter.identification.space import Space, space_of
-from inerter.identification.suspects import Suspect
 from inerter.networks.elements import Free
 from inerter.records.dropouts import find_dropouts, insert_samples
 from inerter.vehicle.rig import Rig
@@ -36,27 +36,27 @@ from inerter.work.running import over_threads
 Matrix = NDArray[np.float64]
 _ROUNDS, _MORE_ROUNDS = 6, 10  # steps of a rough fit from each start, and from where the best of them ended
 _ROUGH = 1e-3  # change of the cost at which a rough fit ends
-_FITTED = 5  # hypotheses that are fitted to the end
+_FITTED = 5  # hypotheses that are fitted to convergence
 _EVALUATIONS, _ACCURACY = 25, 1e-5
-_FAR = 2.0  # excess of fits that may be far from the best ones, of which so many are begun once more ...
+_FAR = 2.0  # excess of fits that may not have converged, of which so many are restarted ...
 _RESTARTED, _FIRST, _FIRST_EVALUATIONS = 3, 1 / 2, 12  # ... over the first part of the information
-_DAMPED = 3e-3  # [s] damping of a shaft over its stiffness, where nothing is known
-_BESIDE = 30  # samples to either side of lost ones, which the put-in motion makes too uncertain to compare
-_LITTLE = 0.05  # of the size at which an unknown would be seen, where to begin
-_AS_GOOD = 0.02  # of a misfit: what two explanations may differ by and explain as much
-_STEP = 0.02  # of what a hypothesis would be seen at, for differences
+_DAMPED = 3e-3  # [s] default damping of a shaft over its stiffness
+_BESIDE = 30  # samples to either side of dropped ones, where the interpolated motion is too uncertain to compare
+_LITTLE = 0.05  # of the detectable size of an unknown: starting value
+_AS_GOOD = 0.02  # of a misfit: difference within which two explanations count as equally good
+_STEP = 0.02  # of the detectable size of an unknown, for differences
 
 
 @dataclass(eq=False)
 class Causes:
-    """Hypotheses on a misfit. Another process makes them anew: what they do to a motion or a force cannot be sent."""
+    """Hypotheses on a misfit. Each process builds them, because their functions cannot be pickled."""
 
     before: Misfit
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
 
     def of(self, problem: FitProblem) -> list[Hypothesis]:
-        """Without a misfit those that are known anyway."""
+        """Hypotheses of the problem; without a misfit only those that the records show."""
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
@@ -64,13 +64,13 @@ class Causes:
         return self.made
 
     def __getstate__(self) -> dict[str, object]:
-        """Without what is made anew."""
+        """State without the hypotheses, which each process builds."""
         return {**vars(self), "made": None}
 
 
 @dataclass(frozen=True, eq=False)
 class Attempt:
-    """A hypothesis by its number, a point from which to fit it, the steps there, and the cost that it came to."""
+    """A hypothesis by its number, the point from which to fit it, the steps there, and the cost reached."""
 
     number: int
     point: Matrix
@@ -82,24 +82,31 @@ class Attempt:
 def explanations(
     problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit, places: Sequence[Localisation] = ()
 ) -> list[Explanation]:
-    """Every hypothesis with what it explains of a misfit, the likeliest first; without one, what is known anyway.
+    """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
-    `places` is where the misfit is in each record. All hypotheses are fitted roughly, by secants, and those that
-    explain most are fitted to the end. Of those that explain about as much, that with fewer unknowns is the likelier.
+    Without a misfit only the hypotheses that the records show. `places` localises the misfit in each record. All
+    hypotheses are fitted roughly, by secants, and those that explain most are fitted to convergence. Of those that
+    explain about as much, that with fewer unknowns is the more likely.
     """
     causes = Causes(before, places)
     every = causes.of(problem)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
     slopes = known.jacobian(optimum.point, steps_of(optimum)) if every else np.zeros((0, 0))
-    rough = partial(_roughly_fitted, causes, by, optimum, slopes)
-    first = apart(rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every)))
+    rough = partial(_fit_roughly, causes, by, optimum, slopes)
+    first = map_problems(
+        rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every))
+    )
     first.sort(key=lambda attempt: attempt.cost)
     best = first[:_FITTED]
-    last = apart(partial(_fitted, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best)))
+    last = map_problems(
+        partial(_fit_fully, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best))
+    )
     last.sort(key=lambda attempt: attempt.cost)
     if last and not before.sound and all(a.explanation.misfit.excess > _FAR for a in last):
-        restart = partial(_fitted_from_a_stiff_shaft, causes, by)
-        again = apart(restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED))
+        restart = partial(_refit_from_stiff_shaft, causes, by)
+        again = map_problems(
+            restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED)
+        )
         last[:_RESTARTED] = again
     found: dict[Suspect, Explanation] = {}
     for e in (a.explanation for a in (*last, *first[_FITTED:])):
@@ -109,7 +116,7 @@ def explanations(
 
 
 def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list[Hypothesis]:
-    """All that are not assumed already, and that these records could show."""
+    """All hypotheses that are not assumed already and that these records could show."""
     chain = chain_of(problem.rig.device)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
@@ -121,7 +128,7 @@ def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list
 
 
 def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
-    """Samples that the displacement shows to be lost, put in again; None if there are none."""
+    """Hypothesis of dropped samples that the displacement shows, interpolated; None if there are none."""
     whole: dict[int, tuple[Experiment, NDArray[np.bool_]]] = {}
     places = []
     for e in experiments:
@@ -133,7 +140,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
     if not whole:
         return None
 
-    def moved(e: Experiment, values: Values) -> Experiment:
+    def change_motion(e: Experiment, values: Values) -> Experiment:
         return whole[id(e.record)][0] if id(e.record) in whole else e
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
@@ -143,11 +150,13 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
                 return np.where(doubtful, other.record.force, force)[measured]
         return force
 
-    return Hypothesis(Suspect.LOST_SAMPLES, moved=moved, read=read, details=lambda values: {"places": tuple(places)})
+    return Hypothesis(
+        Suspect.LOST_SAMPLES, change_motion=change_motion, read=read, details=lambda values: {"places": tuple(places)}
+    )
 
 
-def _under(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
-    """The problem with one more hypothesis."""
+def _with_hypothesis(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
+    """The problem with one further hypothesis."""
     assumed = (*problem.assumed, hypothesis)
     if hypothesis.device is None:
         return replace(problem, space=space_of(problem.rig, assumed), assumed=assumed)
@@ -155,15 +164,16 @@ def _under(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
     return replace(problem, rig=rig, space=space_of(rig, assumed), assumed=assumed, systems={})
 
 
-def _roughly_fitted(
+def _fit_roughly(
     causes: Causes, by: Judge, optimum: BestFit, slopes: Matrix, problem: FitProblem, number: int
 ) -> Attempt:
-    """The best of a few steps from each start of a hypothesis, and some more with derivatives of where it ended.
+    """The best of a few steps from each start of a hypothesis, and further ones with derivatives at its end.
 
-    At the starts derivatives by what the model has too are those at its best fit, unless the device is another one.
+    At the starts derivatives by the parameters of the model are those at its best fit, unless the device is another
+    one.
     """
     hypothesis = causes.of(problem)[number]
-    other = _under(problem, hypothesis)
+    other = _with_hypothesis(problem, hypothesis)
     names, space = problem.space.names, other.space
     shared = [n for n in space.names if n in names and hypothesis.device is None]
     own = [i for i, n in enumerate(space.names) if n not in shared]
@@ -181,19 +191,19 @@ def _roughly_fitted(
     return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes.before))
 
 
-def _fitted(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
-    """The attempt fitted to the end."""
+def _fit_fully(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+    """The attempt fitted to convergence."""
     hypothesis = causes.of(problem)[attempt.number]
-    other = _under(problem, hypothesis)
+    other = _with_hypothesis(problem, hypothesis)
     fit = best_fit_of(other, attempt.point, attempt.steps, _EVALUATIONS, _ACCURACY)
     return replace(
         attempt, point=fit.point, cost=fit.cost, explanation=_explanation(other, fit, hypothesis, by, causes.before)
     )
 
 
-def _fitted_from_a_stiff_shaft(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
-    """What an attempt comes to from a stiff shaft on, over the first part of the records at first; or itself."""
-    other = _under(problem, causes.of(problem)[attempt.number])
+def _refit_from_stiff_shaft(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+    """The attempt refitted from a stiff shaft, first over the first part of the records; or the attempt if better."""
+    other = _with_hypothesis(problem, causes.of(problem)[attempt.number])
     start = _with_stiff_shaft(other, attempt.point)
     if start is None:
         return attempt
@@ -201,32 +211,32 @@ def _fitted_from_a_stiff_shaft(causes: Causes, by: Judge, problem: FitProblem, a
     point, _, _, _ = improve(first, start, _FIRST_EVALUATIONS, attempt.steps, ROBUST, _ROUGH)
     if robust_cost(other.residual(point)) >= attempt.cost:
         return attempt
-    return min(attempt, _fitted(causes, by, problem, replace(attempt, point=point)), key=lambda a: a.cost)
+    return min(attempt, _fit_fully(causes, by, problem, replace(attempt, point=point)), key=lambda a: a.cost)
 
 
 def _with_stiff_shaft(problem: FitProblem, point: Matrix) -> Matrix | None:
-    """The point with a shaft half-way to the stiffest one, in logarithms; None of a device without a free shaft.
+    """The point with a shaft half-way to the stiffest one, in logarithms; None for a device without a free shaft.
 
-    A wrong model may have ended up with a shaft far too soft, between which and the right one the cost has other
-    valleys; from a stiff one it slopes down.
+    A wrong model may have ended with a far too compliant shaft, separated from the right one by further local minima;
+    from a stiff one the cost decreases.
     """
     chain = chain_of(problem.rig.device)
     spring, damper = (None, None) if chain is None else (chain.spring, chain.damper)
     if spring is None or not isinstance(spring.value, Free):
         return None
-    values = problem.space.named(point)
+    values = problem.space.values_by_name(point)
     stiffness = math.sqrt(values[str(spring.value.name)] * spring.value.upper)
     values[str(spring.value.name)] = stiffness
     if damper is not None and isinstance(damper.value, Free):
         values[str(damper.value.name)] = _DAMPED * stiffness
-    return problem.space.placed(values)
+    return problem.space.coordinates_of(values)
 
 
 def _starts(
     problem: FitProblem, optimum: BestFit, other: FitProblem, hypothesis: Hypothesis
 ) -> Iterator[tuple[Matrix, Matrix]]:
-    """Points to begin a fit at, and the steps of differences there."""
-    space, known = other.space, problem.space.named(optimum.point)
+    """Starting points of a fit, and the steps of differences there."""
+    space, known = other.space, problem.space.values_by_name(optimum.point)
     widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
     sizes = {u.name: u.size for u in hypothesis.unknowns}
     zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
@@ -235,24 +245,24 @@ def _starts(
     for start in hypothesis.starts:
         seen = {**sizes, **start}
         steps = [widths.get(n) or alike.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)]
-        yield space.placed({**known, **zero, **begun, **start}), np.array(steps)
+        yield space.coordinates_of({**known, **zero, **begun, **start}), np.array(steps)
 
 
 def _step(space: Space, i: int, size: float) -> float:
-    """Of a coordinate that would be seen at this size, for differences."""
+    """Step of a coordinate for differences, from its detectable size."""
     return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
 
 
 def _explanation(problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: Misfit) -> Explanation:
     space, point = problem.space, fit.point
     after = by.misfit(problem, point, hypothesis.slow)
-    values = space.named(point)
+    values = space.values_by_name(point)
     errors = fit.errors * space.slopes(point)
     own = {u.name for u in hypothesis.unknowns}
     parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
     return Explanation(
         name=hypothesis.name,
-        explained=min((_explained(now, then) for now, then, limit in parts if then > limit), default=1.0),
+        explained=min((_explained_share(now, then) for now, then, limit in parts if then > limit), default=1.0),
         misfit=after,
         values={name: values[name] for name in own},
         estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},
@@ -260,6 +270,6 @@ def _explanation(problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: 
     )
 
 
-def _explained(now: float, then: float) -> float:
-    """Part of a misfit that is gone."""
+def _explained_share(now: float, then: float) -> float:
+    """Share of a squared misfit that is explained."""
     return 1.0 - max(now**2 - 1.0, 0.0) / (then**2 - 1.0)

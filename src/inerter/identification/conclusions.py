@@ -1,4 +1,4 @@
-"""From the best fit to what can be said of it: whether it explains the records, what else would, and intervals."""
+"""Conclusions from the best fit: whether it explains the records, possible causes of a misfit, and intervals."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.identification.explaining import explanations
+from inerter.identification.diagnosis import explanations
+from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import BestFit
-from inerter.identification.kinds import FitFinding
 from inerter.identification.localising import localisation_of
-from inerter.identification.models import unmounted
+from inerter.identification.models import without_mount
 from inerter.identification.options import FitOptions
 from inerter.identification.planning import advice
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit
-from inerter.identification.sticking import silent
+from inerter.identification.sticking import is_unobservable
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import Guard, Linear
@@ -32,43 +32,43 @@ from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
-_SATURATED = 0.2  # of the samples, from which on a record says little
+_SATURATED = 0.2  # of the samples, above which a record is unreliable
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
 _NOTICED = 0.05  # of the friction: an offset that may be one of the friction
-_OTHERS = 2  # explanations besides the likeliest that are named
-_MOST = 0.5  # of the misfit: a hypothesis that explains less is no likely one
+_OTHERS = 2  # explanations after the most likely that are named
+_MOST = 0.5  # of the misfit: a hypothesis that explains less is not likely
 
 
 def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
-    """What follows from a solution. Where it leaves more than the sensors would, hypotheses are tried if `explain`."""
+    """The fit that follows from a solution. Where the residual exceeds sensor noise, causes are sought if `explain`."""
     problem, optimum, found = solution.problem, solution.optimum, solution.profiles
     space = problem.space
     comparisons = _comparisons(solution)
-    values = space.named(optimum.point)
+    values = space.values_by_name(optimum.point)
     slopes = space.slopes(optimum.point)
     covariance = _covariance(solution)
     report("where the misfit is", 0, len(comparisons))
     where = () if solution.misfit.sound else tuple(localisation_of(c, solution.options.seed) for c in comparisons)
     likely = explanations(problem, optimum, solution.judge, solution.misfit, where) if explain else []
-    findings = (*solution.findings, *_of_offsets(problem, values, comparisons), *_of_masses(problem))
-    findings = (*findings, _of_scales(solution))
+    findings = (*solution.findings, *_offset_findings(problem, values, comparisons), *_mass_findings(problem))
+    findings = (*findings, _scale_finding(solution))
     draft = Fit(
         parameters={}, identifiable={}, correlation=_correlation(covariance),
         covariance=covariance * np.outer(slopes, slopes),
-        device=unmounted(with_values(problem.rig.device, values)), comparisons=comparisons,
+        device=without_mount(with_values(problem.rig.device, values)), comparisons=comparisons,
         criterion=_criterion(problem, optimum), costs=solution.costs, simulations=0, predicted=solution.predicted,
         misfit=solution.misfit, explanations=tuple(likely), localisations=where, findings=findings,
         settings=_settings(solution.options),
     )  # fmt: skip
-    doubt = doubt_of(draft)
-    stuck = silent(optimum) if solution.adhesion else np.zeros(len(space.names), dtype=bool)
+    doubt = find_doubt(draft)
+    stuck = is_unobservable(optimum) if solution.adhesion else np.zeros(len(space.names), dtype=bool)
     parameters, identifiable = {}, {}
     for i, name in enumerate(space.names):
         p = _parameter(solution, i, values[name])
         held = solution.adhesion.of(i) if stuck[i] else None
         verdict = replace(identifiability(p, found[i], space, i, comparisons), held=held)
-        p, verdict = (p, verdict) if doubt is None else _withheld(p, verdict, draft)
+        p, verdict = (p, verdict) if doubt is None else _withhold(p, verdict, draft)
         parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
     planned = [] if doubt is not None else list(suggestions(space, parameters, identifiable, comparisons))
     if doubt is None and explain:
@@ -84,8 +84,8 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     )
 
 
-def doubt_of(fit: Fit) -> Finding | None:
-    """Why a fit is not to be relied on, with the likeliest reason; None if it is."""
+def find_doubt(fit: Fit) -> Finding | None:
+    """Reason why the estimates are unreliable, with the most likely cause; None if they are reliable."""
     lost = sum(float(saturated_samples(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     best = _likeliest(fit)
     if fit.predicted < ENOUGH and best is None:
@@ -101,13 +101,13 @@ def doubt_of(fit: Fit) -> Finding | None:
 
 
 def _likeliest(fit: Fit) -> Explanation | None:
-    """The best explanation, if it explains most."""
+    """The best explanation, if it explains most of the misfit."""
     best = fit.explanations[0] if fit.explanations else None
     return best if best is not None and best.explained >= _MOST else None
 
 
 def _misfit(fit: Fit, best: Explanation | None) -> Finding:
-    """A wrong model or sensor."""
+    """Finding of a wrong model or sensor."""
     explained = 100.0 * max(fit.explained, 0.0) if fit.explained < ENOUGH else None
     as_good = [e for e in fit.explanations[1:] if e.misfit.sound][:_OTHERS]
     patterns = [pattern for place in fit.localisations for pattern in place.patterns[:1]]
@@ -118,10 +118,10 @@ def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
 
 
-def _of_offsets(
+def _offset_findings(
     problem: FitProblem, values: Mapping[str, float], comparisons: Sequence[RecordFit]
 ) -> Iterator[Finding]:
-    """What an offset of the load cell may be instead."""
+    """Findings of offsets that may be asymmetric friction instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
     friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
     for c in comparisons:
@@ -129,19 +129,19 @@ def _of_offsets(
             yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
 
 
-def _of_masses(problem: FitProblem) -> Iterator[Finding]:
-    """What an inertance may be besides."""
+def _mass_findings(problem: FitProblem) -> Iterator[Finding]:
+    """Findings of inertances that include an unknown fixture mass."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
     free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
         yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
 
 
-def _withheld(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
-    """A parameter of a fit that is not to be relied on: no value, and at most a range that explanations give it.
+def _withhold(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
+    """A parameter of an unreliable fit: no value, and at most a range under explanations.
 
-    An interval is one of a right model. Where hypotheses explain all of a misfit, the range holds the values under each
-    of them, and the profile's; it is no confidence interval.
+    Confidence intervals require a correct model. Where hypotheses explain all of a misfit, the range includes the
+    values under each of them, and that of the profile; it is not a confidence interval.
     """
     right = [e for e in fit.explanations if e.misfit.excess <= _FAIRLY]
     none = replace(p, standard_error=math.nan, profile=())
@@ -158,7 +158,7 @@ def _ends(value: float, error: float) -> tuple[float, float]:
 
 
 def _parameter(solution: SolvedFit, i: int, best: float) -> Parameter:
-    """A parameter with its interval and its standard error, both with the errors of scale that are stated."""
+    """A parameter with its interval and its standard error, both with the stated uncertainties of scale."""
     optimum, space, profile = solution.optimum, solution.problem.space, solution.profiles[i]
 
     def value(coordinate: float) -> float:
@@ -170,7 +170,7 @@ def _parameter(solution: SolvedFit, i: int, best: float) -> Parameter:
     error = float(optimum.errors[i] * space.slopes(optimum.point)[i])
     if solution.scales is not None:
         known = profile.lower.known, profile.upper.known
-        interval = solution.scales.widened(i, interval, best, known)
+        interval = solution.scales.widen(i, interval, best, known)
         error = math.hypot(error, float(solution.scales.errors[i]))
     return Parameter(
         name=space.names[i],
@@ -178,7 +178,7 @@ def _parameter(solution: SolvedFit, i: int, best: float) -> Parameter:
         value=best,
         interval=interval,
         best=best,
-        standard_error=math.nan if solution.adhesion and silent(optimum)[i] else error,
+        standard_error=math.nan if solution.adhesion and is_unobservable(optimum)[i] else error,
         profile=tuple((value(x), rise) for x, rise in profile.points),
     )
 
@@ -190,20 +190,20 @@ def _settings(options: FitOptions) -> dict[str, object]:
 
 
 def _covariance(solution: SolvedFit) -> Matrix:
-    """The covariance of the coordinates, with that of the scales; nan where the records do not depend on one at all."""
+    """The covariance of the coordinates, with that of the scales; nan where the records do not depend on one."""
     optimum, space = solution.optimum, solution.problem.space
     covariance = optimum.covariance
     if solution.scales is not None:
         slopes = space.slopes(optimum.point)
         covariance = covariance + solution.scales.covariance / np.outer(slopes, slopes)
     if solution.adhesion:
-        unseen = silent(optimum)
+        unseen = is_unobservable(optimum)
         covariance = np.where(unseen[:, None] | unseen[None, :], np.nan, covariance)
     return np.asarray(covariance)
 
 
-def _of_scales(solution: SolvedFit) -> Finding:
-    """What the values include that no record shows, and by how much it is known."""
+def _scale_finding(solution: SolvedFit) -> Finding:
+    """Finding of the uncertainties that the values include but no record shows."""
     options = solution.options
     scales = {n: getattr(options, n) for n in ("force_scale", "displacement_scale")}
     masses = [m for e in solution.problem.experiments if (m := e.record.fixture_mass_error) is not None]
@@ -215,13 +215,13 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
     for n, (e, checked) in enumerate(zip(problem.experiments, solution.checked, strict=True)):
-        answer = problem.answer(e, optimum.point)
+        answer = problem.simulate(e, optimum.point)
         assert answer is not None
         force, run = answer
         white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
         first += e.size
         gaps = {
-            _name_of(b): b.switch.middle
+            _label_of(b): b.switch.middle
             for b in problem.rig.device.elements()
             if b.switch is not None and b.switches_by(Guard.ELONGATION)
         }
@@ -245,8 +245,8 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
     return tuple(result)
 
 
-def _name_of(element: Element) -> str:
-    """As it is called in simulations of the problem."""
+def _label_of(element: Element) -> str:
+    """Label of an element in simulations of the problem."""
     return str(element.value.name) if isinstance(element.value, Free) else element.label
 
 

@@ -1,7 +1,7 @@
-"""What a fit leaves against what the errors of sound sensors would leave, on the fitted part and on the check part.
+"""Tests of the residual of a fit against sensor noise, on the estimation and the validation data.
 
-The spectrum and the size by which residuals are whitened here are those of records drawn with errors like those of the
-sensors, not the residuals' own: a residual cannot excuse itself.
+Residuals are whitened here by the spectrum and the size of simulated sensor noise, not by their own, which would hide a
+misfit.
 """
 
 from __future__ import annotations
@@ -20,25 +20,25 @@ from inerter.identification.fit import Misfit
 from inerter.identification.intervals import ROBUST
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.problem import FitProblem
-from inerter.identification.sensors import sound
+from inerter.identification.sensors import noise_residuals
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _LAGS = 20
-_INSTANTS = 100  # one sample of so many may be wrong without the model being so
-_SOUND, _CHANCE = 1.1, 3.0  # what a misfit may be, and standard deviations of that of sound sensors
+_INSTANTS = 100  # one sample of so many may be wrong with a correct model
+_SOUND, _CHANCE = 1.1, 3.0  # allowed misfit, plus standard deviations of that of sensor noise
 
 
 @dataclass(frozen=True, eq=False)
 class Judge:
-    """How the residuals of each record are judged: whitened by what sound sensors leave, over how much that is."""
+    """Whitenings of each record by simulated sensor noise, and the draws of that noise."""
 
     fitted: Sequence[Whitening]
     checked: Sequence[Whitening]
-    draws: Sequence[Matrix]  # (draws, samples) [N] that sound sensors leave of each record
+    draws: Sequence[Matrix]  # (draws, samples) [N] residuals of each record by sensor noise alone
 
     def misfit(self, problem: FitProblem, point: Matrix, slow: int | None = None) -> Misfit:
-        """Of the problem's device at a point, but for a polynomial of degree `slow` over time in each part.
+        """Normalised residual of the device at a point, without a polynomial of degree `slow` over time in each part.
 
         Infinite where it cannot be simulated.
         """
@@ -47,10 +47,10 @@ class Judge:
         for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
             if force is None:
                 return Misfit(np.inf, np.inf, limits)
-            centred.append(_centred(e.record.force - force, w) if problem.offset else e.record.force - force)
+            centred.append(_without_offset(e.record.force - force, w) if problem.offset else e.record.force - force)
         fitted, checked = (
             math.sqrt(
-                _mean_square(_without_slow(_compared(w, r), w, slow) for w, r in zip(ws, centred, strict=True)) / usual
+                _mean_square(_without_slow(_whiten(w, r), w, slow) for w, r in zip(ws, centred, strict=True)) / usual
             )
             for ws, (usual, _) in zip((self.fitted, self.checked), self._sound, strict=True)
         )
@@ -58,28 +58,28 @@ class Judge:
 
     @cached_property
     def _sound(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The mean square that the draws leave of each part, and what a misfit may be there."""
+        """Mean square of the draws on each part, and the allowed misfit there."""
         return self._usual(self.fitted), self._usual(self.checked)
 
     def _usual(self, whitenings: Sequence[Whitening]) -> tuple[float, float]:
-        """A misfit may be more by chance, and because no record of the sensors is quite like another."""
+        """Mean square of the draws, and the allowed misfit, which includes their scatter."""
         if not any(np.any(w.weight > 0.0) for w in whitenings):
             return math.nan, math.nan
         each = zip(*self.draws, strict=True)
-        squares = np.array([_mean_square(map(_compared, whitenings, draws)) for draws in each])
+        squares = np.array([_mean_square(map(_whiten, whitenings, draws)) for draws in each])
         sizes = np.sqrt(squares)
         return float(np.mean(squares)), _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
 
     def pattern(self, number: int, residual: Matrix) -> float:
-        """The p-value of residuals of one record no more autocorrelated than those of sound sensors are."""
+        """p-value of residuals of one record no more autocorrelated than those of sensor noise."""
         w = self.fitted[number]
-        usual = float(np.mean([portmanteau(_compared(w, draw)) for draw in self.draws[number]]))
-        return float(chi2.sf(portmanteau(_compared(w, _centred(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))
+        usual = float(np.mean([portmanteau(_whiten(w, draw)) for draw in self.draws[number]]))
+        return float(chi2.sf(portmanteau(_whiten(w, _without_offset(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))
 
 
 def judge_of(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: int) -> Judge | None:
-    """The judge of a device at a point, whose draws are of other errors than its whitening; None if it cannot move."""
-    known, draws = sound(problem, point, (seed, 5)), sound(problem, point, (seed, 6))
+    """The judge of a device at a point, with independent noise for draws and whitening; None if not simulated."""
+    known, draws = noise_residuals(problem, point, (seed, 5)), noise_residuals(problem, point, (seed, 6))
     if known is None or draws is None:
         return None
     rows = list(zip(known, problem.experiments, checked, strict=True))
@@ -89,7 +89,7 @@ def judge_of(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: 
 
 
 def check_parts(fitted: Sequence[Experiment], whole: Sequence[Experiment], leads: Sequence[float]) -> Iterator[Mask]:
-    """The samples of each record that are kept to check the fit."""
+    """Mask of the validation samples of each record."""
     for e, all_kept, lead in zip(fitted, whole, leads, strict=True):
         checked = all_kept.kept & ~e.kept
         checked[: round(lead / e.record.interval)] = False
@@ -98,7 +98,7 @@ def check_parts(fitted: Sequence[Experiment], whole: Sequence[Experiment], leads
 
 
 def mean_square(white: Matrix) -> float:
-    """Of whitened residuals but for the largest hundredth, such as of an impact that came too early.
+    """Mean square of whitened residuals without the largest hundredth, such as an impact that came too early.
 
     Those beyond 3 count less than their square.
     """
@@ -114,18 +114,18 @@ def portmanteau(white: Matrix) -> float:
     return n * (n + 2.0) * float(np.sum(rho**2 / (n - np.arange(1, _LAGS + 1))))
 
 
-def _compared(whitening: Whitening, residual: Matrix) -> Matrix:
+def _whiten(whitening: Whitening, residual: Matrix) -> Matrix:
     return whitening(residual)[whitening.weight > 0.0]
 
 
 def _mean_square(parts: Iterable[Matrix]) -> float:
-    """Of whitened residuals of all records; nan of none."""
+    """Mean square of whitened residuals of all records; nan if there are none."""
     white = np.concatenate(list(parts))
     return mean_square(white) if white.size else math.nan
 
 
 def _without_slow(white: Matrix, whitening: Whitening, degree: int | None) -> Matrix:
-    """Without what a polynomial over time makes of whitened residuals."""
+    """Whitened residuals without their least-squares polynomial over time."""
     if degree is None or not white.size:
         return white
     time = np.linspace(-1.0, 1.0, whitening.weight.size)
@@ -133,7 +133,7 @@ def _without_slow(white: Matrix, whitening: Whitening, degree: int | None) -> Ma
     return np.asarray(white - columns @ np.linalg.lstsq(columns, white)[0])
 
 
-def _centred(residual: Matrix, whitening: Whitening) -> Matrix:
-    """Without the offset of the load cell that the fitted part asks for."""
+def _without_offset(residual: Matrix, whitening: Whitening) -> Matrix:
+    """The residual without the offset of the load cell estimated from the fitted part."""
     column, white = whitening.of_offset(residual.size), whitening(residual)
     return residual - float(column @ white / max(float(column @ column), 1e-300))

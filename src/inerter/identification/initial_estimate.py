@@ -1,7 +1,7 @@
-"""A first guess without simulation, for devices whose parts follow each other: all of them feel the measured force.
+"""Initial estimate without simulation, for chains, whose parts in series all transmit the measured force.
 
-In a chain of an elastic part (k | c), a gap and an inertia (b | f | c2) the displacement is the sum of what each does
-under the force F that was measured: x of the spring with k x + c x' = F, +-gap while in contact, and y of the
+In a chain of an elastic part (k | c), a gap and an inertia (b | f | c2) the displacement is the sum of the elongations
+under the measured force F: x of the spring with k x + c x' = F, +-gap while in contact, and y of the
 inertia with b y'' + f sgn(y') + c2 y' = F. Two derivatives of the sum are linear in 1/b, f/b, 1/k and the gap once
 c/k and the signs are given. A filter s^2 / (s + w)^4 takes the derivatives, so that no noise is differentiated
 (state-variable filters, Young 1981); the signs follow from the estimates in a few rounds.
@@ -19,7 +19,7 @@ from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.kinds import FitFinding
+from inerter.identification.finding_texts import FitFinding
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
 from inerter.networks.elements.roles import Linear
 from inerter.records.filtering import low_pass
@@ -28,9 +28,9 @@ from inerter.records.finding import Finding
 Matrix = NDArray[np.float64]
 _ROUNDS = 4
 _TIMES = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 31)])  # [s] of c/k
-_FORCE_BAND = 200.0  # [Hz] in which contact is looked for
-_SLIGHT = 0.3  # share of the power in the apparent one, with less of which its sign says nothing
-_WELL, _POORLY = 0.04, 0.6  # relative half-widths of the ranges to look in
+_FORCE_BAND = 200.0  # [Hz] in which contact is detected
+_SLIGHT = 0.3  # share of the apparent power, below which the sign of the power is not significant
+_WELL, _POORLY = 0.04, 0.6  # relative half-widths of the search ranges
 
 
 _PLACES = {  # in a chain, of what is beside an inertia or not
@@ -45,14 +45,14 @@ _PLACES = {  # in a chain, of what is beside an inertia or not
 
 @dataclass(frozen=True)
 class Chain:
-    """The elements of a chain; a part that is not there is None."""
+    """The elements of a chain; None for an absent one."""
 
     spring: Element | None
     damper: Element | None
     gap: Element | None
     inerter: Element
     friction: Element | None
-    drag: Element | None  # a damper beside the inerter
+    drag: Element | None  # a damper in parallel with the inerter
 
     def network(self) -> Network:
         """The chain as a device."""
@@ -62,7 +62,7 @@ class Chain:
 
 
 def chain_of(device: Network) -> Chain | None:
-    """The device as such a chain, or None if it is none."""
+    """The device as such a chain; None if it is not a chain."""
     parts = device.parts if isinstance(device, Series) else (device,)
     found: dict[str, Element] = {}
     for part in parts:
@@ -80,10 +80,10 @@ def chain_of(device: Network) -> Chain | None:
 
 
 def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[float, float]]:
-    """Values of free elements, all but the gap, by name, each with the half-width of the range to look in."""
+    """Values of free elements except the gap, by name, each with the half-width of its search range."""
     best: dict[str, tuple[float, float]] = {}
     for experiment in experiments:
-        for element, value, width in _solved(chain, experiment)[1]:
+        for element, value, width in _regress(chain, experiment)[1]:
             if element is None or not isinstance(element.value, Free) or element.value.name is None:
                 continue
             name = element.value.name
@@ -93,10 +93,10 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
 
 
 def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[Finding]]:
-    """The experiment with the force counted as tension, and what was done to that end.
+    """The experiment with force positive in tension, and findings if it was reversed.
 
-    A device takes energy from the table, whatever it is made of; where it takes hardly any, a chain has to explain the
-    displacement with parts of positive size.
+    Every passive device dissipates energy; where it dissipates hardly any, a chain must explain the displacement with
+    positive values.
     """
     force = experiment.record.force - np.median(experiment.record.force)
     velocity, use = experiment.motion.velocity, experiment.kept
@@ -105,7 +105,7 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
     record = experiment.record.with_notes("Force reversed: tension is positive.", force=-experiment.record.force)
     turned = replace(experiment, record=record)
     if chain is not None and abs(share) < _SLIGHT:
-        right = _solved(chain, experiment)[0] <= _solved(chain, turned)[0]
+        right = _regress(chain, experiment)[0] <= _regress(chain, turned)[0]
     else:
         right = share >= 0.0
     if right:
@@ -113,8 +113,8 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
     return turned, [Finding(FitFinding.FORCE_REVERSED, "info", experiment.record.source)]
 
 
-def _solved(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Element | None, float, float]]]:
-    """What the regression leaves of the displacement, and the elements' values with the widths to look in."""
+def _regress(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Element | None, float, float]]]:
+    """Residual of the regression of the displacement, and the values of the elements with their search widths."""
     h, motion = experiment.record.interval, experiment.motion
     z, v = motion.displacement, motion.velocity
     F = experiment.record.force - (experiment.record.fixture_mass or 0.0) * motion.acceleration
@@ -126,24 +126,24 @@ def _solved(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Ele
     denominator = np.poly([-w] * 4)
     filters = [bilinear([w**4] + [0.0] * order, denominator, 1.0 / h) for order in range(3)]
 
-    def filtered(x: Matrix, derivatives: int) -> Matrix:
+    def apply_filter(x: Matrix, derivatives: int) -> Matrix:
         return np.asarray(lfilter(*filters[derivatives], x - x[0] if derivatives else x))[use]
 
-    left = filtered(z, 2)
+    left = apply_filter(z, 2)
     contact = _contact(F, h, experiment.noise)
     direction = np.sign(v)
     solution: tuple[float, Matrix, float] = (np.inf, np.zeros(6), 0.0)
     for _ in range(_ROUNDS):
-        fixed = [filtered(F, 0), filtered(np.ones_like(F), 0)]
+        fixed = [apply_filter(F, 0), apply_filter(np.ones_like(F), 0)]
         if chain.friction is not None:
-            fixed.append(-filtered(direction, 0))
+            fixed.append(-apply_filter(direction, 0))
         if chain.drag is not None:
-            fixed.append(-filtered(z, 1))
+            fixed.append(-apply_filter(z, 1))
         if chain.gap is not None:
-            fixed.append(filtered(contact, 2))
+            fixed.append(apply_filter(contact, 2))
         tried = []
         for tau in _TIMES if chain.damper is not None else _TIMES[:1]:
-            columns = fixed if chain.spring is None else [*fixed, filtered(_relaxed(F, tau, h), 2)]
+            columns = fixed if chain.spring is None else [*fixed, apply_filter(_compliant_elongation(F, tau, h), 2)]
             A = np.stack(columns, axis=1)
             size = np.linalg.norm(A, axis=0)
             size[size == 0.0] = 1.0
@@ -159,7 +159,7 @@ def _solved(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Ele
     f = b * rest.pop(0) if chain.friction is not None else 0.0
     drag = b * rest.pop(0) if chain.drag is not None else 0.0
     if chain.gap is not None:
-        rest.pop(0)  # serves the others; as an estimate of its own it may be wrong by a factor
+        rest.pop(0)  # needed for the others; its own estimate may be wrong by a factor
     k = 1.0 / max(rest.pop(0), 1e-15) if chain.spring is not None else np.inf
     values: list[tuple[Element | None, float, float]] = [
         (chain.inerter, b, _WELL * b),
@@ -177,8 +177,8 @@ def _contact(force: Matrix, h: float, noise: float) -> Matrix:
     return np.interp(n, n[touching], np.sign(calm[touching]))
 
 
-def _relaxed(force: Matrix, tau: float, h: float) -> Matrix:
-    """Elongation of a spring of 1 N/m beside a damper of `tau` N s/m."""
+def _compliant_elongation(force: Matrix, tau: float, h: float) -> Matrix:
+    """Elongation of a spring of 1 N/m in parallel with a damper of `tau` N s/m."""
     if tau == 0.0:
         return force
     ratio = 2.0 * tau / h  # of the bilinear transform
@@ -195,6 +195,6 @@ def _direction(
     if chain.gap is not None:
         y -= rest.pop(0) * contact
     if chain.spring is not None:
-        y -= rest.pop(0) * _relaxed(force, tau, h)
+        y -= rest.pop(0) * _compliant_elongation(force, tau, h)
     v = np.gradient(low_pass(y, h, band), h)
     return np.clip(v / (0.02 * max(float(np.std(v)), 1e-30)), -1.0, 1.0)

@@ -1,4 +1,4 @@
-"""What may be wrong with a device's model or its sensors, by name, and how each is said with its numbers."""
+"""Possible causes of a misfit, in the model of the device or its sensors, by name, and their sentences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Details = Mapping[str, Any]
 
 
 class Suspect(StrEnum):
-    """The name of a hypothesis."""
+    """Name of a possible cause."""
 
     GAIN = "gain"
     DELAY = "delay"
@@ -48,73 +48,73 @@ class Suspect(StrEnum):
     JOINED = "joined pieces"
 
     def sentence(self, details: Details) -> str:
-        """What it says of the device or its sensors, to go on after a colon."""
+        """The cause in words, for use after a colon."""
         return _SENTENCES[self](details)
 
     def remedy(self, details: Details) -> Text:
-        """What would put it right."""
+        """The remedy in words."""
         return _REMEDIES[self](details)
 
 
-def _delay(d: Details) -> str:
-    return f"the {'force' if d['delay'] > 0.0 else 'displacement'} is late by {1e3 * abs(d['delay']):.3g} ms"
+def _delay_text(d: Details) -> str:
+    return f"the {'force' if d['delay'] > 0.0 else 'displacement'} is delayed by {1e3 * abs(d['delay']):.3g} ms"
 
 
-def _corner(d: Details) -> str:
-    return "any size" if d["time"] <= 0.0 else format_quantity(0.5 / math.pi / d["time"], "Hz")
+def _corner_frequency_text(d: Details) -> str:
+    return "any frequency" if d["time"] <= 0.0 else format_quantity(0.5 / math.pi / d["time"], "Hz")
 
 
-def _lost(d: Details) -> str:
+def _dropped_samples_text(d: Details) -> str:
     records = (
         ", ".join(f"{count} at {at:.4g} s" for count, at in places[:4]) + (", ..." if len(places) > 4 else "")
         for places in d["places"]
     )
-    return f"samples are lost while the clock goes on ({'; '.join(records)})"
+    return f"samples were dropped without a gap in the time channel ({'; '.join(records)})"
 
 
-def _stribeck(d: Details) -> str:
+def _stribeck_text(d: Details) -> str:
     return (
         f"friction falls with speed (Stribeck), from {format_quantity(d['at_rest'], 'N', 3)} at rest to "
         f"{format_quantity(d['beyond'], 'N', 3)} beyond {format_quantity(d['speed'], 'm/s', 2)}"
     )
 
 
-def _offset(d: Details) -> str:
+def _offset_text(d: Details) -> str:
     size = format_quantity(abs(d["offset"]), "N")
     return f"the load cell has an offset of {size}, or friction is larger in one direction by as much"
 
 
-def _asymmetric(d: Details) -> str:
+def _asymmetric_text(d: Details) -> str:
     up, down = (format_quantity(d[way], "N", 3) for way in ("up", "down"))
     return f"friction is {up} in one direction and {down} in the other"
 
 
-def _at(d: Details) -> str:
+def _places_text(d: Details) -> str:
     times = ", ".join(f"{t:.4g}" for t in d["times"]) + (", ..." if d["count"] > len(d["times"]) else "")
     return f"{d['count']} {'place' if d['count'] == 1 else 'places'}, at {times} s"
 
 
-def _clock(d: Details) -> str:
+def _clock_text(d: Details) -> str:
     way = "later" if d["growth"] > 0.0 else "earlier"
     return (
-        f"the clocks of force and displacement differ by {1e6 * abs(d['rate']):.3g} ppm, so that the force comes "
+        f"the clocks of force and displacement differ by {1e6 * abs(d['rate']):.3g} ppm, so that the force is "
         f"{1e3 * abs(d['growth']):.3g} ms {way} at the end than at the start"
     )
 
 
-def _hum(d: Details) -> str:
+def _hum_text(d: Details) -> str:
     return (
         f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at {d['frequency']:.4g} Hz, or at an "
         f"alias of it such as {d['rate'] - d['frequency']:.4g} Hz"
     )
 
 
-def _saturation(d: Details) -> str:
+def _saturation_text(d: Details) -> str:
     upper, lower = (format_quantity(d[end], "N", 3) for end in ("upper", "lower"))
-    return f"the force is cut off above {upper} and below -{lower} (load cell or amplifier saturated)"
+    return f"the force is clipped above {upper} and below -{lower} (load cell or amplifier saturated)"
 
 
-def _changed(d: Details) -> str:
+def _changed_device_text(d: Details) -> str:
     values = ", ".join(
         f"{name} {format_quantity(before, unit, 3)} before and {format_quantity(after, unit, 3)} after"
         for name, unit, before, after in d["values"]
@@ -122,11 +122,11 @@ def _changed(d: Details) -> str:
     return f"the device changes at {d['time']:.4g} s" + (f": {values}" if values else "")
 
 
-def _cross_talk(d: Details) -> str:
+def _cross_talk_text(d: Details) -> str:
     return f"the load cell picks up {format_quantity(d['size'], d['unit'], 3)} of the {d['signal']}"
 
 
-def _second_gap(d: Details) -> str:
+def _second_gap_text(d: Details) -> str:
     slack, more = format_quantity(d["slack"], "m", 2), format_quantity(d["stiffness"], "N/m", 2)
     return f"a second gap closes in the shaft at a deflection of {slack}, beyond which it is stiffer by {more}"
 
@@ -137,25 +137,25 @@ def _always(said: str) -> Callable[[Details], str]:
 
 _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
     Suspect.GAIN: _always("the gain of the load cell is not one"),
-    Suspect.DELAY: _delay,
-    Suspect.FILTERED_DISPLACEMENT: lambda d: f"the displacement went through a low pass of {_corner(d)}",
-    Suspect.FILTERED_FORCE: lambda d: f"the force went through a low pass of {_corner(d)}",
+    Suspect.DELAY: _delay_text,
+    Suspect.FILTERED_DISPLACEMENT: lambda d: f"the displacement was low-pass filtered at {_corner_frequency_text(d)}",
+    Suspect.FILTERED_FORCE: lambda d: f"the force was low-pass filtered at {_corner_frequency_text(d)}",
     Suspect.DRIFT: lambda d: f"the zero of the load cell drifts, by {format_quantity(d['drift'], 'N', 2)}",
     Suspect.FIXTURE_MASS: lambda d: (
-        f"{format_quantity(d['mass'], 'kg')} move with the table between load cell and device"
+        f"a fixture mass of {format_quantity(d['mass'], 'kg')} between load cell and device"
     ),
-    Suspect.OFFSET: _offset,
-    Suspect.LOST_SAMPLES: _lost,
+    Suspect.OFFSET: _offset_text,
+    Suspect.LOST_SAMPLES: _dropped_samples_text,
     Suspect.DRY_FRICTION: _always("the device has dry friction"),
     Suspect.VISCOUS_FRICTION: _always("friction grows with speed"),
-    Suspect.ELASTIC: _always("the device gives way"),
-    Suspect.RIGID: _always("nothing in the device gives way"),
+    Suspect.ELASTIC: _always("the device is compliant"),
+    Suspect.RIGID: _always("the device is rigid"),
     Suspect.BACKLASH: _always("the device has backlash"),
-    Suspect.STRIBECK: _stribeck,
+    Suspect.STRIBECK: _stribeck_text,
     Suspect.BY_POSITION: lambda d: (
         f"friction depends on the position, by {format_quantity(d['range'], 'N', 3)} over the stroke"
     ),
-    Suspect.ASYMMETRIC: _asymmetric,
+    Suspect.ASYMMETRIC: _asymmetric_text,
     Suspect.RIPPLE: lambda d: (
         f"friction varies periodically along the stroke, by {format_quantity(d['size'], 'N', 2)} to either side every "
         f"{format_quantity(d['pitch'], 'm', 3)}"
@@ -170,27 +170,27 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {100.0 * abs(d['share']):.2g} % at "
         f"the largest force"
     ),
-    Suspect.SECOND_GAP: _second_gap,
-    Suspect.SATURATION: _saturation,
-    Suspect.CLOCK_DRIFT: _clock,
-    Suspect.CROSS_TALK: _cross_talk,
+    Suspect.SECOND_GAP: _second_gap_text,
+    Suspect.SATURATION: _saturation_text,
+    Suspect.CLOCK_DRIFT: _clock_text,
+    Suspect.CROSS_TALK: _cross_talk_text,
     Suspect.FRAME: lambda d: (
         f"the frame of the load cell resonates at {d['frequency']:.3g} Hz (damping ratio {d['ratio']:.2g})"
     ),
-    Suspect.HUM: _hum,
-    Suspect.CHANGED_DEVICE: _changed,
-    Suspect.SPIKES: lambda d: f"spikes replace samples at {_at(d)}",
-    Suspect.HELD: lambda d: f"the recorder held values at {_at(d)}",
-    Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_at(d)}",
+    Suspect.HUM: _hum_text,
+    Suspect.CHANGED_DEVICE: _changed_device_text,
+    Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
+    Suspect.HELD: lambda d: f"the recorder held values at {_places_text(d)}",
+    Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_places_text(d)}",
 }
 
 
-def _other(details: Details) -> Text:
-    return (f"take a model such as {details['layout']} ({details['model']})",)
+def _model_remedy(details: Details) -> Text:
+    return (f"use a model such as {details['layout']} ({details['model']})",)
 
 
-def _law(details: Details) -> Text:
-    return ("no model has such friction; the values with it, where there are any, are the ones to go by",)
+def _law_remedy(details: Details) -> Text:
+    return ("no model includes this law; use the values under this hypothesis, where available",)
 
 
 def _constant(*text: str | Remedy) -> Callable[[Details], Text]:
@@ -199,39 +199,37 @@ def _constant(*text: str | Remedy) -> Callable[[Details], Text]:
 
 _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.GAIN: _constant(),
-    Suspect.DELAY: _constant("fit the delay too, with ", Remedy(Action.FIT_DELAY)),
-    Suspect.FILTERED_DISPLACEMENT: _constant(
-        "take the displacement before the filter, or make the filter of the force the same"
-    ),
+    Suspect.DELAY: _constant("estimate the delay too, with ", Remedy(Action.FIT_DELAY)),
+    Suspect.FILTERED_DISPLACEMENT: _constant("use the unfiltered displacement, or filter the force in the same way"),
     Suspect.FILTERED_FORCE: _constant(
-        "give the bandwidth of the load cell and its amplifier, ", Remedy(Action.FORCE_BANDWIDTH)
+        "state the bandwidth of the load cell and its amplifier, ", Remedy(Action.FORCE_BANDWIDTH)
     ),
-    Suspect.DRIFT: _constant("warm the load cell up, or take the drift away, ", Remedy(Action.DETREND)),
+    Suspect.DRIFT: _constant("warm the load cell up, or remove the drift, ", Remedy(Action.DETREND)),
     Suspect.FIXTURE_MASS: _constant(
-        "weigh what moves with the table between load cell and device, and give it, ", Remedy(Action.FIXTURE_MASS)
+        "weigh the fixture between load cell and device, and state its mass, ", Remedy(Action.FIXTURE_MASS)
     ),
-    Suspect.OFFSET: _constant("fit the offset too, with ", Remedy(Action.FIT_OFFSET)),
-    Suspect.LOST_SAMPLES: _constant("read the file with ", Remedy(Action.GAPS, "fill"), ", which puts them in"),
-    Suspect.DRY_FRICTION: _other,
-    Suspect.VISCOUS_FRICTION: _other,
-    Suspect.ELASTIC: _other,
-    Suspect.RIGID: _other,
-    Suspect.BACKLASH: _other,
-    Suspect.STRIBECK: _law,
-    Suspect.BY_POSITION: _law,
-    Suspect.ASYMMETRIC: _law,
-    Suspect.RIPPLE: _law,
-    Suspect.PRESLIDING: _law,
-    Suspect.QUADRATIC: _law,
-    Suspect.STIFFENING: _law,
-    Suspect.SECOND_GAP: _law,
-    Suspect.SATURATION: _constant("move less, or give the range of the load cell so that such samples are left out"),
-    Suspect.CLOCK_DRIFT: _constant("sample both channels by one clock"),
+    Suspect.OFFSET: _constant("estimate the offset too, with ", Remedy(Action.FIT_OFFSET)),
+    Suspect.LOST_SAMPLES: _constant("read the file with ", Remedy(Action.GAPS, "fill"), ", which interpolates them"),
+    Suspect.DRY_FRICTION: _model_remedy,
+    Suspect.VISCOUS_FRICTION: _model_remedy,
+    Suspect.ELASTIC: _model_remedy,
+    Suspect.RIGID: _model_remedy,
+    Suspect.BACKLASH: _model_remedy,
+    Suspect.STRIBECK: _law_remedy,
+    Suspect.BY_POSITION: _law_remedy,
+    Suspect.ASYMMETRIC: _law_remedy,
+    Suspect.RIPPLE: _law_remedy,
+    Suspect.PRESLIDING: _law_remedy,
+    Suspect.QUADRATIC: _law_remedy,
+    Suspect.STIFFENING: _law_remedy,
+    Suspect.SECOND_GAP: _law_remedy,
+    Suspect.SATURATION: _constant("reduce the motion, or state the range of the load cell to exclude such samples"),
+    Suspect.CLOCK_DRIFT: _constant("sample both channels with one clock"),
     Suspect.CROSS_TALK: _constant("separate the cables of the sensors, and read the load cell without the device"),
     Suspect.FRAME: _constant("stiffen the frame, or excite well below its resonance"),
-    Suspect.HUM: _constant("check grounding and shielding, and filter against aliasing before sampling"),
+    Suspect.HUM: _constant("check grounding and shielding, and use an anti-aliasing filter"),
     Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
     Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
-    Suspect.JOINED: _constant("fit each piece as a record of its own, ", Remedy(Action.TRIM)),
+    Suspect.JOINED: _constant("fit each piece as a separate record, ", Remedy(Action.TRIM)),
 }

@@ -1,0 +1,284 @@
+"""Kinds of findings in an identification, and their sentences: reliability, notes, experiments, selection, stages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from enum import StrEnum
+
+from inerter.records.finding import Finding
+from inerter.records.remedy import Action, Remedy, Text
+from inerter.units import format_quantity, format_with_interval
+
+
+class FitFinding(StrEnum):
+    """The kinds of findings in an identification."""
+
+    # unreliable estimates
+    UNPREDICTABLE = "unpredictable"
+    SUSPECTED = "suspected"
+    MISFIT = "misfit"
+    SATURATED = "saturated"
+    # notes on the estimates
+    FORCE_REVERSED = "force-reversed"
+    OFFSET = "offset"
+    MOVING_MASS = "moving-mass"
+    INCLUDED = "included"
+    # recommended experiments
+    FASTER_REVERSALS = "faster-reversals"
+    SLOW_COSINE = "slow-cosine"
+    LARGER_ACCELERATIONS = "larger-accelerations"
+    HIGHER_FREQUENCIES = "higher-frequencies"
+    BREAK_AWAY = "break-away"
+    NARROWER = "narrower"
+    CALIBRATE = "calibrate"
+    # the choice between models
+    BEST = "best"
+    FEWEST_UNKNOWNS = "fewest-unknowns"
+    NOT_REACHED = "not-reached"
+    FAILED = "failed"
+    # the staged protocol
+    FRICTION_LEVEL = "friction-level"
+    FRICTION_LAW = "friction-law"
+    OTHER_FRICTION = "other-friction"
+    GIVEN_INERTANCE = "given-inertance"
+    SATURATED_CHECK = "saturated-check"
+    RESPONSE = "response"
+
+    def text(self, finding: Finding) -> Text:
+        """The parts of the sentence of such a finding."""
+        return _TEXTS[self](finding)
+
+
+def _unpredictable_text(f: Finding) -> Text:
+    return (
+        f"the force is too sensitive to encoder noise ({f.numbers['changed']:.1f} % change) to identify any parameter; "
+        f"record a motion with less rattling",
+    )
+
+
+def _possible_cause_text(f: Finding) -> Text:
+    return (f.numbers["likeliest"].sentence,)
+
+
+def _misfit_text(f: Finding) -> Text:
+    n = f.numbers
+    times = f"the residual is {n['times']:.2g} times the sensor noise"
+    share = "" if n["explained"] is None else f", and the variance explained is only {n['explained']:.1f} %"
+    if n["likeliest"] is None:
+        where = "" if n["where"] is None else f", but {n['where'].sentence}"
+        return (f"{times}{share}; no tested cause accounts for it{where}",)
+    others = ", or ".join(e.sentence for e in n["as_good"])
+    other = f"; equally likely: {others}" if others else ""
+    return (f"{times}{share}; most likely cause: {n['likeliest'].sentence}{other}",)
+
+
+def _saturation_text(f: Finding) -> Text:
+    return (f"the load cell was saturated in {100.0 * f.numbers['share']:.0f} % of the samples",)
+
+
+def _reversed_force_text(f: Finding) -> Text:
+    return (f"{f.about}: force positive in compression; reversed.",)
+
+
+def _offset_text(f: Finding) -> Text:
+    size = format_quantity(f.numbers["offset"], "N", 3)
+    return (
+        f"{f.about}: the offset of {size} may be an offset of the load cell or asymmetric friction; in that case the "
+        f"identified friction is the mean of both directions.",
+    )
+
+
+def _moving_mass_text(f: Finding) -> Text:
+    return (
+        f"{f.about} includes the fixture mass between load cell and device, which cannot be separated from the "
+        f"inertance. Weigh it and pass ",
+        *(Remedy(Action.FIXTURE_MASS), "."),
+    )
+
+
+_SCALES = {  # sensitivity of the values
+    "force_scale": ("force", "1 % more force makes stiffness, damping, inertance and friction 1 % larger"),
+    "displacement_scale": (
+        "displacement",
+        "1 % more displacement makes stiffness, damping and inertance 1 % smaller and a gap 1 % larger",
+    ),
+}
+_SCALE_REMEDIES = {"force_scale": Action.FORCE_SCALE, "displacement_scale": Action.DISPLACEMENT_SCALE}
+
+
+def _included_uncertainty_text(f: Finding) -> Text:
+    known = [f"a scale of the {what} of {f.numbers[n]}" for n, (what, _) in _SCALES.items() if f.numbers[n]]
+    mass = f.numbers["fixture_mass_error"]
+    known += [] if mass is None else [f"a fixture mass known to {format_quantity(mass, 'kg', 3)}"]
+    text = f"Intervals include {' and '.join(known)} (standard uncertainty, k = 1). " if known else ""
+    text += "All values include the compliance between encoder and device, which no record shows"
+    unknown = [n for n in _SCALES if not f.numbers[n]]
+    if not unknown:
+        return (f"{text}.",)
+    sensors = " and the ".join(_SCALES[n][0] for n in unknown)
+    text += f", and errors in the scale of the {sensors}: {_SCALES[unknown[0]][1]}. State a known uncertainty as "
+    return (text, Remedy(_SCALE_REMEDIES[unknown[0]], "1 +- 1 %"), ".")
+
+
+def _force_margin_text(f: Finding) -> str:
+    """Force up to which the load cell has range."""
+    limit = f.numbers["limit"]
+    return "" if limit is None else f", up to the {limit:.0f} N of the load cell"
+
+
+def _faster_reversals_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"{f.about}: a faster motion with frequent force reversals (present motion: up to {n['fastest']:.3g} Hz and "
+        f"{n['peak']:.3g} N{_force_margin_text(f)}), sampled so that crossing {format_quantity(n['width'], 'm')} takes "
+        f"several samples.",
+    )
+
+
+def _slow_cosine_text(f: Finding) -> Text:
+    return (f"{f.about}: a slow cosine, 0.1 Hz and {format_quantity(f.numbers['travel'], 'm')}, without the flywheel.",)
+
+
+def _larger_accelerations_text(f: Finding) -> Text:
+    wider = format_quantity(f.numbers["travel"], "m")
+    return (f"{f.about}: larger accelerations: {wider} at the same frequency, or twice the frequency.",)
+
+
+def _higher_frequencies_text(f: Finding) -> Text:
+    return (
+        f"{f.about}: a multisine or sweep of small amplitude up to twice the present {f.numbers['fastest']:.3g} Hz or "
+        f"more{_force_margin_text(f)}.",
+    )
+
+
+def _break_away_text(f: Finding) -> Text:
+    held = format_quantity(f.numbers["held"], "N", 3)
+    return (
+        f"{f.about}: a larger or faster motion, with a force above the {held} at which the friction did not "
+        f"slip{_force_margin_text(f)}.",
+    )
+
+
+def _narrower_interval_text(f: Finding) -> Text:
+    n = f.numbers
+    changes = [
+        f"{n['larger']:g} times the amplitude" if n["larger"] != 1.0 else "",
+        f"{n['faster']:g} times the frequencies" if n["faster"] != 1.0 else "",
+        f"{n['longer']} times as long" if n["longer"] != 1 else "",
+    ]
+    amplitude, duration = format_quantity(n["amplitude"], "m", 3), format_quantity(n["duration"], "s", 3)
+    return (
+        f"{f.about}: the same motion, {', '.join(filter(None, changes))} (amplitude {amplitude}, up to "
+        f"{n['highest']:.3g} Hz, {duration}): expected interval width {_width(n['expected'], f)} instead of "
+        f"{_width(n['width'], f)}.",
+    )
+
+
+def _width(width: float, f: Finding) -> str:
+    share = f" ({100.0 * width / abs(f.numbers['value']):.2g} %)" if f.numbers["value"] else ""
+    return f"{format_quantity(width, f.numbers['unit'], 2)}{share}"
+
+
+def _calibrate_text(f: Finding) -> Text:
+    n = f.numbers
+    fixed, width = (format_quantity(n[name], n["unit"], 2) for name in ("fixed", "width"))
+    return (
+        f"{f.about}: a better calibration of the sensors: their scales alone cause {fixed} of the interval width of "
+        f"{width}, which no other motion can reduce.",
+    )
+
+
+def _next_candidate_text(f: Finding) -> str:
+    """Loss of the best candidate that is not as good."""
+    n = f.numbers
+    if n["next"] is None:
+        return ""
+    how = f"{n['ratio']:.3g} times" if n["ratio"] > 2.0 else f"{100.0 * (n['ratio'] - 1.0):.2g} % above"
+    return f" Next candidate: {n['next']}, {how} the loss of the best."
+
+
+def _unknowns_text(f: Finding) -> str:
+    many = f.numbers["unknowns"]
+    return "one unknown" if many == 1 else f"{many} unknowns"
+
+
+def _best_candidate_text(f: Finding) -> Text:
+    return (f"{f.about}: best prediction of the validation data, with {_unknowns_text(f)}.{_next_candidate_text(f)}",)
+
+
+def _fewest_unknowns_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"{f.about}: with {_unknowns_text(f)}, prediction of the validation data as good as {n['best']} with "
+        f"{n['best_unknowns']} (loss {100.0 * n['behind']:.2g} % higher).{_next_candidate_text(f)}",
+    )
+
+
+def _not_reached_text(f: Finding) -> Text:
+    return (
+        f"{f.about}: not converged: the loss exceeds that of {f.numbers['other']}, which has a subset of its elements "
+        f"or equivalent ones. Increase the number of starts.",
+    )
+
+
+def _failed_candidate_text(f: Finding) -> Text:
+    return (f"{f.about}: cannot be fitted. ", *f.numbers["error"])
+
+
+def _friction_level_text(f: Finding) -> Text:
+    level, interval = format_with_interval(f.numbers["level"], f.numbers["lower"], f.numbers["upper"], "N")
+    return (f"Friction {level} ({interval}) from the test without flywheel.",)
+
+
+def _other_friction_text(f: Finding) -> Text:
+    return (
+        f"The faster test is consistent only with a different friction force, at the end of its interval: "
+        f"{format_quantity(f.numbers['best'], 'N')}. The friction may depend on speed or on the load of the flywheel.",
+    )
+
+
+def _given_inertance_text(f: Finding) -> Text:
+    return (f"The inertance was given: {format_quantity(f.numbers['inertance'], 'kg')}.",)
+
+
+def _saturated_check_text(f: Finding) -> Text:
+    return (
+        f"The load cell was saturated in {100.0 * f.numbers['share']:.2g} % of the validation record, which no model "
+        f"includes. Reduce the motion.",
+    )
+
+
+def _response_text(f: Finding) -> Text:
+    differ, octaves = f.numbers["differ"], f.numbers["octaves"]
+    if octaves and not differ:
+        return (f"The validation record agrees in all {octaves} octaves.",)
+    return (f"The validation record differs in {differ} of {octaves} octaves.",)
+
+
+_TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
+    FitFinding.UNPREDICTABLE: _unpredictable_text,
+    FitFinding.SUSPECTED: _possible_cause_text,
+    FitFinding.MISFIT: _misfit_text,
+    FitFinding.SATURATED: _saturation_text,
+    FitFinding.FORCE_REVERSED: _reversed_force_text,
+    FitFinding.OFFSET: _offset_text,
+    FitFinding.MOVING_MASS: _moving_mass_text,
+    FitFinding.INCLUDED: _included_uncertainty_text,
+    FitFinding.FASTER_REVERSALS: _faster_reversals_text,
+    FitFinding.SLOW_COSINE: _slow_cosine_text,
+    FitFinding.LARGER_ACCELERATIONS: _larger_accelerations_text,
+    FitFinding.HIGHER_FREQUENCIES: _higher_frequencies_text,
+    FitFinding.BREAK_AWAY: _break_away_text,
+    FitFinding.NARROWER: _narrower_interval_text,
+    FitFinding.CALIBRATE: _calibrate_text,
+    FitFinding.BEST: _best_candidate_text,
+    FitFinding.FEWEST_UNKNOWNS: _fewest_unknowns_text,
+    FitFinding.NOT_REACHED: _not_reached_text,
+    FitFinding.FAILED: _failed_candidate_text,
+    FitFinding.FRICTION_LEVEL: _friction_level_text,
+    FitFinding.FRICTION_LAW: lambda f: (f.numbers["law"].sentence,),
+    FitFinding.OTHER_FRICTION: _other_friction_text,
+    FitFinding.GIVEN_INERTANCE: _given_inertance_text,
+    FitFinding.SATURATED_CHECK: _saturated_check_text,
+    FitFinding.RESPONSE: _response_text,
+}

@@ -220,14 +220,14 @@ def test_one_track_has_no_coherence():
 
 
 BAD = {
-    "a level above one": (lambda: it.Coherence.constant(1.5), "level of a coherence is a number from -1 to 1"),
+    "a level above one": (lambda: it.Coherence.constant(1.5), "level of a coherence must be a number from -1 to 1"),
     "a level of words": (lambda: it.Coherence.constant("half"), "level of a coherence"),
     "no corner": (lambda: it.Coherence.first_order(0.0), "wavenumber of a coherence must be a positive"),
     "a wrong track": (lambda: it.Coherence.isotropic(-1.0), "track of a coherence must be a positive"),
-    "more than one": (lambda: it.Coherence((1.0, 1.0), (1.0, 0.5)), "stays between -1 and 1"),
-    "a pole": (lambda: it.Coherence((0.1,), (1.0, -1.0)), "stays between -1 and 1"),
-    "nothing": (lambda: it.Coherence((), (1.0,)), "numerator of a coherence is a list"),
-    "a number": (lambda: it.Road(5e-7, 25.0, coherence=0.5), "coherence of a road is a Coherence"),
+    "more than one": (lambda: it.Coherence((1.0, 1.0), (1.0, 0.5)), "must be between -1 and 1"),
+    "a pole": (lambda: it.Coherence((0.1,), (1.0, -1.0)), "must be between -1 and 1"),
+    "nothing": (lambda: it.Coherence((), (1.0,)), "numerator of a coherence must be a list"),
+    "a number": (lambda: it.Road(5e-7, 25.0, coherence=0.5), "coherence of a road must be a Coherence"),
 }
 
 

@@ -231,5 +231,5 @@ def test_simulated_tracks_have_the_spectra():
 
 
 def test_its_polynomials_are_its_own():
-    with pytest.raises(PerformanceIndexError, match="make it by"):
+    with pytest.raises(PerformanceIndexError, match=r"Use Coherence\.isotropic"):
         it.Coherence((1.0,), (1.0, 1.0), 1.5, is_isotropic=True)

@@ -84,22 +84,22 @@ def test_a_spacing_in_place_of_distances(tmp_path):
 
 TABLE = "distance [m], left [mm], right [mm], note [m]\n0,1,2,9\n1,2,1,9\n2,0,0,9\n"
 BAD = {
-    "a number": ((3,), {}, "from the path of a CSV or CRG file, got 3"),
-    "a folder": ((".",), {}, "it is no file"),
-    "absent": (("absent.csv",), {}, "There is no file"),
-    "another kind": (("road.xlsx",), {}, "by the suffix of the file, not from .xlsx"),
-    "a unit of force": (("road.csv",), {"units": {"height": "N"}}, 'the unit "N" .* is none of length'),
+    "a number": ((3,), {}, "must be that of a CSV or CRG file; got 3"),
+    "a folder": ((".",), {}, "is not a file"),
+    "absent": (("absent.csv",), {}, "file not found"),
+    "another kind": (("road.xlsx",), {}, "unsupported file suffix '.xlsx'"),
+    "a unit of force": (("road.csv",), {"units": {"height": "N"}}, 'the unit "N" .* is not a unit of length'),
     "an empty unit": (("road.csv",), {"units": {"height": " "}}, "has no unit"),
-    "a unit of nothing": (("road.csv",), {"units": {"depth": "m"}}, "The units of a profile are such as"),
-    "units as text": (("road.csv",), {"units": "mm"}, "The units of a profile are such as"),
-    "no such column": (("road.csv",), {"height": "up"}, "has no single column 'up' for the height"),
-    "a number too large": (("road.csv",), {"height": 9}, "has no single column 9"),
-    "a truth": (("road.csv",), {"height": True}, "has no single column True"),
+    "a unit of nothing": (("road.csv",), {"units": {"depth": "m"}}, "units must be a table such as"),
+    "units as text": (("road.csv",), {"units": "mm"}, "units must be a table such as"),
+    "no such column": (("road.csv",), {"height": "up"}, "unknown or repeated column 'up' for the height"),
+    "a number too large": (("road.csv",), {"height": 9}, "unknown or repeated column 9"),
+    "a truth": (("road.csv",), {"height": True}, "unknown or repeated column True"),
     "two of one": (("road.csv",), {"height": "note", "right": "note"}, "one column is named for two"),
     "no such role": (("road.csv",), {"depth": 1}, "has no argument 'depth'"),
     "interval and distance": (("road.csv",), {"interval": 0.1, "distance": 0}, "not both"),
     "no interval": (("road.csv",), {"interval": 0.0}, "interval between points must be a positive"),
-    "lateral of a table": (("road.csv",), {"lateral": (0.5,)}, "`lateral` is for OpenCRG files"),
+    "lateral of a table": (("road.csv",), {"lateral": (0.5,)}, "`lateral` applies to OpenCRG files"),
 }
 
 
@@ -118,9 +118,9 @@ BAD_VALUES = {
     "words": (lambda: it.Profile([0.0, 1.0], ["a", "b"]), "height of a profile must be a vector"),
     "one longer": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0, 2.0]), "as long as its distance, got 3 and 2"),
     "standing": (lambda: it.Profile([0.0, 0.0], [0.0, 1.0]), "must increase, but point 1 is at 0 m"),
-    "an interval beyond": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).even(5.0), "a point every 5.0 m"),
-    "no track": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).driven(9.0, "left"), "has no track 'left'"),
-    "no speed": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).driven(-1.0), "speed over a profile must be a positive"),
+    "an interval beyond": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).even(5.0), "at most its length, got 5.0 m"),
+    "no track": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).to_signal(9.0, "left"), "it has a single track"),
+    "no speed": (lambda: it.Profile([0.0, 1.0], [0.0, 1.0]).to_signal(-1.0), "speed over a profile must be a positive"),
 }
 
 
@@ -149,11 +149,11 @@ def test_opencrg(tmp_path):
 
 def test_bad_opencrg(tmp_path, monkeypatch):
     path = surface(tmp_path)
-    with pytest.raises(RecordError, match=r"reaches from -2 to 2 m beside its reference line, not to 3 m"):
+    with pytest.raises(RecordError, match=r"position 3 m outside the road, which extends from -2 to 2 m"):
         it.read_profile(path, lateral=(3.0,))
     with pytest.raises(RecordError, match=r"one position .* or two"):
         it.read_profile(path, lateral="left")
-    with pytest.raises(RecordError, match="says itself what is where"):
+    with pytest.raises(RecordError, match="requires no units"):
         it.read_profile(path, interval=0.1)
     path.write_bytes(path.read_bytes()[:1500])
     with pytest.raises(RecordError, match=r"road\.crg cannot be read as OpenCRG: the file is damaged or truncated"):
@@ -161,3 +161,9 @@ def test_bad_opencrg(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyopencrg", None)
     with pytest.raises(RecordError, match=r'pip install "inerter\[roads\]"'):
         it.read_profile(path)
+
+
+def test_the_old_name_of_to_signal_works_with_a_warning() -> None:
+    road = it.Profile([0.0, 1.0], [0.0, 1.0])
+    with pytest.warns(DeprecationWarning, match="`driven` is now `to_signal`"):
+        assert road.driven(2.0)(0.25) == road.to_signal(2.0)(0.25)

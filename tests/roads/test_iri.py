@@ -128,7 +128,7 @@ def test_what_has_none():
     for profile, sentence in (
         (it.Profile(x[:20], 0 * x[:20]), "at least 11 m"),
         (it.Profile(4 * x, 0 * x), "are up to 1 m"),
-        (x, "IRI is that of a profile"),
+        (x, "requires a Profile"),
     ):
         with pytest.raises(RecordError, match=sentence):
             it.iri(profile)

@@ -50,10 +50,10 @@ def test_the_density_holds_the_variance():
 BAD = {
     "short": (lambda: it.road_spectrum(it.Profile([0.0, 1.0, 2.0], [0.0, 1.0, 0.0])), "too short"),
     "flat": (lambda: it.road_spectrum(it.Profile(np.arange(500.0), np.zeros(500))), "is flat"),
-    "no profile": (lambda: it.road_spectrum([1.0, 2.0]), "that of a profile"),
-    "a band upside down": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), 2.0, 1.0), "from a low to a higher"),
+    "no profile": (lambda: it.road_spectrum([1.0, 2.0]), "requires a Profile"),
+    "a band upside down": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), 2.0, 1.0), "lowest < highest"),
     "no sampling": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), sampling="point"), "sampling.*got 'point'"),
-    "no track": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), track="right"), "has no track 'right'"),
+    "no track": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), track="right"), "unknown track 'right'"),
 }
 
 

@@ -20,10 +20,10 @@ T, V = [0.0, 1.0, 2.0], [0.0, 1.0, 0.0]
 
 WRONG = {
     # harmonics
-    "no road": (lambda: multisine(25.0, 0), r"needs a road such as Road\(5e-7, 25\.0\), got 25\.0"),
-    "a seed that is a truth": (lambda: multisine(ROAD, True), "seed must be a whole number from 0 on, got True"),
-    "a seed below zero": (lambda: multisine(ROAD, -1), "from 0 on, got -1"),
-    "half a seed": (lambda: held_noise(0.5, 1.0), "from 0 on, got 0.5"),
+    "no road": (lambda: multisine(25.0, 0), r"requires a road such as Road\(5e-7, 25\.0\), got 25\.0"),
+    "a seed that is a truth": (lambda: multisine(ROAD, True), "seed must be a non-negative integer, got True"),
+    "a seed below zero": (lambda: multisine(ROAD, -1), "non-negative integer, got -1"),
+    "half a seed": (lambda: held_noise(0.5, 1.0), "non-negative integer, got 0.5"),
     "no seed": (lambda: flat_multisine(None, 1.0, 1.0, 2.0), "got None"),
     "reversed frequencies": (lambda: multisine(ROAD, 0, 10.0, 1.0), "got 10 and 1 Hz. Swap them"),
     "no lowest frequency": (
@@ -43,8 +43,8 @@ WRONG = {
     "no power": (lambda: held_noise(0, 0.0), "power of a noise must be a positive number"),
     "half an interval": (lambda: held_noise(0, 1.0, 0.3, 1.0), "A duration of 1 s is not a whole number of intervals"),
     "no interval": (lambda: held_noise(0, 1.0, 0.0), "interval of a noise"),
-    "too long a noise": (lambda: held_noise(0, 1.0, 1e-9, 1e3), r"holds 1e\+12 intervals"),
-    "a noise of less than an interval": (lambda: held_noise(0, 1.0, 1.0, 0.2), "Take an interval such as 0.2 s"),
+    "too long a noise": (lambda: held_noise(0, 1.0, 1e-9, 1e3), r"has 1e\+12 intervals"),
+    "a noise of less than an interval": (lambda: held_noise(0, 1.0, 1.0, 0.2), "Use an interval such as 0.2 s"),
     # transients
     "reversed chirp": (lambda: chirp(1.0, 5.0, 1.0, 10.0), "got 5 and 1 Hz. Swap them"),
     "no duration": (lambda: chirp(1.0, 1.0, 5.0, 0.0), "duration .* must be a positive number of s"),
@@ -76,8 +76,8 @@ WRONG = {
     "nothing": (lambda: Signal.sampled(None, V), "times of a table must be real numbers, got None"),
     "a number for a table": (lambda: Signal.sampled(1.0, V), r"one-dimensional array, got one of shape \(\)"),
     "a bad hold": (lambda: Signal.sampled(T, V, "quadratic"), 'one of "cubic", "linear" and "zero", got \'quadratic\''),
-    "a hold of no kind": (lambda: Signal.sampled(T, V, ["zero"]), "A hold is one of"),
-    "slopes of lines": (lambda: Signal.sampled(T, V, "linear", derivative=V), 'Derivatives are for hold = "cubic"'),
+    "a hold of no kind": (lambda: Signal.sampled(T, V, ["zero"]), "hold must be one of"),
+    "slopes of lines": (lambda: Signal.sampled(T, V, "linear", derivative=V), 'Derivatives require hold = "cubic"'),
     "too few slopes": (lambda: Signal.sampled(T, V, derivative=V[:2]), "one derivative for each value, got 2 for 3"),
     "slopes that are none": (
         lambda: Signal.sampled(T, V, derivative=[0, math.inf, 0]),
@@ -85,10 +85,10 @@ WRONG = {
     ),
     "an open period": (
         lambda: Signal.sampled(T, [1.0, 2.0, 3.0], periodic=True),
-        "must equal it, got 1 first and 3 last",
+        "must equal the first, got 1 first and 3 last",
     ),
-    "periodic maybe": (lambda: Signal.sampled(T, V, periodic="yes"), "periodic is True or False, got 'yes'"),
-    "a label of no kind": (lambda: Signal.sampled(T, V, label=3), "A label is text, got 3"),
+    "periodic maybe": (lambda: Signal.sampled(T, V, periodic="yes"), "periodic must be True or False, got 'yes'"),
+    "a label of no kind": (lambda: Signal.sampled(T, V, label=3), "label must be a text, got 3"),
     "times too close": (lambda: Signal.sampled([0.0, 1e-300, 1.0], [0.0, 1e10, 0.0]), "too close in time"),
     # use
     "complex times": (lambda: SINE(1j), "times of a signal must be real numbers, got 1j"),
@@ -103,11 +103,11 @@ WRONG = {
     "fewer than no points": (lambda: SINE.grid(0.0, 0.1, -1), "count of a grid"),
     "breaks of no span": (lambda: Signal.sampled(T, V).breaks(0.0, math.nan), "end of a span must be a finite number"),
     "countless breaks": (lambda: held_noise(0, 1.0).breaks(0.0, 1e12), "more than 1e8 knots from 0 to"),
-    "a number added": (lambda: SINE + 1.0, "Only a signal can be added to a signal, got 1.0"),
-    "added to a number": (lambda: 1.0 + SINE, "Only a signal can be added"),
+    "a number added": (lambda: SINE + 1.0, "can be added to a signal only, got 1.0"),
+    "added to a number": (lambda: 1.0 + SINE, "can be added to a signal only"),
     "a product of signals": (lambda: SINE * SINE, "multiplied by a finite number"),
     "times an array": (lambda: np.ones(3) * SINE, "multiplied by a finite number"),
-    "times nothing": (lambda: math.nan * SINE, "multiplied by a finite number, got nan"),
+    "times nothing": (lambda: math.nan * SINE, "multiplied by a finite number only, got nan"),
 }
 
 

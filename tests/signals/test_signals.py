@@ -110,7 +110,7 @@ def test_after_the_end(signal):
         assert np.isfinite(signal.sample(1e3)).all()
         return
     assert np.isfinite(signal.sample(signal.duration * (1 + 1e-15))).all()
-    with pytest.raises(SignalError, match=rf"lasts until t = {signal.duration:.9g} s, but was asked for t = 4\.5 s\. "):
+    with pytest.raises(SignalError, match=rf"ends at t = {signal.duration:.9g} s, before the requested t = 4\.5 s\. "):
         signal.sample([0.0, 4.5])
     with pytest.raises(SignalError, match="Stop earlier"):
         signal.grid(0.0, 0.5, 20)
@@ -225,11 +225,11 @@ def test_held_ends_when_the_signal_ends():
 def test_held_needs_whole_intervals():
     with pytest.raises(SignalError, match=r"A period of 2 s is not a whole number of intervals of 0\.3 s\. .* 0\.285"):
         SIGNALS["multisine"].held(0.3)
-    with pytest.raises(SignalError, match="neither repeats nor ends"):
+    with pytest.raises(SignalError, match="neither periodic nor finite"):
         step(1.0).held(0.1)
-    with pytest.raises(SignalError, match=r"lasts until t = 3 s"):
+    with pytest.raises(SignalError, match=r"ends at t = 3 s"):
         SIGNALS["chirp"].held(0.1, duration=5.0)
-    with pytest.raises(SignalError, match=r"Cannot hold for 4 s what lasts 3 s"):
+    with pytest.raises(SignalError, match=r"signal of 3 s cannot be held for 4 s"):
         SIGNALS["chirp"].held(4.0)
     with pytest.raises(SignalError, match="interval of a hold must be a positive number of s, got 0"):
         SIGNALS["chirp"].held(0)

@@ -300,7 +300,7 @@ BAD = {
     "road as force": (CAR, [("seed = 3", 'input = "sprung_force"')], "signal.kind", ["shape of a road"]),
     "input": (CAR, [("seed = 3", 'input = "rod"')], "signal.input", ['"rod"', 'Did you mean "road"?']),
     "rig's input": (RIG, [('"3 Hz"', '"3 Hz"\ninput = "road"')], "signal.input", ["displacement"]),
-    "no file": (CAR, [(SEED, 'kind = "profile"\nfile = "none.csv"')], "signal", ["no file", "none.csv"]),
+    "no file": (CAR, [(SEED, 'kind = "profile"\nfile = "none.csv"')], "signal", ["file not found", "none.csv"]),
     "no roughness": (CAR, [('roughness = "5e-7 m^3/cycle"\n', "")], "road.roughness", ["multisine", "m^3/cycle"]),
     "no delay": (
         HALF,

@@ -259,7 +259,7 @@ BAD = {
     "nonsense": ('profile = "bad.csv"', "", "road.profile", "bad.csv"),
     "too short": ('profile = "short.csv"', "", "road.profile", "too short"),
     "flat": ('profile = "flat.csv"', "", "road.profile", "flat"),
-    "no such track": ('profile = "one.csv"\ntrack = "left"', "", "road.profile", "no track"),
+    "no such track": ('profile = "one.csv"\ntrack = "left"', "", "road.profile", "unknown track"),
     "another word": ('profile = "road.csv"\ntrack = "middle"', "", "road.track", "right"),
     "track of nothing": (f'{ROUGH}\ntrack = "left"', "", "road", "no profile"),
     "one track": (COHERENT + '{ track = "1.5 m" }', "", "road.coherence", "no left and right track"),
@@ -422,7 +422,7 @@ def test_what_is_advised_about_the_columns_of_a_profile_can_be_done(header: str,
             break
         except StudyError as error:
             (line,) = str(error).splitlines()
-            assert "in the file" in line or "behind the name" in line
+            assert "in the file" in line or "after the name" in line
             advised = re.search(r"(columns|units) = \{ (.*?) \}", line)
             assert advised, line
             key, entries = advised.groups()
@@ -442,7 +442,7 @@ BAD_KEYS = {
     'units = { height = "N" }': "road.units",
     "units = {}": "road.units",
     'interval = "0 m"': "road.interval",
-    'columns = { height = "no" }': "has no single column 'no' for the height",
+    'columns = { height = "no" }': "unknown or repeated column 'no' for the height",
 }
 
 

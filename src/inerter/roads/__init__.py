@@ -1,1 +1,1 @@
-"""Measured roads: profiles, their roughness, and what they are to an analysis."""
+"""Measured roads: profiles, their roughness and spectra, and their signals."""

@@ -1,4 +1,4 @@
-"""The international roughness index of a profile: what a standard car's suspension travels for each metre driven."""
+"""The international roughness index of a profile: suspension travel of a reference quarter car per distance driven."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.errors import RecordError
 from inerter.roads.profile import Profile
 
 Matrix = NDArray[np.float64]
-# The golden car of ASTM E1926, as rates over its sprung mass, and the speed and lengths of the procedure.
+# The Golden Car of ASTM E1926, as rates over its sprung mass, and the speed and lengths of the procedure.
 SPRING, TYRE, DAMPER, MASS = 63.3, 653.0, 6.0, 0.15  # [1/s^2], [1/s^2], [1/s], [-]
 SPEED = 80.0 / 3.6  # [m/s]
 BASE, START = 0.25, 11.0  # [m]
@@ -20,32 +20,33 @@ _LONGEST = 0.61  # [m] between points
 
 
 def iri(profile: Profile) -> float:
-    """The international roughness index [m/km]; of two tracks the mean (the mean roughness index).
+    """International roughness index [m/km]; for two tracks the mean (mean roughness index).
 
-    Slopes over 250 mm drive the golden car at 80 km/h by its exact state transition, from the state of the mean slope
-    of the first 11 m. Points that are not evenly spaced are joined by lines. Source: ASTM E1926 and Sayers, Gillespie
+    Slopes over 250 mm excite the Golden Car at 80 km/h by its exact state transition, from the state of the mean slope
+    of the first 11 m. Unevenly spaced points are interpolated linearly. Source: ASTM E1926 and Sayers, Gillespie
     and Paterson (1986), World Bank Technical Paper 46.
 
-    Raises `RecordError` for a profile of less than 11 m, or with points more than 0.61 m apart, for which the procedure
-    is not made.
+    Raises `RecordError` for a profile of less than 11 m, or with points more than 0.61 m apart, which the procedure
+    excludes.
     """
     if not isinstance(profile, Profile):
-        raise RecordError(f"The IRI is that of a profile, such as read_profile(...), got {profile!r}.")
+        raise RecordError(f"iri requires a Profile, such as read_profile(...), got {profile!r}.")
     widest = float(np.diff(profile.distance).max())
     if widest > _LONGEST * (1.0 + 1e-9):
         raise RecordError(
-            f"The IRI needs points at most {_LONGEST:g} m apart; those of {profile.source!r} are up to {widest:g} m."
+            f"The IRI requires points at most {_LONGEST:g} m apart; those of {profile.source!r} are up to {widest:g} m "
+            f"apart."
         )
     if profile.length < START:
         raise RecordError(
-            f"The IRI needs a profile of at least {START:g} m, {profile.source!r} has {profile.length:g} m."
+            f"The IRI requires a profile of at least {START:g} m; {profile.source!r} has {profile.length:g} m."
         )
     even = profile.even()
     return float(np.mean([_of_track(heights, even.interval) for heights in even.tracks.values()]))
 
 
 def transition(interval: float) -> tuple[Matrix, Matrix]:
-    """The golden car over one interval [m] of constant slope: the next state is the first times the state, plus the
+    """The Golden Car over one interval [m] of constant slope: the next state is the first times the state, plus the
     second times the slope. States are the slopes of sprung and unsprung mass, each followed by its rate [1/s].
     """
     A, B = _golden_car()
@@ -69,7 +70,7 @@ def _golden_car() -> tuple[Matrix, Matrix]:
 
 @lru_cache(maxsize=8)
 def _modes(interval: float) -> tuple[NDArray[np.complex128], ...]:
-    """Of one interval: the factor of each mode, what a slope adds, its part in the travel, and modes from states."""
+    """Modal form over one interval: factor and gain of each mode, its part in the travel, and modes from states."""
     A, B = _golden_car()
     rates, shapes = np.linalg.eig(A)
     inverse = np.linalg.inv(shapes)
@@ -78,7 +79,7 @@ def _modes(interval: float) -> tuple[NDArray[np.complex128], ...]:
 
 
 def _nearest(ratio: float) -> int:
-    """The nearest whole number, of two the larger, whatever rounding does to a half."""
+    """Nearest integer, the larger of two, also for a half with rounding errors."""
     return int(ratio + 0.5 + 1e-6)
 
 
@@ -90,7 +91,7 @@ def _of_track(height: Matrix, interval: float) -> float:
     factor, gain, seen, inverse = _modes(interval)
     initial = inverse @ np.array([start, 0.0, start, 0.0])
     travel = np.zeros(slope.size)
-    for at in range(factor.size):  # the modes do not know of each other, so each is a filter of first order
+    for at in range(factor.size):  # the modes are decoupled, so each is a filter of first order
         mode, _ = scipy.signal.lfilter(
             [gain[at]], [1.0, -factor[at]], slope.astype(complex), zi=[factor[at] * initial[at]]
         )

@@ -1,7 +1,8 @@
-"""A measured profile: heights over the distance along one track of a road, or two."""
+"""A measured elevation profile along one or two tracks of a road."""
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError
 from inerter.signals.arguments import positive
-from inerter.signals.signal import Sampled, Signal
+from inerter.signals.signal import SampledSignal, Signal
 
 Matrix = NDArray[np.float64]
 LEFT, RIGHT = "left", "right"
@@ -20,16 +21,16 @@ _EVEN = 1e-3  # of an interval: distances that stray less from an even spacing c
 
 @dataclass(frozen=True, eq=False)
 class Profile:
-    """Heights [m] over the distance [m] along a road; with `right` there are two tracks, of which `height` is the left.
+    """Heights [m] over the distance [m] along a road; with `right` for two tracks, of which `height` is the left.
 
-    Raises `RecordError` unless all are finite vectors of one length of at least two, and the distance increases.
+    Raises `RecordError` unless all are finite vectors of one length of at least two, and the distances increase.
     """
 
     distance: Matrix  # (n,) [m]
     height: Matrix  # (n,) [m]
     right: Matrix | None = None  # (n,) [m]
     source: str = "profile"
-    notes: tuple[str, ...] = ()  # sentences about how it was read
+    notes: tuple[str, ...] = ()  # sentences about its reading
 
     def __post_init__(self) -> None:
         for name in ("distance", "height", "right"):
@@ -48,7 +49,7 @@ class Profile:
             bad = np.flatnonzero(~np.isfinite(array))
             if bad.size:
                 raise RecordError(
-                    f"The {name} of {self.source!r} is missing or no finite number at {bad.size} points, the first is "
+                    f"The {name} of {self.source!r} is missing or not finite at {bad.size} points, the first is "
                     f"point {bad[0]}. Fill these gaps, or cut the profile there."
                 )
             array.setflags(write=False)
@@ -63,12 +64,12 @@ class Profile:
 
     @property
     def tracks(self) -> dict[str, Matrix]:
-        """The heights of each track by its name, "left" and "right"; of a single one by the name ""."""
+        """Heights [m] by track name: "left" and "right", or "" for a single track."""
         return {"": self.height} if self.right is None else {LEFT: self.height, RIGHT: self.right}
 
     @property
     def length(self) -> float:
-        """From the first point to the last [m]."""
+        """Distance from the first point to the last [m]."""
         return float(self.distance[-1] - self.distance[0])
 
     @property
@@ -77,9 +78,9 @@ class Profile:
         return self.length / (self.distance.size - 1)
 
     def even(self, interval: float | None = None) -> Profile:
-        """The same profile at evenly spaced points, by lines between those there are.
+        """The same profile at evenly spaced points, by linear interpolation.
 
-        Without an `interval` [m], the mean one; itself, where its points are evenly spaced already.
+        `interval` [m] is by default the mean one; a profile that is even already is then returned unchanged.
 
         Raises `RecordError` unless the interval is positive and at most the length.
         """
@@ -90,15 +91,16 @@ class Profile:
             interval = self.interval
         if not is_number(interval) or not 0.0 < interval <= self.length:
             raise RecordError(
-                f"A profile of {self.length:g} m cannot have a point every {interval!r} m; take an interval within it."
+                f"The interval of a profile of {self.length:g} m must be positive and at most its length, got "
+                f"{interval!r} m."
             )
         points = int(np.floor(self.length / interval * (1.0 + 1e-12))) + 1
         grid = self.distance[0] + interval * np.arange(points)
         along = [np.interp(grid, self.distance, heights) for heights in self.tracks.values()]
         return replace(self, distance=grid, height=along[0], right=along[1] if len(along) > 1 else None)
 
-    def driven(self, speed: float, track: str = "") -> Sampled:
-        """One track as a signal: driven over at `speed` [m/s] from its first point at t = 0, by a cubic spline.
+    def to_signal(self, speed: float, track: str = "") -> SampledSignal:
+        """One track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
         Raises `SignalError` unless `speed` is positive, and `track` one of its tracks.
         """
@@ -111,14 +113,19 @@ class Profile:
             (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
         )
 
-    def signals(self, speed: float) -> Sampled | dict[str, Sampled]:
-        """What `simulate(..., road=...)` takes: one signal, or one for the left and one for the right track.
+    def driven(self, speed: float, track: str = "") -> SampledSignal:
+        """The old name of `to_signal`."""
+        warnings.warn("`driven` is now `to_signal`; the old name goes with the next version.", DeprecationWarning, 2)
+        return self.to_signal(speed, track)
+
+    def signals(self, speed: float) -> SampledSignal | dict[str, SampledSignal]:
+        """Signals for `simulate(..., road=...)`: one signal, or one for the left and one for the right track.
 
         Raises `SignalError` unless `speed` [m/s] is positive.
         """
-        found = {track: self.driven(speed, track) for track in self.tracks}
+        found = {track: self.to_signal(speed, track) for track in self.tracks}
         return found.get("", found)
 
 
 def _tracks_there(tracks: Mapping[str, Matrix]) -> str:
-    return "it is a single one, without a name" if "" in tracks else 'say which, track = "left" or "right"'
+    return "it has a single track without a name" if "" in tracks else 'select one with track = "left" or "right"'

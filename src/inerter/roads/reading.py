@@ -1,4 +1,4 @@
-"""Reading a measured profile: tables as those of records, and OpenCRG."""
+"""Reading a measured profile: tables in the formats of records, and OpenCRG."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from inerter.records.channels import Channel, Contents
 from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
-from inerter.signals.signal import Sampled
+from inerter.signals.signal import SampledSignal
 from inerter.units import parse_quantity, shown
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
-# Words that tell a column by themselves, in the order in which they are looked for.
+# Names that identify a column, in the order in which they are sought.
 _WORDS = {
     "distance": r"distance|dist|chainage|station|stationing|stationierung|position|pos|weg|strecke|distanz|abscisse"
     r"|x|s|u",
@@ -39,7 +39,7 @@ _EXAMPLES = {"distance": "m", "height": "mm"}
 
 
 class Columns(TypedDict, total=False):
-    """Which column is which, by its name in the file or its number from 0."""
+    """Column of each role, by its name in the file or its number from 0."""
 
     distance: str | int | None
     height: str | int | None
@@ -54,61 +54,61 @@ def read_profile(
     lateral: Sequence[float] | None = None,
     **named: Unpack[Columns],
 ) -> Profile:
-    """The profile in a table (.csv, .tsv, .txt, .dat) or in an OpenCRG file (.crg).
+    """The profile of a table (.csv, .tsv, .txt, .dat) or of an OpenCRG file (.crg).
 
     A table has columns of distances and heights, in any order, with any separator, decimal point or comma, and with a
     header or without: `distance`, `height` (of the left track, where there are two) and `right` are named as in the
     file, numbered from 0, or found by an obvious name (distance, x, height, elevation, left, right, ...); without a
-    header the one that increases is the distance. Units stand in the header, or in `units`, such as {"distance": "m",
-    "height": "mm"}, which hold for both tracks. `interval` [m] gives the spacing where there are no distances.
+    header the increasing column is the distance. Units are read from the header, or given by `units`, such as
+    {"distance": "m", "height": "mm"}, for both tracks. `interval` [m] gives the spacing where there are no distances.
 
-    `lateral` are the positions [m] at which a .crg file is read, left of its reference line positive: one, or those of
-    the left and the right track; (0,) if it is left out. That needs PyOpenCRG (`pip install "inerter[roads]"`).
+    `lateral` are the positions [m] at which a .crg file is read, positive to the left of its reference line: one, or
+    those of the left and the right track; default: (0,). Requires PyOpenCRG (`pip install "inerter[roads]"`).
 
-    Raises `RecordError` for a file, column or unit that cannot be used, in one sentence that says what to try.
+    Raises `RecordError` for a file, column or unit that cannot be used, with a remedy.
     """
-    name = _checked(path, named)
+    name = _check_path(path, named)
     source, suffix = Path(name).name, Path(name).suffix.lower()
     if suffix == ".crg":
         if units is not None or interval is not None or named:
-            raise RecordError("An OpenCRG file says itself what is where: give its path, and `lateral` if you like.")
+            raise RecordError("An OpenCRG file requires no units, interval or columns. Give its path, and `lateral`.")
         return _from_crg(name, source, _checked_lateral(lateral))
     if lateral is not None:
-        raise RecordError("`lateral` is for OpenCRG files; the tracks of a table are columns, `height` and `right`.")
+        raise RecordError("`lateral` applies to OpenCRG files; for tables, name the columns `height` and `right`.")
     return _from_table(name, source, _checked_units(units), interval, named)
 
 
-def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> Sampled:
-    """A measured road of one track, driven at `speed` [m/s] from its first point at t = 0, by a cubic spline.
+def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> SampledSignal:
+    """A measured road of one track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
-    `path` is a file as `read_profile` reads it without being told more; of two tracks, `track` is "left" or "right".
+    `path` is a file that `read_profile` reads without further arguments; for two tracks, `track` is "left" or "right".
 
-    Raises `SignalError` for a file that cannot be read as such, or a track that it does not have.
+    Raises `SignalError` for a file that cannot be read in this way, or an unknown track.
     """
     try:
-        return read_profile(path).driven(speed, track)
+        return read_profile(path).to_signal(speed, track)
     except RecordError as problem:
         raise SignalError(str(problem)) from None
 
 
-def _checked(path: str | os.PathLike[str], named: Columns) -> str:
+def _check_path(path: str | os.PathLike[str], named: Columns) -> str:
     for role in named:
         if role not in Columns.__annotations__:
             raise RecordError(
                 f"read_profile(...) has no argument {role!r}; columns are {', '.join(Columns.__annotations__)}."
             )
     if not isinstance(path, str | os.PathLike):
-        raise RecordError(f"A profile is read from the path of a CSV or CRG file, got {path!r}.")
+        raise RecordError(f"The path of a profile must be that of a CSV or CRG file; got {path!r}.")
     name = os.fsdecode(path)
     if "\0" in name or os.path.isdir(name):
-        raise RecordError(f"{name!r} cannot be read: it is no file. Give the path of a CSV or CRG file.")
+        raise RecordError(f"{name!r} is not a file. Give the path of a CSV or CRG file.")
     if not os.path.exists(name):
-        raise RecordError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.")
+        raise RecordError(f"{name}: file not found in {os.getcwd()!r}. Check the path.")
     suffix = Path(name).suffix.lower()
     if suffix not in (*_TABLES, ".crg"):
         raise RecordError(
-            f"{Path(name).name}: profiles are read from {', '.join((*_TABLES, '.crg'))}, by the suffix of the file, "
-            f"not from {suffix or 'a file without one'}. Export or rename it."
+            f"{Path(name).name}: unsupported file suffix {suffix!r}; supported: {', '.join((*_TABLES, '.crg'))}. "
+            f"Export or rename the file."
         )
     return name
 
@@ -117,7 +117,7 @@ def _checked_units(units: object) -> dict[str, str]:
     if units is None:
         return {}
     if not isinstance(units, Mapping) or not {*units} <= {"distance", "height"}:
-        raise RecordError(f'The units of a profile are such as {{"distance": "m", "height": "mm"}}, got {units!r}.')
+        raise RecordError(f'units must be a table such as {{"distance": "m", "height": "mm"}}, got {units!r}.')
     return dict(units)
 
 
@@ -127,12 +127,12 @@ def _from_table(
     if interval is not None and (not is_number(interval) or interval <= 0.0):
         raise RecordError(f"The interval between points must be a positive number of m, got {interval!r}.")
     if interval is not None and named.get("distance") is not None:
-        raise RecordError(f"Give the interval ({interval:g} m) or the column of distances, not both.")
+        raise RecordError(f"Give either the interval ({interval:g} m) or the column of distances, not both.")
     asked = {role: named.get(role) for role in _WORDS}
     try:
         with tables.open_channels(name, source) as contents:
-            chosen = _chosen(source, contents, asked, spaced=interval is not None)
-            worth = _scales(source, chosen, units, spaced=interval is not None)
+            chosen = _select_columns(source, contents, asked, spaced=interval is not None)
+            worth = _unit_sizes(source, chosen, units, spaced=interval is not None)
             values = _read(contents, [chosen[role] for role in worth])
     except OSError as problem:
         raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
@@ -143,17 +143,19 @@ def _from_table(
 
 
 def _read(contents: Contents, channels: list[Channel]) -> list[Matrix]:
-    return [np.asarray(samples.values, dtype=float) for samples in contents.read(channels, _silent)]
+    return [np.asarray(samples.values, dtype=float) for samples in contents.read(channels, _ignore_progress)]
 
 
-def _silent(fraction: float) -> None:
+def _ignore_progress(fraction: float) -> None:
     pass
 
 
-def _chosen(source: str, contents: Contents, named: Mapping[str, str | int | None], spaced: bool) -> dict[str, Channel]:
-    """The column of each role; `spaced` says that no distances are needed."""
+def _select_columns(
+    source: str, contents: Contents, named: Mapping[str, str | int | None], spaced: bool
+) -> dict[str, Channel]:
+    """The column of each role; with `spaced` no distances are required."""
     channels = contents.channels
-    asked = {role: _named(source, channels, role, given) for role, given in named.items() if given is not None}
+    asked = {role: _column_by_name(source, channels, role, given) for role, given in named.items() if given is not None}
     chosen = dict(asked)
     for role, words in _WORDS.items():
         if role not in chosen and not (role == "distance" and spaced):
@@ -162,8 +164,8 @@ def _chosen(source: str, contents: Contents, named: Mapping[str, str | int | Non
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
                 raise RecordError(
-                    f"{source}: {names} may both be the {role}. Leave that name to one of them in the file, or "
-                    f"name it: ",
+                    f"{source}: ambiguous {role} column: {names}. Rename one of them in the file, or select one by "
+                    f"name: ",
                     *(Remedy(Action.COLUMN, ((role, alike[0].name),)), "."),
                 )
             chosen |= {role: alike[0]} if alike else {}
@@ -171,17 +173,19 @@ def _chosen(source: str, contents: Contents, named: Mapping[str, str | int | Non
         chosen |= _by_order(source, contents, chosen, spaced)
     for role in ("distance", "height"):
         if role not in chosen and not (role == "distance" and spaced):
-            raise _unnamed(source, role, [channel for channel in channels if channel not in chosen.values()], channels)
+            raise _missing_column(
+                source, role, [channel for channel in channels if channel not in chosen.values()], channels
+            )
     if len(set(chosen.values())) < len(chosen):
-        raise RecordError(f"{source}: one column is named for two of {', '.join(chosen)}. Name another one.")
+        raise RecordError(f"{source}: one column is named for two of {', '.join(chosen)}. Name different columns.")
     return chosen
 
 
-def _unnamed(source: str, role: str, left: Sequence[Channel], channels: Sequence[Channel]) -> RecordError:
+def _missing_column(source: str, role: str, left: Sequence[Channel], channels: Sequence[Channel]) -> RecordError:
     there = ", ".join(channel.label for channel in channels[:12])
     return RecordError(
-        f'{source}: no column has an obvious name for the {role}; there are {there}. Write "{role}" over it in the '
-        f"file, or name it, such as ",
+        f'{source}: {role} column not found by an obvious name; available: {there}. Name it "{role}" in the file, or '
+        f"select it, such as ",
         Remedy(Action.COLUMN, ((role, (left or channels)[0].name),)),
         *((", or give ", Remedy(Action.INTERVAL, 0.1)) if role == "distance" else ()),
         ".",
@@ -194,7 +198,7 @@ def _is_called(name: str, words: str) -> bool:
 
 
 def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, Matrix]:
-    """The columns that hold numbers alone."""
+    """The columns that contain only numbers."""
     found = {}
     for channel in channels:
         with suppress(RecordError):  # remarks
@@ -203,7 +207,7 @@ def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, M
 
 
 def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool) -> dict[str, Channel]:
-    """Of a table without a header: the distance is the one column that increases; then heights, left before right."""
+    """Columns of a table without a header: the increasing one is the distance; then heights, left before right."""
     values = _numbers(contents, [channel for channel in contents.channels if channel not in chosen.values()])
     left = list(values)
     found: dict[str, Channel] = {}
@@ -212,8 +216,8 @@ def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], sp
         if len(rising) != 1:
             which = "no column increases" if not rising else "several columns increase"
             raise RecordError(
-                f"{source} has no header, and {which} throughout, so that the distance is not known. Write names "
-                f'over the columns, such as "distance [m], height [mm]", or name both by number, counted from 0, ',
+                f"{source} has no header, and {which} throughout, so the distance is unknown. Write names above "
+                f'the columns, such as "distance [m], height [mm]", or select both by number, counted from 0, ',
                 *(Remedy(Action.COLUMN, (("distance", 0), ("height", 1))), ", with "),
                 *(Remedy(Action.UNITS, tuple(_EXAMPLES.items())), "."),
             )
@@ -225,18 +229,18 @@ def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], sp
     return found
 
 
-def _named(source: str, channels: Sequence[Channel], role: str, given: object) -> Channel:
+def _column_by_name(source: str, channels: Sequence[Channel], role: str, given: object) -> Channel:
     if isinstance(given, int) and not isinstance(given, bool) and 0 <= given < len(channels):
         return channels[given]
     alike = [channel for channel in channels if channel.name == given]
     if len(alike) != 1:
         there = ", ".join(channel.label for channel in channels[:12])
-        raise RecordError(f"{source} has no single column {given!r} for the {role}; there are {there}.")
+        raise RecordError(f"{source}: unknown or repeated column {given!r} for the {role}; available: {there}.")
     return alike[0]
 
 
-def _scales(source: str, chosen: Mapping[str, Channel], units: Mapping[str, str], spaced: bool) -> dict[str, float]:
-    """What one unit of each column is worth [m], by role; `spaced` says that distances are not read."""
+def _unit_sizes(source: str, chosen: Mapping[str, Channel], units: Mapping[str, str], spaced: bool) -> dict[str, float]:
+    """Size of the unit of each column [m], by role; with `spaced` distances are not read."""
     read = {role: channel for role, channel in chosen.items() if not (role == "distance" and spaced)}
     given = {role: units.get(_kind(role), channel.unit) for role, channel in read.items()}
     bare = [role for role, unit in given.items() if not isinstance(unit, str) or not unit.strip()]
@@ -245,26 +249,26 @@ def _scales(source: str, chosen: Mapping[str, Channel], units: Mapping[str, str]
         names = " and ".join(repr(name) for name in kinds.values())
         over = ", ".join(f"{kind} [{_EXAMPLES[kind]}]" for kind in kinds)
         raise RecordError(
-            f"{source}: {names} {'has' if len(kinds) == 1 else 'have'} no unit. Write it behind the name, such as "
-            f'"{over}", or name it: ',
+            f"{source}: {names} {'has' if len(kinds) == 1 else 'have'} no unit. Write it after the name, such as "
+            f'"{over}", or specify it: ',
             *(Remedy(Action.UNITS, tuple((kind, _EXAMPLES[kind]) for kind in kinds)), "."),
         )
-    return {role: _scale(source, role, read[role], unit) for role, unit in given.items()}
+    return {role: _unit_size(source, role, read[role], unit) for role, unit in given.items()}
 
 
 def _kind(role: str) -> str:
     return "distance" if role == "distance" else "height"
 
 
-def _scale(source: str, role: str, channel: Channel, unit: str) -> float:
-    """What one unit of the column is worth [m]."""
+def _unit_size(source: str, role: str, channel: Channel, unit: str) -> float:
+    """Size of the unit of the column [m]."""
     kind = _kind(role)
     try:
         worth = parse_quantity(f"1 {unit.strip()}", "m")
     except UnitError:
         raise RecordError(
-            f"{source}: the unit {shown(unit)} of {channel.name!r} is none of length. Write another behind the "
-            f'name, such as "{kind} [{_EXAMPLES[kind]}]", or name it: ',
+            f"{source}: the unit {shown(unit)} of {channel.name!r} is not a unit of length. Write another after the "
+            f'name, such as "{kind} [{_EXAMPLES[kind]}]", or specify it: ',
             *(Remedy(Action.UNITS, ((kind, _EXAMPLES[kind]),)), "."),
         ) from None
     return worth
@@ -276,7 +280,7 @@ def _checked_lateral(lateral: object) -> tuple[float, ...]:
     given = tuple(lateral) if isinstance(lateral, Sequence) and not isinstance(lateral, str) else ()
     if len(given) not in (1, 2) or not all(map(is_number, given)):
         raise RecordError(
-            f"`lateral` is one position [m], or two, left and right, such as (0.75, -0.75); got {lateral!r}."
+            f"`lateral` must be one position [m], or two, left and right, such as (0.75, -0.75); got {lateral!r}."
         )
     return tuple(map(float, given))
 
@@ -284,13 +288,14 @@ def _checked_lateral(lateral: object) -> tuple[float, ...]:
 def _from_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
     crg = library("pyopencrg", "roads", "OpenCRG files")
     with reraise_read_errors(source, "OpenCRG"), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # its remarks on headers that no height depends on
+        warnings.simplefilter("ignore")  # its warnings on headers without effect on heights
         road = crg.read(name)
         distance, low, high = np.array(road.u, dtype=float), float(road.v_min), float(road.v_max)
         heights = [np.asarray(road.uv_to_z(distance, np.full(distance.size, at)), dtype=float) for at in lateral]
     for at in lateral:
         if not low - 1e-6 <= at <= high + 1e-6:
             raise RecordError(
-                f"{source} reaches from {low:g} to {high:g} m beside its reference line, not to {at:g} m."
+                f"{source}: lateral position {at:g} m outside the road, which extends from {low:g} to {high:g} m from "
+                f"its reference line."
             )
     return Profile(distance, heights[0], heights[1] if len(heights) > 1 else None, source)

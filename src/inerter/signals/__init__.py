@@ -1,1 +1,1 @@
-"""Roads as random processes, and signals: road heights, displacements and forces as functions of time."""
+"""Random road models, and signals: road heights, displacements and forces as functions of time."""

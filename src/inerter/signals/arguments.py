@@ -1,4 +1,4 @@
-"""Checks of what signals are made of."""
+"""Checks of the arguments of signals."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def band(what: str, lowest: object, highest: object) -> tuple[float, float]:
 
 
 def speed_or_none(value: object) -> float | None:
-    """The speed of a vehicle [m/s], or None where it is not known."""
+    """The speed of a vehicle [m/s], or None where it is unknown."""
     return None if value is None else positive("The speed of a signal", value, "m/s")
 
 
 def generator(seed: object) -> np.random.Generator:
-    """Random numbers that the seed alone decides."""
+    """Random number generator of a seed; raises `SignalError` unless it is a non-negative integer."""
     if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
-        raise SignalError(f"A seed must be a whole number from 0 on, got {seed!r}.")
+        raise SignalError(f"A seed must be a non-negative integer, got {seed!r}.")
     return np.random.default_rng(int(seed))
 
 
@@ -58,7 +58,9 @@ def real_array(what: str, values: object) -> Array:
     try:
         given: NDArray[Any] = np.asarray(values)
     except (TypeError, ValueError):
-        raise SignalError(f"{what} must be real numbers, got a {type(values).__name__} that makes no array.") from None
+        raise SignalError(
+            f"{what} must be real numbers, got a {type(values).__name__} that cannot be converted to an array."
+        ) from None
     if given.size and given.dtype.kind not in "iuf":
         raise SignalError(f"{what} must be real numbers, got {_kind(given, values)}.")
     array = given.astype(float)
@@ -78,28 +80,28 @@ def real_vector(what: str, values: object) -> Array:
 
 
 def whole_number(length: float, interval: float, what: str) -> int:
-    """How often `interval` goes into `length`; raises `SignalError` unless that is a whole number."""
+    """Number of intervals in `length`; raises `SignalError` unless that is an integer."""
     ratio = length / interval
     if ratio > MOST:
         raise SignalError(
-            f"{what} of {length:g} s holds {ratio:.3g} intervals of {interval:g} s; at most 1e8 are kept."
+            f"{what} of {length:g} s has {ratio:.3g} intervals of {interval:g} s; at most 1e8 are supported."
         )
     count = round(ratio)
     if count < 1 or abs(ratio - count) > 1e-6:
         raise SignalError(
             f"{what} of {length:g} s is not a whole number of intervals of {interval:g} s. "
-            f"Take an interval such as {length / max(count, 1):.12g} s."
+            f"Use an interval such as {length / max(count, 1):.12g} s."
         )
     return count
 
 
 def slack(time: Any, interval: float | None) -> Any:
-    """How far a time may miss the knot that it means, by rounding; 1e-12 s where there is no table."""
+    """Tolerance of a time against a knot, for rounding [s]; 1e-12 s where there is no table."""
     return 1e-9 * (interval or 1e-3) + 4.0 * np.finfo(float).eps * np.abs(time)
 
 
 def between(times: Array, start: float, stop: float, interval: float | None = None) -> Array:
-    """Those of `times` that lie between `start` and `stop` by more than rounding."""
+    """The times between `start` and `stop`, without those that differ from the ends by rounding only."""
     check_span(start, stop)
     inside: NDArray[np.bool_] = (times > start + slack(start, interval)) & (times < stop - slack(stop, interval))
     return times[inside]

@@ -1,4 +1,4 @@
-"""How alike the two tracks of a road are: coherence over wavenumber, and the independent parts that have it."""
+"""Coherence between the left and right tracks of a road, and the independent parts that have it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from inerter.errors import PerformanceIndexError
 
 Array = NDArray[np.float64]
 Ratio = tuple[tuple[float, ...], tuple[float, ...]]  # of polynomials in s, the highest power first
-# 1 - x K1(x) within 6 % of itself for x from 1e-3 on, as a ratio of polynomials in x^2 (minimax fit of the ratio).
+# 1 - x K1(x) within 6 % of itself for x above 1e-3, as a ratio of polynomials in x^2 (minimax fit of the ratio).
 _ISOTROPIC = (
     (2.321311584441453e-06, 0.034459574806466296, 1.4486734273829336),
     (2.321311584441453e-06, 0.03446783522489262, 1.5149025250469859, 1.0),
@@ -27,14 +27,14 @@ _STEP, _LOWEST, _HIGHEST = 0.02, -32.0, 16.0  # of ln x in a table, whose cubics
 
 @dataclass(frozen=True)
 class Coherence:
-    """The cross-spectrum of left and right track over the spectrum that both have, a real function of wavenumber n.
+    """Normalised cross-spectrum (coherency) of the left and right tracks, a real function of wavenumber n.
 
     It is numerator / denominator, polynomials in x^2 with the lowest power first, where x = 2 pi n `length`; that of an
-    `is_isotropic` surface is x K1(x), for which this ratio only stands in where filters are needed. Make one by
+    `is_isotropic` surface is x K1(x), which this ratio approximates where filters are required. Create one with
     `Coherence.constant`, `Coherence.first_order` or `Coherence.isotropic`. The mean of the tracks and half of their
     difference, which are independent, then have (1 + coherence) / 2 and (1 - coherence) / 2 of the spectrum.
 
-    Raises `PerformanceIndexError` unless it stays between -1 and 1 at every wavenumber.
+    Raises `PerformanceIndexError` unless it is between -1 and 1 at every wavenumber.
     """
 
     numerator: Sequence[float]
@@ -47,24 +47,24 @@ class Coherence:
         for name in ("numerator", "denominator"):
             given = getattr(self, name)
             if not isinstance(given, Sequence) or not given or not all(map(is_number, given)):
-                raise PerformanceIndexError(f"The {name} of a coherence is a list of numbers, got {given!r}.")
+                raise PerformanceIndexError(f"The {name} of a coherence must be a list of numbers, got {given!r}.")
             object.__setattr__(self, name, tuple(map(float, given)))
         if self.is_isotropic and (self.numerator, self.denominator) != _ISOTROPIC:
             raise PerformanceIndexError(
-                "The coherence of an isotropic surface has polynomials of its own; make it by "
+                "The polynomials of the coherence of an isotropic surface are fixed. Use "
                 "Coherence.isotropic(track=...)."
             )
         square = np.concatenate([[0.0], np.geomspace(1e-12, 1e12, 2401)])
         top, bottom = (np.polyval(p[::-1], square) for p in (self.numerator, self.denominator))
         if np.any(bottom <= 0.0) or np.any(np.abs(top) > bottom * (1.0 + 1e-12)):
             raise PerformanceIndexError(
-                "A coherence stays between -1 and 1 at every wavenumber, and its denominator positive; this one does "
-                "not. Make one by Coherence.constant, Coherence.first_order or Coherence.isotropic."
+                "A coherence must be between -1 and 1 at every wavenumber, and its denominator positive. Use "
+                "Coherence.constant, Coherence.first_order or Coherence.isotropic."
             )
 
     @classmethod
     def constant(cls, level: float) -> Coherence:
-        """The same at all wavenumbers: 1 if the tracks are alike, 0 if they are independent.
+        """The same coherence at all wavenumbers: 1 for identical tracks, 0 for independent ones.
 
         Raises `PerformanceIndexError` unless `level` is a number from -1 to 1.
         """
@@ -72,7 +72,7 @@ class Coherence:
 
     @classmethod
     def first_order(cls, wavenumber: float, level: float = 1.0) -> Coherence:
-        """`level` / (1 + (n / `wavenumber`)^2): alike in long waves, independent in short ones, half at `wavenumber`.
+        """Coherence `level` / (1 + (n / `wavenumber`)^2), which falls to half its level at `wavenumber`.
 
         Raises `PerformanceIndexError` unless `wavenumber` [cycle/m] is positive and `level` a number from -1 to 1.
         """
@@ -81,7 +81,7 @@ class Coherence:
 
     @classmethod
     def isotropic(cls, track: float) -> Coherence:
-        """That of tracks `track` [m] apart on a surface that is as rough in every direction, x K1(x), x = 2 pi n track.
+        """Coherence x K1(x), x = 2 pi n track, of tracks `track` [m] apart on an isotropic surface.
 
         K1 is a Bessel function. Source: Kamash and Robson (1978), for the waviness 2.
 
@@ -96,16 +96,17 @@ class Coherence:
         return np.asarray(1.0 - _difference(x)) if self.is_isotropic else self._ratio(x)
 
     def in_phase(self, speed: float) -> Ratio | None:
-        """What makes the mean of both tracks of white noise at `speed` [m/s], as a stable filter; None for nothing."""
+        """Stable filter of white noise for the mean of both tracks at `speed` [m/s]; None if the mean is zero."""
         return self._factor(1.0, speed)
 
     def in_anti_phase(self, speed: float) -> Ratio | None:
-        """The same for half of their difference, left less right."""
+        """Stable filter of white noise for half of the difference of the tracks, left minus right; None if zero."""
         return self._factor(-1.0, speed)
 
     def excess(self, sign: float, speed: float) -> Excess | None:
-        """By what part the density of the mean of the tracks (`sign` 1), or of half of their difference (-1), exceeds
-        that behind the filter; None where the filter is exact.
+        """Relative excess of the density over that of the filter; None where the filter is exact.
+
+        `sign` is 1 for the mean of the tracks, and -1 for half of their difference.
         """
         return Excess(self.length / speed, sign) if self.is_isotropic else None
 
@@ -126,30 +127,29 @@ class Coherence:
 
 @dataclass(frozen=True)
 class Excess:
-    """By what part the density of a source exceeds that behind the filter which stands in for it: a function of omega.
+    """Relative excess of the density of a source over that of its approximating filter: a function of omega.
 
-    Of one of the two independent parts of tracks on an isotropic surface, `sign` 1 for their mean and -1 for half of
-    their difference, with the time that a vehicle takes to go as far as the tracks are apart. It is no larger than
-    0.06 where omega `time` exceeds 1e-3, grows as the logarithm of longer waves, and is 1.45 / (omega time)^2 in short
-    ones.
+    For one of the two independent parts of tracks on an isotropic surface, `sign` 1 for their mean and -1 for half of
+    their difference; `time` is the track divided by the speed of the vehicle. The excess is at most 0.06 where omega
+    `time` exceeds 1e-3, grows with the logarithm of longer waves, and is 1.45 / (omega time)^2 in short ones.
     """
 
     time: float  # [s]
     sign: float
 
     def __call__(self, omega: Array) -> Array:
-        """At frequencies [rad/s], not zero."""
+        """The excess at non-zero frequencies omega [rad/s]."""
         return _excess(self.sign, np.abs(np.asarray(omega, dtype=float)) * self.time)
 
     def factor(self, omega: Array) -> Array:
-        """What the response of the filter is to be multiplied by, for the density that is meant."""
+        """Factor on the frequency response of the filter that corrects the density."""
         return np.sqrt(1.0 + self(omega))
 
     @property
     def table(self) -> tuple[float, float, float, Array]:
-        """The time, the first ln(omega time), the step of it, and there the excess and its slope over it (2, n).
+        """Time [s], first value and step of ln(omega time), and the excess and its slope over it there (2, n).
 
-        Below the first the excess is linear.
+        Below the first value the excess is linear.
         """
         return self.time, _LOWEST, _STEP, _table(self.sign)
 
@@ -174,7 +174,7 @@ def _excess(sign: float, x: Array) -> Array:
 
 
 def _difference(x: Array) -> Array:
-    """1 - x K1(x), below 1 by the series of K1, which loses no digits (Abramowitz and Stegun, 9.6.11)."""
+    """1 - x K1(x), below 1 by the series of K1, without cancellation (Abramowitz and Stegun, 9.6.11)."""
     near = np.clip(x, 1e-150, 1.0)
     square, term, total = 0.25 * near**2, np.ones_like(near), np.zeros_like(near)
     for k in range(_TERMS):
@@ -186,7 +186,7 @@ def _difference(x: Array) -> Array:
 
 def _level(value: object) -> float:
     if not is_number(value) or abs(value) > 1.0:
-        raise PerformanceIndexError(f"The level of a coherence is a number from -1 to 1, got {value!r}.")
+        raise PerformanceIndexError(f"The level of a coherence must be a number from -1 to 1, got {value!r}.")
     return float(value)
 
 

@@ -30,17 +30,17 @@ class Harmonics(Signal):
 
     @property
     def frequencies(self) -> Array:
-        """Of each harmonic, k / period [Hz]."""
+        """Frequency of each harmonic, k / period [Hz]."""
         return self._orders / self.period
 
     @property
     def amplitudes(self) -> Array:
-        """In the unit of the signal."""
+        """Amplitude of each harmonic, in the unit of the signal."""
         return np.abs(self.coefficient)
 
     @property
     def phases(self) -> Array:
-        """Of the cosines, [rad] from -pi to pi."""
+        """Phase of each cosine [rad], from -pi to pi."""
         return np.angle(self.coefficient)
 
     def grid(self, start: float, step: float, count: int) -> Pair:
@@ -51,7 +51,7 @@ class Harmonics(Signal):
             return self._by_transform(start, length, len(times))
         return self._by_blocks(start, step, len(times))
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         flat = time.ravel()
         total = np.empty((2, len(flat)))
         size = max(_CHUNK // len(self.coefficient), 1)
@@ -60,11 +60,11 @@ class Harmonics(Signal):
         return total[0].reshape(time.shape), total[1].reshape(time.shape)
 
     def _by_transform(self, start: float, length: int, count: int) -> Pair:
-        """One Fourier transform for a grid of `length` points a period; harmonics beyond its band fold back exactly."""
+        """One Fourier transform for a grid of `length` points per period; higher harmonics are aliased exactly."""
         orders = len(self.coefficient)
         rows = self._rows if start == 0.0 else self._rows * self._waves(np.array([start]))[:, 0]
         if orders < length / 2:
-            half = np.zeros((2, orders + 1), complex)  # the transform knows that higher harmonics are zero
+            half = np.zeros((2, orders + 1), complex)  # the transform pads higher harmonics with zeros
             np.multiply(0.5, rows, out=half[:, 1:])
         else:
             padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
@@ -77,7 +77,7 @@ class Harmonics(Signal):
         return np.resize(value, count), np.resize(slope, count)
 
     def _by_blocks(self, start: float, step: float, count: int) -> Pair:
-        """The sum itself: blocks of equal points share their sines, and a matrix product adds them up."""
+        """Direct summation: blocks of equal points share their sines, and a matrix product adds them."""
         block = math.isqrt(count) + 1
         coarse = start + step * block * np.arange(-(-count // block), dtype=float)
         fine = step * np.arange(block, dtype=float)
@@ -107,29 +107,30 @@ class Harmonics(Signal):
 
 
 def multisine(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.0) -> Harmonics:
-    """A random road: harmonics `lowest`, 2 `lowest`, ... up to `highest` [Hz] with independent uniform phases.
+    """Random-phase multisine of a road: harmonics `lowest`, 2 `lowest`, ... up to `highest` [Hz].
 
-    The amplitudes A_i = sqrt(8 pi kappa V d_omega) / omega_i give every band the power of `road`. Repeats after
+    Phases are independent and uniform; the amplitudes A_i = sqrt(8 pi kappa V d_omega) / omega_i give every band the
+    power of `road`. Repeats after
     1 / lowest seconds. Source: Wang and Su (2008), eq. (17), whose root must end before the division.
 
-    Raises `SignalError` unless 0 < lowest <= highest and `seed` is a whole number from 0 on.
+    Raises `SignalError` unless 0 < lowest <= highest and `seed` is a non-negative integer.
 
     >>> road = multisine(Road(roughness=5e-7, speed=25.0), seed=0)
     >>> road.period, road.highest_frequency
     (10.0, 1000.0)
     """
     if not isinstance(road, Road):
-        raise SignalError(f"A multisine needs a road such as Road(5e-7, 25.0), got {road!r}.")
+        raise SignalError(f"A multisine requires a road such as Road(5e-7, 25.0), got {road!r}.")
     low, high = band("multisine", lowest, highest)
     amplitude = np.sqrt(4.0 * road.roughness * road.speed * low) / (low * _orders_up_to(low, high))
     return _random_phases("multisine", amplitude, low, seed, road.speed)
 
 
 def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.0) -> dict[str, Harmonics]:
-    """The left and the right track of a random road with its coherence, as `simulate(..., road=...)` takes them.
+    """Left and right tracks of a random road with its coherence, for `simulate(..., road=...)`.
 
-    Harmonics as those of `multisine`, whose mean over both tracks and half of whose difference are independent; without
-    a coherence both tracks are the multisine of `seed`.
+    Harmonics as in `multisine`; the mean of both tracks and half of their difference are independent. Without a
+    coherence both tracks are the multisine of `seed`.
 
     Raises `SignalError` as `multisine` does.
     """
@@ -154,7 +155,7 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
 def random_road(
     road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.0
 ) -> Harmonics | dict[str, Harmonics]:
-    """The road as `simulate(..., road=...)` takes it: the left and the right track if it has a coherence, else one."""
+    """Road for `simulate(..., road=...)`: left and right tracks if it has a coherence, else a single one."""
     return (multisine if road.coherence is None else two_tracks)(road, seed, lowest, highest)
 
 
@@ -163,7 +164,7 @@ def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: 
 
     `rms` is that of the whole, in the unit of the signal. Repeats after 1 / lowest seconds.
 
-    Raises `SignalError` unless `rms` is positive, 0 < lowest <= highest, and `seed` is a whole number from 0 on.
+    Raises `SignalError` unless `rms` is positive, 0 < lowest <= highest, and `seed` is a non-negative integer.
     """
     size = positive("The r.m.s. value of a multisine", rms, "its unit")
     low, high = band("multisine", lowest, highest)
@@ -214,8 +215,10 @@ def _harmonics(label: str, coefficient: Complex, lowest: float, speed: float | N
 
 
 def _orders_up_to(lowest: float, highest: float) -> Array:
-    """1, 2, ... as far as whole multiples of `lowest` reach, `highest` included."""
+    """Orders 1, 2, ... of the multiples of `lowest` up to `highest` inclusive."""
     count = highest / lowest
     if count > _MOST:
-        raise SignalError(f"A multisine from {lowest:g} to {highest:g} Hz has {count:.3g} harmonics; at most 1e7 fit.")
+        raise SignalError(
+            f"A multisine from {lowest:g} to {highest:g} Hz has {count:.3g} harmonics; at most 1e7 are supported."
+        )
     return np.arange(1.0, math.floor(count * (1.0 + 1e-12)) + 1.0)

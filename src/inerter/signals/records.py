@@ -1,4 +1,4 @@
-"""Tables that come from elsewhere: held random numbers, and measured road profiles."""
+"""Tabulated signals: held random numbers, and measured time histories."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from inerter.errors import SignalError, UnitError
 from inerter.signals.arguments import Array, generator, positive, whole_number
-from inerter.signals.signal import Sampled, Signal
+from inerter.signals.signal import SampledSignal, Signal
 from inerter.units import parse_quantity, shown
 
 _HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
@@ -20,15 +20,15 @@ _HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
 def held_noise(
     seed: int, power: float, interval: float = 1e-3, duration: float = 100.0, speed: float | None = None
-) -> Sampled:
+) -> SampledSignal:
     """Band-limited white noise: independent normal samples, each held for `interval`, that repeat after `duration` [s].
 
     `power` is the two-sided density [unit^2/Hz] at low frequencies, so a sample has the standard deviation
     sqrt(power / interval): 3.162 mm for 1e-8 m^2/Hz and 1 ms. Source: Wang and Su (2008), the approximated linear
     model.
 
-    Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a whole
-    number from 0 on.
+    Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a
+    non-negative integer.
     """
     power = positive("The power of a noise", power, "its unit squared per Hz")
     interval = positive("The interval of a noise", interval, "s")
@@ -40,23 +40,24 @@ def held_noise(
     return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)
 
 
-def recorded(
+def read_signal(
     path: str | os.PathLike[str],
     unit: str = "m",
     hold: str = "cubic",
     *,
     periodic: bool = False,
     speed: float | None = None,
-) -> Sampled:
-    """A table of samples over time, as `Signal.sampled` takes it.
+) -> SampledSignal:
+    """Signal of a table of samples over time in a file, as by `Signal.sampled`.
 
-    `path` is a CSV file with a column of times and one of values, whose units stand in the header, such as
+    `path` is a CSV file with a column of times and one of values, with their units in the header, such as
     `time [s], value [mm]`; `unit` is that of the signal, m or N.
 
-    Raises `SignalError`, which names the line, for a file that cannot be read as such, and as `Signal.sampled` does.
+    Raises `SignalError`, which names the line, for a file that cannot be read in this way, and as `Signal.sampled`
+    does.
     """
     if not isinstance(path, str | os.PathLike):
-        raise SignalError(f"A record is read from the path of a CSV file, got {path!r}.")
+        raise SignalError(f"The path of a record must be that of a CSV file; got {path!r}.")
     name = os.fspath(path)
     time, value = _columns(name, "record", {"time": "s", "value": unit})
     return Signal.sampled(time, value, hold, periodic=periodic, speed=speed, label=f"record {Path(name).name}")
@@ -77,7 +78,7 @@ def _columns(name: str, what: str, units: dict[str, str]) -> Array:
                 f"after {points[-2][0]:.9g} {units[first]}."
             )
     if len(points) < 2:
-        raise SignalError(f"{name}: a {what} needs at least two points, got {len(points)}.")
+        raise SignalError(f"{name}: a {what} requires at least two points, got {len(points)}.")
     return np.array(points).T
 
 
@@ -86,13 +87,13 @@ def _example(units: dict[str, str]) -> str:
 
 
 def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[str]]]:
-    """The lines that are not empty, numbered, each of two cells; at least one."""
+    """The non-empty lines with their numbers, each of two cells; at least one."""
     try:
         with open(name, encoding="utf-8-sig", newline="") as file:
             reader = csv.reader(file, strict=True)
             rows = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
     except FileNotFoundError:
-        raise SignalError(f"There is no file {name!r}, looked for in {os.getcwd()!r}.") from None
+        raise SignalError(f"{name}: file not found in {os.getcwd()!r}. Check the path.") from None
     except (OSError, ValueError, csv.Error) as problem:
         raise SignalError(f"The {what} {name!r} cannot be read as a CSV file: {problem}.") from None
     for line, cells in rows:
@@ -103,13 +104,13 @@ def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[s
             )
     if not rows:
         raise SignalError(
-            f"The {what} {name!r} is empty: expected a header, {_example(units)}, and at least two points."
+            f"The {what} {name!r} is empty; expected a header, {_example(units)}, and at least two points."
         )
     return rows
 
 
 def _header(name: str, units: dict[str, str], line: int, cells: list[str]) -> tuple[list[int], list[float]]:
-    """Where the columns are, and the size of each cell's unit in the wanted one."""
+    """Positions of the columns, and the size of the unit of each cell in the required unit."""
     found = [_HEADING.fullmatch(cell) for cell in cells]
     names = [match[1].lower() if match else "" for match in found]
     if sorted(names) != sorted(units):

@@ -16,9 +16,9 @@ _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cy
 
 @dataclass(frozen=True)
 class RoadClass:
-    """A class of ISO 8608: the geometric mean of its Gd(n0) and the limits of the class, a factor of two to each side.
+    """A road class of ISO 8608: geometric mean of Gd(n0), and limits a factor of two to either side.
 
-    The first class has no lower limit, and the last none above. Source: ISO 8608:2016, Table C.1.
+    The first class has no lower limit, and the last no upper one. Source: ISO 8608:2016, Table C.1.
     """
 
     letter: str
@@ -36,7 +36,7 @@ class RoadClass:
 
     @property
     def roughness(self) -> float:
-        """Of the geometric mean, kappa = Gd(n0) n0^2 / 2 [m^3/cycle]."""
+        """Roughness of the geometric mean, kappa = Gd(n0) n0^2 / 2 [m^3/cycle]."""
         return 0.5 * self.mean / _PER_N0_SQUARED
 
     def __str__(self) -> str:
@@ -45,7 +45,7 @@ class RoadClass:
         if self.lowest == 0.0:
             span = f"up to {high} m^3"
         if math.isinf(self.highest):
-            span = f"from {low} m^3 on"
+            span = f"above {low} m^3"
         return f"class {self.letter} of ISO 8608, Gd(n0) = {mean} m^3 ({span})"
 
 
@@ -54,10 +54,10 @@ ROAD_CLASSES = {letter: RoadClass(letter, 16e-6 * 4.0**i) for i, letter in enume
 
 
 def road_class(letter: object) -> RoadClass:
-    """The class of that letter; raises `PerformanceIndexError` if there is none."""
+    """The road class of a letter; raises `PerformanceIndexError` for an unknown one."""
     if not isinstance(letter, str) or letter not in ROAD_CLASSES:
         raise PerformanceIndexError(
-            f'A class of ISO 8608 is a letter from A (smooth) to H (rough), such as Road.iso8608("C", speed=25), '
+            f'A class of ISO 8608 must be a letter from A (smooth) to H (rough), such as Road.iso8608("C", speed=25), '
             f"got {letter!r}."
         )
     return ROAD_CLASSES[letter]
@@ -65,7 +65,7 @@ def road_class(letter: object) -> RoadClass:
 
 @dataclass(frozen=True)
 class RoadShape:
-    """How a measured density lies about the line that stands for it: their ratio at rising wavenumbers."""
+    """Ratio of a measured density to its fitted line at increasing wavenumbers."""
 
     wavenumber: tuple[float, ...]  # [cycle/m], from the longest measured wave to the shortest
     ratio: tuple[float, ...]
@@ -73,36 +73,42 @@ class RoadShape:
 
 @dataclass(frozen=True)
 class Road:
-    """A road whose displacement has the two-sided spectrum S(f) = roughness * speed / f^2, driven at `speed`.
+    """A road with the two-sided displacement spectrum S(f) = roughness * speed / f^2 at `speed`.
 
-    Its velocity is then white noise. `roughness` is kappa of Wang and Su (2008); the one-sided displacement spectrum
-    of ISO 8608 at n0 = 0.1 cycle/m is Gd(n0) = 2 kappa / n0^2. A vehicle whose wheels run on two tracks meets the same
-    road on both, or roads that are as alike as a `coherence` says.
+    Its velocity is then white noise. `roughness` is kappa of Wang and Su (2008); the one-sided displacement power
+    spectral density of ISO 8608 at n0 = 0.1 cycle/m is Gd(n0) = 2 kappa / n0^2. The tracks of a vehicle with two tracks
+    are identical, or have the given `coherence`.
 
     Raises `PerformanceIndexError` unless both are positive and finite.
     """
 
-    roughness: float = field(metadata=quantity("m^3/cycle", "kappa = Gd(n0) n0^2 / 2 of ISO 8608.", "5e-7 m^3/cycle"))
-    speed: float = field(metadata=quantity("m/s", "V of the vehicle.", "25 m/s"))
-    coherence: Coherence | None = None  # of left and right track; None: they are alike
-    shape: RoadShape | None = field(default=None, compare=False, repr=False)  # of a road that was measured
+    roughness: float = field(
+        metadata=quantity(
+            "m^3/cycle",
+            "Roughness coefficient kappa = Gd(n0) n0^2 / 2, with Gd(n0) and n0 of ISO 8608.",
+            "5e-7 m^3/cycle",
+        )
+    )
+    speed: float = field(metadata=quantity("m/s", "Vehicle speed V.", "25 m/s"))
+    coherence: Coherence | None = None  # between left and right tracks; None: identical tracks
+    shape: RoadShape | None = field(default=None, compare=False, repr=False)  # of a measured road
 
     def __post_init__(self) -> None:
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):
             check_positive(PerformanceIndexError, f"The {name} of a road", getattr(self, name), unit)
         if self.coherence is not None and not isinstance(self.coherence, Coherence):
             raise PerformanceIndexError(
-                f"The coherence of a road is a Coherence, such as Coherence.isotropic(track=1.5), got "
+                f"The coherence of a road must be a Coherence, such as Coherence.isotropic(track=1.5), got "
                 f"{self.coherence!r}."
             )
 
     @classmethod
     def iso8608(cls, letter: str, speed: float, coherence: Coherence | None = None) -> Self:
-        """A road of a class of ISO 8608, "A" to "H", with the geometric mean of its roughness.
+        """A road of a class of ISO 8608, "A" to "H", with its geometric mean roughness.
 
-        `ROAD_CLASSES` tells the limits of each class.
+        The limits of each class are in `ROAD_CLASSES`.
 
-        Raises `PerformanceIndexError` if there is no such class, or the speed is not positive.
+        Raises `PerformanceIndexError` for an unknown class, or a speed that is not positive.
 
         >>> road = Road.iso8608("C", speed=25.0)
         >>> road.roughness, str(road.iso8608_class)
@@ -112,7 +118,7 @@ class Road:
 
     @property
     def iso8608_class(self) -> RoadClass:
-        """The class in which its roughness lies, the rougher one at a limit."""
+        """ISO 8608 class of its roughness, the rougher one at a limit."""
         density = 2.0 * self.roughness * _PER_N0_SQUARED
         return next(c for c in ROAD_CLASSES.values() if density < c.highest)
 

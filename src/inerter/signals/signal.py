@@ -25,7 +25,7 @@ from inerter.signals.arguments import (
     speed_or_none,
     whole_number,
 )
-from inerter.signals.tables import HOLDS, check_times, closed, coefficients, spacing
+from inerter.signals.tables import HOLDS, check_times, close_period, coefficients, spacing
 
 Pair = tuple[Array, Array]
 
@@ -34,22 +34,22 @@ Pair = tuple[Array, Array]
 class Signal:
     """A road height or a displacement [m], or a force [N], as a function of time [s].
 
-    At a jump, value and derivative are the limits from the right. Before it begins, a signal keeps its first value
-    unless it is periodic. `multisine`, `sine`, `step` and their kin make signals, and `Signal.sampled` makes one of a
-    table.
+    At a jump, value and derivative are the limits from the right. Before its beginning, a signal has its first value
+    unless it is periodic. `multisine`, `sine`, `step` and similar functions create signals, and `Signal.sampled`
+    creates one from a table.
     """
 
-    label: str  # one line for a reader
+    label: str  # one line of text
     period: float | None = None  # [s]
-    duration: float | None = None  # [s] the time at which a signal that does not go on for ever ends
+    duration: float | None = None  # [s] end time of a finite signal
     highest_frequency: float | None = None  # [Hz] in a formula; a table has none
     interval: float | None = None  # [s] smallest spacing of a table
-    hold: str = "cubic"  # "cubic", "linear" or "zero": what it may be taken for between close points
+    hold: str = "cubic"  # "cubic", "linear" or "zero": interpolation between close points
     speed: float | None = None  # [m/s] of the vehicle, which gives the delay between axles
     __array_ufunc__: ClassVar[None] = None  # so that a NumPy number times a signal is a signal
 
     def __call__(self, time: ArrayLike) -> Any:
-        """The value at `time` [s], in its shape.
+        """Values at `time` [s], in its shape.
 
         Raises `SignalError` as `sample` does.
         """
@@ -58,36 +58,36 @@ class Signal:
     def sample(self, time: ArrayLike) -> Pair:
         """Value and derivative at `time` [s], in its shape.
 
-        Raises `SignalError` if `time` is not made of finite numbers, or lies after the end.
+        Raises `SignalError` if `time` does not consist of finite numbers, or is after the end.
         """
         times = real_array("The times of a signal", time)
         latest = float(times.max(initial=-math.inf))
         if self.duration is not None and latest > self.duration + slack(self.duration, self.interval):
             raise SignalError(
-                f"The signal {self.label!r} lasts until t = {self.duration:.9g} s, but was asked for t = {latest:.9g} "
-                f"s. Stop earlier, or take a longer or a periodic one."
+                f"The signal {self.label!r} ends at t = {self.duration:.9g} s, before the requested t = {latest:.9g} "
+                f"s. Stop earlier, or use a longer or periodic signal."
             )
-        return self._evaluated(times)
+        return self._evaluate(times)
 
     def grid(self, start: float, step: float, count: int) -> Pair:
         """The same as `sample(start + step * arange(count))`; fast for harmonics whose period is a multiple of `step`.
 
-        Raises `SignalError` as `sample` does, and unless `step` is positive and `count` a whole number from 0 on.
+        Raises `SignalError` as `sample` does, and unless `step` is positive and `count` a non-negative integer.
         """
         return self.sample(checked_grid(start, step, count))
 
     def breaks(self, start: float, stop: float) -> Array:
-        """The times in (start, stop) [s] at which one formula gives way to another; none if there is but one formula.
+        """Breakpoints in (start, stop) [s] between pieces of the signal; empty for a single formula.
 
-        A time that differs from `start` or `stop` by rounding alone is left out.
+        Times that differ from `start` or `stop` by rounding only are left out.
         """
         return np.zeros(0)
 
-    def held(self, interval: float, duration: float | None = None) -> Sampled:
+    def held(self, interval: float, duration: float | None = None) -> SampledSignal:
         """Samples at t = 0, `interval`, ... [s], each held until the next (a zero-order hold).
 
-        Repeats as the signal does, or ends when it ends. `duration` [s] cuts it, and must be given for a signal that
-        neither repeats nor ends. Unless it repeats, it keeps the value at t = 0 before.
+        Periodic or finite as the signal is. `duration` [s] truncates it, and is required for a signal that is neither
+        periodic nor finite. Unless it is periodic, it has the value of t = 0 before.
 
         Raises `SignalError` if the period is not a whole number of intervals, or the signal is too short.
         """
@@ -101,10 +101,10 @@ class Signal:
         end = self.duration if duration is None else positive("The duration of a held signal", duration, "s")
         if end is None:
             raise SignalError(
-                f"The signal {self.label!r} neither repeats nor ends. Say how long to hold: duration = ..."
+                f"The signal {self.label!r} is neither periodic nor finite. Give the time to hold: duration = ..."
             )
         if not 1.0 <= end / interval <= MOST:
-            raise SignalError(f"Cannot hold for {interval:g} s what lasts {end:g} s: take from 1 to 1e8 intervals.")
+            raise SignalError(f"A signal of {end:g} s cannot be held for {interval:g} s; use from 1 to 1e8 intervals.")
         count = math.floor(end / interval * (1.0 + 1e-15)) + 1
         value = self.grid(0.0, interval, count)[0]
         table = Signal.sampled(interval * np.arange(count), value, "zero", speed=self.speed, label=label)
@@ -119,7 +119,7 @@ class Signal:
         periodic: bool = False,
         speed: float | None = None,
         label: str | None = None,
-    ) -> Sampled:
+    ) -> SampledSignal:
         """A table of two or more samples, joined by cubics, by lines (`"linear"`), or each held (`"zero"`).
 
         The cubics take `derivative` at the samples; without it, that of the cubic spline through them (not-a-knot, or
@@ -133,20 +133,20 @@ class Signal:
         np.float64(1.0)
         """
         if not isinstance(hold, str) or hold not in HOLDS:
-            raise SignalError(f'A hold is one of "cubic", "linear" and "zero", got {hold!r}.')
+            raise SignalError(f'hold must be one of "cubic", "linear" and "zero", got {hold!r}.')
         if derivative is not None and hold != "cubic":
-            raise SignalError(f'Derivatives are for hold = "cubic"; with {hold!r}, leave them out.')
+            raise SignalError(f'Derivatives require hold = "cubic"; with {hold!r}, leave them out.')
         if not isinstance(periodic, bool):
-            raise SignalError(f"Whether a table is periodic is True or False, got {periodic!r}.")
+            raise SignalError(f"periodic must be True or False, got {periodic!r}.")
         if label is not None and not isinstance(label, str):
-            raise SignalError(f"A label is text, got {label!r}.")
+            raise SignalError(f"label must be a text, got {label!r}.")
         times, values = real_vector("The times of a table", time), real_vector("The values of a table", value)
         check_times(times, len(values))
         if periodic and hold != "zero":
-            values = closed(values)
+            values = close_period(values)
         table = coefficients(times, values, hold, derivative, periodic)
         table.setflags(write=False)
-        return Sampled(
+        return SampledSignal(
             time=times,
             coefficient=table,
             label=label or f"table of {len(times)} samples",
@@ -159,25 +159,25 @@ class Signal:
 
     def __add__(self, other: object) -> SignalSum:
         if not isinstance(other, Signal):
-            raise SignalError(f"Only a signal can be added to a signal, got {other!r}.")
-        return _combined((1.0, self), (1.0, other))
+            raise SignalError(f"A signal can be added to a signal only, got {other!r}.")
+        return _weighted_sum((1.0, self), (1.0, other))
 
     def __mul__(self, factor: object) -> SignalSum:
         if not is_number(factor):
-            raise SignalError(f"A signal can be multiplied by a finite number, got {factor!r}.")
-        return _combined((float(factor), self))
+            raise SignalError(f"A signal can be multiplied by a finite number only, got {factor!r}.")
+        return _weighted_sum((float(factor), self))
 
     __radd__ = __add__
     __rmul__ = __mul__
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         """Value and derivative at checked times."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Sampled(Signal):
-    """Polynomials between the times of a table; `Signal.sampled` makes one."""
+class SampledSignal(Signal):
+    """Piecewise polynomial through the samples of a table; created by `Signal.sampled`."""
 
     time: Array  # (n,) [s]
     coefficient: Array  # (order, piece), ascending, in the time since the start of the piece
@@ -185,7 +185,7 @@ class Sampled(Signal):
     def breaks(self, start: float, stop: float) -> Array:
         check_span(start, stop)
         ends = np.clip([start, stop], self.time[0], math.inf) if self.period is None else np.array([start, stop])
-        cycle, index = self._located(ends)
+        cycle, index = self._locate(ends)
         pieces = self.coefficient.shape[1]
         first, last = cycle * pieces + index
         if last - first > MOST:
@@ -193,8 +193,8 @@ class Sampled(Signal):
         turn, piece = np.divmod(np.arange(int(first), int(last) + 1), pieces)
         return between(self.time[piece] + turn * (self.period or 0.0), start, stop, self.interval)
 
-    def _evaluated(self, time: Array) -> Pair:
-        cycle, index = self._located(time)
+    def _evaluate(self, time: Array) -> Pair:
+        cycle, index = self._locate(time)
         elapsed = time - self.time[index] - cycle * (self.period or 0.0)
         value = self.coefficient[-1, index]
         slope = np.zeros_like(value)
@@ -205,8 +205,8 @@ class Sampled(Signal):
             value = value * elapsed + part[index]
         return value, np.where(early, 0.0, slope)
 
-    def _located(self, time: Array) -> tuple[Array, Any]:
-        """The number of whole periods before each time, and the piece in which it lies."""
+    def _locate(self, time: Array) -> tuple[Array, Any]:
+        """Number of whole periods before each time, and the index of its piece."""
         reached = time + slack(time, self.interval)
         cycle = np.zeros_like(time) if self.period is None else np.floor((reached - self.time[0]) / self.period)
         pieces = self.coefficient.shape[1]
@@ -216,9 +216,9 @@ class Sampled(Signal):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SignalSum(Signal):
-    """A weighted sum of signals; `+` and `*` make one.
+    """A weighted sum of signals, created by `+` and `*`.
 
-    Its hold is the roughest of theirs. It repeats only if the longest period is a whole multiple of every other.
+    Its hold is the least smooth of theirs. It is periodic only if the longest period is a multiple of every other.
     """
 
     terms: tuple[tuple[float, Signal], ...]
@@ -231,11 +231,11 @@ class SignalSum(Signal):
         apart: NDArray[np.bool_] = np.diff(times, prepend=-math.inf) > slack(times, self.interval)
         return times[apart]
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         return _total((weight, signal.sample(time)) for weight, signal in self.terms)
 
 
-def _combined(*terms: tuple[float, Signal]) -> SignalSum:
+def _weighted_sum(*terms: tuple[float, Signal]) -> SignalSum:
     signals = [signal for _, signal in terms]
     speeds = {signal.speed for signal in signals} - {None}
     if len(speeds) > 1:

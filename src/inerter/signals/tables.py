@@ -12,11 +12,11 @@ HOLDS = ("zero", "linear", "cubic")  # from the roughest
 
 
 def check_times(time: Array, count: int) -> None:
-    """Raises `SignalError` unless `time` [s] has `count` entries, at least two, that increase."""
+    """Raise `SignalError` unless `time` [s] has `count` entries, at least two, that increase."""
     if len(time) != count:
-        raise SignalError(f"A table needs one value for each time, got {len(time)} times and {count} values.")
+        raise SignalError(f"A table requires one value for each time, got {len(time)} times and {count} values.")
     if len(time) < 2:
-        raise SignalError(f"A table needs at least two samples, got {len(time)}.")
+        raise SignalError(f"A table requires at least two samples, got {len(time)}.")
     after = np.flatnonzero(np.diff(time) <= 0.0)
     if after.size:
         i = int(after[0])
@@ -33,14 +33,14 @@ def spacing(time: Array) -> float:
     return float(common if np.ptp(steps) <= 1e-9 * common else steps.min())
 
 
-def closed(value: Array) -> Array:
+def close_period(value: Array) -> Array:
     """The values of one period, the last made equal to the first.
 
     Raises `SignalError` if they differ by more than rounding, 1e-9 of the range.
     """
     if abs(value[-1] - value[0]) > 1e-9 * np.ptp(value):
         raise SignalError(
-            f"The last value of a periodic table stands one period after the first and must equal it, got "
+            f"The last value of a periodic table, one period after the first, must equal the first, got "
             f"{value[0]:.9g} first and {value[-1]:.9g} last. Append the first value again, at the time of one period."
         )
     return np.append(value[:-1], value[0])
@@ -49,7 +49,7 @@ def closed(value: Array) -> Array:
 def coefficients(time: Array, value: Array, hold: str, derivative: object, periodic: bool) -> Array:
     """Ascending coefficients, (order, piece), of the polynomials in the time since the start of each piece.
 
-    A table of n samples has n - 1 pieces; a zero hold that does not repeat has one more, which begins at the last.
+    A table of n samples has n - 1 pieces; a zero hold that is not periodic has one more, which begins at the last.
     """
     if hold == "zero":
         return (value[:-1] if periodic else value)[None]
@@ -76,5 +76,5 @@ def _slopes(time: Array, value: Array, derivative: object, periodic: bool) -> Ar
         return np.asarray(spline(time, 1), dtype=float)
     given = real_vector("The derivatives of a table", derivative)
     if len(given) != len(value):
-        raise SignalError(f"A table needs one derivative for each value, got {len(given)} for {len(value)} values.")
+        raise SignalError(f"A table requires one derivative for each value, got {len(given)} for {len(value)} values.")
     return given

@@ -1,4 +1,4 @@
-"""Signals that happen once: a sweep, a step and a bump."""
+"""Transient signals: a sweep, a step and a bump."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Chirp(Signal):
     def breaks(self, start: float, stop: float) -> Array:
         return between(np.zeros(1), start, stop)
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         elapsed = np.maximum(time, 0.0)
         rate = (self.highest_frequency - self.lowest) / self.duration
         angle = 2.0 * math.pi * (self.lowest + 0.5 * rate * elapsed) * elapsed
@@ -33,7 +33,7 @@ class Chirp(Signal):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StepSignal(Signal):
-    """Zero before `time` [s], `height` from it on."""
+    """Step from zero to `height` at `time` [s]."""
 
     height: float
     time: float
@@ -41,7 +41,7 @@ class StepSignal(Signal):
     def breaks(self, start: float, stop: float) -> Array:
         return between(np.array([self.time]), start, stop)
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         return np.where(time + slack(time, None) >= self.time, self.height, 0.0), np.zeros_like(time)
 
 
@@ -56,7 +56,7 @@ class Bump(Signal):
     def breaks(self, start: float, stop: float) -> Array:
         return between(np.array([self.start, self.start + self.passage]), start, stop)
 
-    def _evaluated(self, time: Array) -> Pair:
+    def _evaluate(self, time: Array) -> Pair:
         x = (time - self.start) / self.passage
         x = np.where((x > 0.0) & (x < 1.0), x, 0.0)
         slope = math.pi * self.height / self.passage * np.sin(2.0 * math.pi * x)
@@ -64,7 +64,7 @@ class Bump(Signal):
 
 
 def chirp(amplitude: float, lowest: float, highest: float, duration: float, speed: float | None = None) -> Chirp:
-    """A linear sweep from `lowest` to `highest` [Hz] in `duration` seconds, at which it ends; zero before t = 0.
+    """A linear sweep from `lowest` to `highest` [Hz] in `duration` [s], at which it ends; zero before t = 0.
 
     Raises `SignalError` unless 0 < lowest <= highest, `duration` > 0 and `amplitude` is a finite number.
     """
@@ -82,7 +82,7 @@ def chirp(amplitude: float, lowest: float, highest: float, duration: float, spee
 
 
 def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSignal:
-    """Zero before `time` [s], `height` from it on.
+    """A step from zero to `height` at `time` [s].
 
     Raises `SignalError` unless both are finite numbers.
     """
@@ -92,7 +92,7 @@ def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSi
 
 
 def bump(height: float, length: float, speed: float, start: float = 0.0) -> Bump:
-    """A rounded bump, `height` (1 - cos(2 pi x / length)) / 2, `length` metres long, met at t = `start` [s].
+    """A rounded bump, `height` (1 - cos(2 pi x / length)) / 2, `length` [m] long, reached at t = `start` [s].
 
     Raises `SignalError` unless `length` and `speed` [m/s] are positive and all are finite numbers.
 

@@ -13,7 +13,7 @@ from inerter.files.common.codec import REQUIRED, Codec, Scalar
 from inerter.files.common.entries import TEXT, YES_OR_NO, any_quantity, positive, whole, word
 from inerter.rows import Rows, made_of_rows
 from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
-from inerter.signals.records import held_noise, recorded
+from inerter.signals.records import held_noise, read_signal
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
@@ -88,7 +88,7 @@ def _measured(file: str, track: str, speed: float, **reading: Any) -> Signal | M
     except RecordError as problem:
         raise SignalError(str(problem)) from None
     if track != BOTH:
-        return measured.driven(speed, track)
+        return measured.to_signal(speed, track)
     found = measured.signals(speed)
     if isinstance(found, Signal):
         raise SignalError(f"{Path(file).name} has one track; leave the track out, or give a profile of two.")
@@ -153,7 +153,7 @@ _OWN = (
     ),
     SignalKind(
         "sampled",
-        lambda file, **others: recorded(path=file, **others),
+        lambda file, **others: read_signal(path=file, **others),
         {
             "file": _FILE,
             "hold": SignalKey("", 'hold = "cubic"', "cubic", _plain(word("a hold", HOLDS))),

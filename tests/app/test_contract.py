@@ -22,7 +22,7 @@ from inerter.app.panels import PANELS
 from inerter.app.requests import ENDPOINTS
 from inerter.methods.registry import METHODS
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.networks.parser import network, parsed
+from inerter.networks.parser import network, parse_expression
 from inerter.units import parse_quantity
 
 CSV = b"time [s],displacement [mm],force [N]\n" + b"".join(
@@ -148,7 +148,7 @@ def test_parts_are_where_they_say(text: str) -> None:
         for p in part.parts:
             check(p)
 
-    check(parsed(text))
+    check(parse_expression(text))
 
 
 @pytest.mark.parametrize(

@@ -38,9 +38,9 @@ def test_arithmetic_of_ties_and_their_slopes(number):
     at = {"x": float(rng.uniform(1.0, 3.0)), "y": float(rng.uniform(1.0, 3.0))}
     value, slopes = tie.slopes(at)
     assert value == pytest.approx(function(at), rel=1e-12)
-    assert tie.fixed(at) == pytest.approx(function(at), rel=1e-12)
+    assert tie.substitute(at) == pytest.approx(function(at), rel=1e-12)
     if len(tie.names) == 2:
-        assert tie.fixed({"x": at["x"]}).fixed({"y": at["y"]}) == pytest.approx(function(at), rel=1e-12)
+        assert tie.substitute({"x": at["x"]}).substitute({"y": at["y"]}) == pytest.approx(function(at), rel=1e-12)
     for name, slope in slopes.items():
         step = 1e-6
         up, down = (function({**at, name: at[name] + h}) for h in (step, -step))
@@ -115,14 +115,17 @@ def test_labels_stay_when_values_are_fixed():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (lambda: it.tied(3.0), "A name is a letter"),
-        (lambda: it.tied(None), "give its name"),
+        (lambda: it.tied(3.0), "A name must be a letter"),
+        (lambda: it.tied(None), "Give its name"),
         (lambda: it.tied("c", factor=float("inf")), "finite numbers"),
         (lambda: it.tied("c") + "d", "finite numbers"),
-        (lambda: paper_quarter_car(it.Damper(it.tied("c")) | it.Spring(1.0)), "'c' is tied to 'c', which is no free"),
+        (
+            lambda: paper_quarter_car(it.Damper(it.tied("c")) | it.Spring(1.0)),
+            "'c' is tied to 'c', which is not a free",
+        ),
         (lambda: it.evaluate(half_car(), J1, NORM), "still has free values: k1, c, b"),
         (lambda: it.simulate(half_car(), road=it.sine(1e-3, 1.0), duration=0.1), "free"),
-        (lambda: it.Damper(it.tied("c")).admittance(1j), "still free"),
+        (lambda: it.Damper(it.tied("c")).admittance(1j), "is free"),
     ],
 )
 def test_ties_that_cannot_be(given, said):
@@ -138,3 +141,8 @@ def test_ties_reach_methods_that_simulate():
         many = it.evaluate_many(car, J1, {"c": [4e3, 8e3]}, method)[:, 0]
         ones = [it.evaluate(car.with_values({"c": c}), J1, method).value for c in (4e3, 8e3)]
         assert many == pytest.approx(ones, rel=1e-9)
+
+
+def test_the_old_name_of_substitute_works_with_a_warning() -> None:
+    with pytest.warns(DeprecationWarning, match="`fixed` is now `substitute`"):
+        assert it.tied("k", 2.0).fixed({"k": 3.0}) == 6.0

@@ -90,7 +90,7 @@ def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tm
     before = visitor.text
     page.fill("#network-text", "k | c - (ks |")
     page.wait_for_selector("#network-problem")
-    assert "expected a name or '(' here" in page.inner_text("#network-problem")
+    assert "element name or '(' expected here" in page.inner_text("#network-problem")
     assert page.get_attribute("#network-text", "aria-invalid") == "true"
     assert page.locator("[data-path]").count() == 5  # the drawing of before
     page.fill("#network-text", before)

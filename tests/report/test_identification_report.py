@@ -26,7 +26,7 @@ from inerter.identification.initial_estimate import chain_of
 from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import Linear
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 from inerter.records.channel_selection import ROLES
 from inerter.records.finding import Finding
 from inerter.records.finding_texts import RecordFinding
@@ -210,7 +210,7 @@ def test_single_values_and_shares() -> None:
 def test_expressions_are_read_back_as_they_were(text: str) -> None:
     parts = {name: it.Damper(1.0 + i) for i, name in enumerate(("a", "b", "c", "d", "k", "f", "gap", "ks", "cs"))}
     device = it.network(text, **parts)
-    again = written(device, [element.label for element in device.elements()])
+    again = format_expression(device, [element.label for element in device.elements()])
     assert it.network(again, **parts) == device
 
 

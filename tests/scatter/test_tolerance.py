@@ -218,7 +218,7 @@ def test_two_parts_of_one_free_value_scatter_by_their_names():
         ({"spread": {"c": 1.0}}, "between 0 and 1"),
         ({"spread": {"c": "10 %"}}, "between 0 and 1"),
         ({"spread": ["c"]}, "maps names"),
-        ({"spread": {"d": 0.1}}, "nothing named 'd'"),
+        ({"spread": {"d": 0.1}}, "unknown value 'd'"),
         ({"samples": 100}, "power of two"),
         ({"samples": 8}, "power of two"),
         ({"seed": -1}, "seed is a whole number"),

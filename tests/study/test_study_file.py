@@ -440,7 +440,7 @@ BAD = {
     "layout name": ([('S1 = "k | c"', '"../S1" = "k | c"')], 'layouts."../S1"', ["not a layout name"]),
     # layouts
     "undefined": ([('"k | c | b"', '"k | c | cs"')], "layouts.S2", ['"cs"', "not in [elements]", "k, c, b"]),
-    "syntax": ([('"k | c | b"', '"k | | b"')], "layouts.S2", ["column 5", "expected a name"]),
+    "syntax": ([('"k | c | b"', '"k | | b"')], "layouts.S2", ["column 5", "element name or '(' expected"]),
     "character": ([('"k | c | b"', '"k + c"')], "layouts.S2", ["column 3", "'+'"]),
     "bracket": ([('"k | c | b"', '"k | (c - b"')], "layouts.S2", ["column 11", "')'"]),
     "empty": ([('"k | c | b"', '""')], "layouts.S2", ["empty", "k | c - b"]),

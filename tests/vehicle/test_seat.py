@@ -77,13 +77,13 @@ def test_bad_seats_are_refused_in_one_sentence() -> None:
     car = CARS["quarter car"]
     with pytest.raises(MechanismError, match="The mass of the occupant must be a positive number of kg, got 0"):
         it.Seat(car, 0, CUSHION)
-    with pytest.raises(MechanismError, match="strut 'seat' is at 'pitch', which is not a coordinate"):
+    with pytest.raises(MechanismError, match="strut 'seat': unknown coordinate 'pitch'"):
         it.Seat(car, 60.0, CUSHION, {"sprung": 1.0, "pitch": 0.3})
     with pytest.raises(DesignError, match="Expected a vehicle"):
         it.Seat(it.QuarterCar, 60.0, CUSHION)  # type: ignore[arg-type]
     with pytest.raises(NetworkError, match="15000"):
         it.Seat(car, 60.0, 15e3)  # type: ignore[arg-type]
-    with pytest.raises(MechanismError, match="Two parts of the mechanism are named"):
+    with pytest.raises(MechanismError, match="Duplicate name"):
         it.Seat(it.Seat(car, 60.0, CUSHION), 60.0, CUSHION)
-    with pytest.raises(DesignError, match="no free value named 'c'"):
+    with pytest.raises(DesignError, match="unknown free value 'c'"):
         it.Seat(car, 60.0, CUSHION).with_values({"c": 1.0})

@@ -9,7 +9,7 @@ from inerter.errors import InerterError, UnitError
 from inerter.files.common.entries import expression
 from inerter.files.common.problem import EntryError
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.networks.parser import ExpressionError, ExpressionPart, parsed
+from inerter.networks.parser import ExpressionError, ExpressionPart, parse_expression
 from inerter.units import format_quantity, is_unit, parse_quantity, shown
 
 _JOINED = {"|": "parallel", "-": "series"}
@@ -18,7 +18,7 @@ _JOINED = {"|": "parallel", "-": "series"}
 def parse_network(text: str, elements: Container[str] | None) -> dict[str, Any]:
     """The tree of a network with the place of each part, or where it is none and why."""
     try:
-        tree = parsed(expression(text), elements)
+        tree = parse_expression(expression(text), elements)
     except ExpressionError as error:
         end = next((i for i in range(error.at, len(text)) if not (text[i].isalnum() or text[i] == "_")), len(text))
         return {"at": [error.at, max(end, error.at + 1)], "sentence": str(error)}

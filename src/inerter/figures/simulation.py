@@ -216,7 +216,7 @@ def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Wind
         row = alike.index(element.name)
         low, high = 1.0 - (row + 1) / len(alike), 1.0 - row / len(alike)
         name = element.name.removeprefix(f"{element.strut}.")
-        label = element.switch.said(name) + (f" (row {row + 1})" if len(alike) > 1 else "")
+        label = element.switch.middle_state_text(name) + (f" (row {row + 1})" if len(alike) > 1 else "")
         for begin, end in result.run.intervals(element.name, element.switch.middle):
             if begin < window[1] and end > window[0]:
                 ax.axvspan(begin, end, low, high, linewidth=0.0, zorder=0.5, label=label, **shades[guard])

@@ -22,7 +22,7 @@ from inerter.identification.initial_estimate import Chain
 from inerter.identification.possible_causes import Details, Suspect
 from inerter.kernels.declare import kernel, part
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, Tied, free
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 
 Matrix = NDArray[np.float64]
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
@@ -95,7 +95,7 @@ def _parts(chain: Chain) -> Iterator[Hypothesis]:
 
 def _other(name: Suspect, chain: Chain, model: str, *starts: Values) -> Hypothesis:
     device = chain.network()
-    layout = written(device, [e.label for e in device.elements()])
+    layout = format_expression(device, [e.label for e in device.elements()])
     details = {"layout": layout, "model": model}
     return Hypothesis(name, device=device, starts=starts or ({},), details=lambda values: details)
 

@@ -19,8 +19,8 @@ from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
-from inerter.vehicle.halves import half_of
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
+from inerter.vehicle.symmetry import half_of
 
 _VELOCITY, _ACCELERATION = "m/s", "m/s^2"
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from inerter.indices.question import Index
 from inerter.methods.combined import ObjectivePart, combined
 from inerter.networks.elements import Element, Free, Tied, middle
-from inerter.vehicle.changed import mounted, with_elements
+from inerter.vehicle.replace_values import mounted_elements, with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -148,7 +148,7 @@ def without_tied_values(vehicle: Vehicle) -> Loose | None:
 
     What they lie between is half to twice the value in the middle of what they follow from.
     """
-    if not any(isinstance(element.value, Tied) for part in mounted(vehicle) for element in part):
+    if not any(isinstance(element.value, Tied) for part in mounted_elements(vehicle) for element in part):
         return None
     free = vehicle.free_values()
     found: dict[str, Tied] = {}

@@ -22,7 +22,7 @@ from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Objective
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
-from inerter.vehicle.changed import changed
+from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped
 
@@ -142,7 +142,7 @@ class OverConditions(OfIndex):
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
         """The vehicle and the index in each condition; raises `DesignError` for a name that stands for nothing."""
         return [
-            (changed(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
+            (replace_values(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
             for one in self.conditions.conditions
         ]
 

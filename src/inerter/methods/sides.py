@@ -8,8 +8,8 @@ from dataclasses import replace
 from inerter.networks.elements.roles import Linear
 from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
-from inerter.vehicle.halves import alike_half, opposed_half
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.symmetry import alike_half, opposed_half
 
 
 def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mechanism, tuple[Arrival, ...]] | None:

@@ -1,1 +1,1 @@
-"""Elements, the algebra of `|` and `-`, the same in strings, and what a network is to linear analysis."""
+"""Elements, the algebra of `|` and `-`, its expressions in strings, and the linearisation of networks."""

@@ -1,4 +1,4 @@
-"""Layouts from the literature, as rows: an expression for the parser and where it comes from."""
+"""Layouts from the literature: expressions for the parser, with their sources."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Layout:
-    """A strut layout by name. Its letters are the names of the elements to put in."""
+    """A strut layout by name. The names in its expression are those of its elements."""
 
     name: str
     expression: str

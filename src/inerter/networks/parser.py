@@ -14,7 +14,7 @@ _DEEPEST = 100
 
 
 class ExpressionError(NetworkError):
-    """An expression that is no network, and the place in it, counted from 0, where that shows."""
+    """An invalid network expression, and the position of its error, counted from 0."""
 
     def __init__(self, text: str, at: int) -> None:
         super().__init__(text, at)
@@ -30,32 +30,32 @@ _TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
 def network(expression: str, /, **parts: Network) -> Network:
     """The network that `expression` describes, with each name replaced by the given element or network.
 
-    `|` is parallel, `-` is series and binds tighter, brackets group. An element without a name takes the name that
-    it has in the expression.
+    `|` is parallel, `-` is series and binds tighter, brackets group. An element without a name takes its name in the
+    expression.
 
-    Raises `NetworkError` for a syntax error or for a name that is not given; names that are given need not be used.
+    Raises `NetworkError` for a syntax error or an undefined name; given names need not be used.
 
     >>> from inerter.networks.elements import Inerter, Spring
     >>> network("k - b", k=Spring(1e3), b=Inerter(20.0))
     Series(parts=(Spring(stiffness=1000.0, name='k'), Inerter(inertance=20.0, name='b')))
     """
-    known = {name: _named(check_network(part), name) for name, part in parts.items()}
-    return _joined(parsed(expression, known), known)
+    known = {name: _with_name(check_network(part), name) for name, part in parts.items()}
+    return _build(parse_expression(expression, known), known)
 
 
 @dataclass(frozen=True)
 class ExpressionPart:
-    """A part of an expression: a name, or parts joined; it is `expression[begin:end]`, without brackets around it."""
+    """A part of an expression: a name, or combined parts; it is `expression[begin:end]`, without outer brackets."""
 
     begin: int
     end: int
     name: str = ""
-    sign: str = ""  # that joins its parts: "|" or "-"
+    sign: str = ""  # operator of its parts: "|" or "-"
     parts: tuple[ExpressionPart, ...] = ()
 
 
-def parsed(expression: str, known: Container[str] | None = None) -> ExpressionPart:
-    """What an expression joins, each part with its place in the text.
+def parse_expression(expression: str, known: Container[str] | None = None) -> ExpressionPart:
+    """The syntax tree of an expression, each part with its position in the text.
 
     Raises `ExpressionError` for a syntax error, or for a name that is not `known` where that is given.
     """
@@ -63,18 +63,18 @@ def parsed(expression: str, known: Container[str] | None = None) -> ExpressionPa
 
 
 def names(expression: str) -> tuple[str, ...]:
-    """The names in `expression`, each once, in the order in which they first appear.
+    """The names in `expression`, each once, in order of first appearance.
 
-    Raises `NetworkError` where the text has characters that are not part of the syntax.
+    Raises `NetworkError` for characters that are not part of the syntax.
     """
     return tuple(dict.fromkeys(text for text, _ in _tokens(expression) if text[0].isalpha()))
 
 
-def written(network: Network, names: Iterable[str]) -> str:
-    """The expression of a network whose elements have these names, in the order in which they are written.
+def format_expression(network: Network, names: Iterable[str]) -> str:
+    """The expression of a network whose elements have these names, in the order of the expression.
 
     >>> from inerter.networks.elements import Damper, Inerter, Spring
-    >>> written((Spring(1e3) | Damper(10.0)) - Inerter(20.0), ["k", "c", "b"])
+    >>> format_expression((Spring(1e3) | Damper(10.0)) - Inerter(20.0), ["k", "c", "b"])
     '(k | c) - b'
     """
     rest = iter(names)
@@ -92,11 +92,11 @@ def written(network: Network, names: Iterable[str]) -> str:
     return text(network, "")
 
 
-def _joined(part: ExpressionPart, known: Mapping[str, Network]) -> Network:
-    """The network that a part of an expression stands for."""
+def _build(part: ExpressionPart, known: Mapping[str, Network]) -> Network:
+    """The network of a part of an expression."""
     if part.name:
         return known[part.name]
-    first, *rest = (_joined(each, known) for each in part.parts)
+    first, *rest = (_build(each, known) for each in part.parts)
     for other in rest:
         first = first | other if part.sign == "|" else first - other
     return first
@@ -113,7 +113,7 @@ class _Parser:
     def parse(self) -> ExpressionPart:
         result = self._parallel()
         if self._next() is not None:
-            self._fail("expected '|', '-' or the end here")
+            self._fail("'|', '-' or the end expected here")
         return result
 
     def _parallel(self) -> ExpressionPart:
@@ -123,7 +123,7 @@ class _Parser:
         return self._several("-", self._atom)
 
     def _several(self, sign: str, one: Callable[[], ExpressionPart]) -> ExpressionPart:
-        """One part, or as many as `sign` joins, with the brackets that stand around them."""
+        """One part, or all parts combined by `sign`."""
         begin, parts = self._place(), [one()]
         while self._next() == sign:
             self.position += 1
@@ -136,18 +136,18 @@ class _Parser:
             self.position += 1
             self.depth += 1
             if self.depth > _DEEPEST:
-                self._fail(f"more than {_DEEPEST} brackets inside each other")
+                self._fail(f"more than {_DEEPEST} nested brackets")
             result = self._parallel()
             self.depth -= 1
             if self._next() != ")":
-                self._fail("expected ')' here")
+                self._fail("')' expected here")
             self.position += 1
             return result
         if token is None or not token[0].isalpha():
-            self._fail("expected a name or '(' here")
+            self._fail("element name or '(' expected here")
         if self.known is not None and token not in self.known:
             names = ", ".join(self.known) if isinstance(self.known, Iterable) else ""
-            self._fail(f"there is no element named {token!r} (defined: {names or 'none'})")
+            self._fail(f"undefined element {token!r}; defined: {names or 'none'}")
         begin = self._place()
         self.position += 1
         return ExpressionPart(begin, begin + len(token), token)
@@ -156,11 +156,11 @@ class _Parser:
         return self.tokens[self.position][0] if self.position < len(self.tokens) else None
 
     def _place(self) -> int:
-        """Where the next token begins."""
+        """Position of the next token."""
         return self.tokens[self.position][1] if self.position < len(self.tokens) else len(self.expression)
 
     def _end(self) -> int:
-        """Where the last token ends."""
+        """End position of the last token."""
         token, begin = self.tokens[self.position - 1]
         return begin + len(token)
 
@@ -174,7 +174,7 @@ def _wrong(expression: str, place: int, problem: str) -> ExpressionError:
 
 def _tokens(expression: str) -> list[tuple[str, int]]:
     if not isinstance(expression, str):
-        raise NetworkError(f"A network expression is a string such as 'k | c - b', got {expression!r}.")
+        raise NetworkError(f"A network expression must be a string such as 'k | c - b', got {expression!r}.")
     result: list[tuple[str, int]] = []
     position, end = 0, len(expression.rstrip())
     while position < end:
@@ -190,7 +190,7 @@ def _tokens(expression: str) -> list[tuple[str, int]]:
     return result
 
 
-def _named(part: Network, name: str) -> Network:
+def _with_name(part: Network, name: str) -> Network:
     if isinstance(part, Element) and part.name is None:
         return replace(part, name=name)  # type: ignore[type-var]
     return part

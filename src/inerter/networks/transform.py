@@ -1,4 +1,4 @@
-"""Networks seen as data: their free values, values put in, and the linear network that analysis uses."""
+"""Transformations of networks: naming and fixing of free values, expansion of elements, and linearisation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.networks.elements.roles import Linear
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
-    """The same network with each element replaced by what `change` makes of it."""
+    """The same network with each element replaced by `change(element)`."""
     match network:
         case Parallel(parts) | Series(parts):
             return replace(network, parts=tuple(map_elements(part, change) for part in parts))
@@ -21,11 +21,11 @@ def map_elements(network: Network, change: Callable[[Element], Network]) -> Netw
     raise TypeError(f"not a network: {network!r}")
 
 
-def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
-    """The network with each element replaced by what it is in a `view`, such as `to_simulation`.
+def expand_elements(network: Network, view: Callable[[Element], Network]) -> Network:
+    """The network with each element replaced by `view(element)`, such as `to_simulation`, recursively.
 
-    A single part without a name takes the label of the element that it stands for. Of several, the network takes it,
-    and parts have it before their own; none of them has it alone. Elements that are themselves stay the same objects.
+    A single part without a name takes the label of the replaced element. For several parts, the network takes the
+    label, and the parts take it as a prefix. Unchanged elements are the same objects.
     """
 
     def change(element: Element) -> Network:
@@ -33,55 +33,55 @@ def unfolded(network: Network, view: Callable[[Element], Network]) -> Network:
         if seen is element:
             return element
         if isinstance(seen, Element):
-            return unfolded(seen if seen.name is not None else _renamed(seen, element.label), view)
+            return expand_elements(seen if seen.name is not None else _with_name(seen, element.label), view)
         named = map_elements(seen, lambda part: _named_after(element.label, part))
         assert isinstance(named, Parallel | Series)
-        return unfolded(replace(named, name=element.label), view)
+        return expand_elements(replace(named, name=element.label), view)
 
     return map_elements(network, change)
 
 
 def to_analysis(element: Element) -> Network:
-    """What linear analysis takes in the place of an element."""
+    """Network that replaces an element in linear analysis."""
     return element.as_linear()
 
 
 def to_simulation(element: Element) -> Network:
-    """What simulation takes in the place of an element; raises `DesignError` if that depends on a free value."""
+    """Network that replaces an element in simulation; raises `DesignError` if that depends on a free value."""
     return element.as_piecewise()
 
 
 def _named_after(label: str, part: Element) -> Element:
-    return _renamed(part, f"{label}_{part.symbol}") if part.name in (None, label) else part
+    return _with_name(part, f"{label}_{part.symbol}") if part.name in (None, label) else part
 
 
-def _renamed(part: Element, name: str) -> Element:
+def _with_name(part: Element, name: str) -> Element:
     return replace(part, name=name)  # type: ignore[type-var]
 
 
 def with_values(network: Network, values: Mapping[str, float]) -> Network:
-    """`network` with the free values named in `values` fixed, and what is tied to them; other names are passed over."""
+    """`network` with the free values named in `values`, and values tied to them, fixed; other names are ignored."""
 
     def fix(element: Element) -> Network:
         value = element.value
         if isinstance(value, Tied):
-            return element.with_value(value.fixed({name: values[name] for name in value.names if name in values}))
+            return element.with_value(value.substitute({name: values[name] for name in value.names if name in values}))
         if isinstance(value, Free) and value.name is not None and value.name in values:
             label = element.label
             fixed = element.with_value(values[value.name])
-            return fixed if fixed.label == label else _renamed(fixed, label)
+            return fixed if fixed.label == label else _with_name(fixed, label)
         return element
 
     return map_elements(network, fix)
 
 
 def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
-    """The networks with every free value named: by itself, by its element, else by its symbol and a number if needed.
+    """The networks with every free value named: by its own name, that of its element, or its symbol and a number.
 
-    `networks` goes from the name of the mount to its network. Two free values of the same name are one and
-    must have the same bounds and unit; unnamed ones are all different.
+    `networks` maps mount names to networks. Two free values of the same name are one and must have the same bounds and
+    unit; unnamed ones are all different.
 
-    Raises `DesignError` where one name stands for two different ranges, or a value is tied to none.
+    Raises `DesignError` where one name has two different ranges, or a value is tied to an unknown one.
     """
     found = [element for network in networks.values() for element in network.elements()]
     taken = {e.value.name or e.name for e in found if isinstance(e.value, Free)} - {None}
@@ -102,9 +102,8 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
         if known.setdefault(label, here) != here:
             unit, lower, upper = known[label]
             raise DesignError(
-                f"The free value {label!r} stands for {lower:g} to {upper:g} {unit} in one place and for "
-                f"{value.lower:g} to {value.upper:g} {element.unit} in another. "
-                f"Give them different names, or one range."
+                f"The free value {label!r} has two ranges: {lower:g} to {upper:g} {unit} and {value.lower:g} to "
+                f"{value.upper:g} {element.unit}. Give them different names, or one range."
             )
         return element.with_value(Free(value.lower, value.upper, label))
 
@@ -119,8 +118,8 @@ def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None
         for name in element.value.names if isinstance(element.value, Tied) else ():
             if name not in free:
                 raise DesignError(
-                    f"{element.label!r} is tied to {name!r}, which is no free value here (free: "
-                    f"{', '.join(free) or 'none'}). Where that is a number, give this one as a number too."
+                    f"{element.label!r} is tied to {name!r}, which is not a free value; free values: "
+                    f"{', '.join(free) or 'none'}. If {name!r} is a number, give this value as a number too."
                 )
 
 
@@ -128,10 +127,11 @@ _LEFT_OUT = (Linear.OPEN, Linear.CLOSED)
 
 
 @dataclass(frozen=True)
-class Linearised:
-    """What is left of a network for linear analysis, and what was done to get there.
+class LinearisedNetwork:
+    """The linearised network, and the neglected, closed and idle elements.
 
-    `network` is None if no force can pass (`rigid` False) or if the ends are rigidly joined (`rigid` True).
+    `network` is None if no force can be transmitted (`rigid` False) or if the ends are rigidly connected (`rigid`
+    True).
     """
 
     network: Network | None
@@ -142,22 +142,22 @@ class Linearised:
 
     @property
     def frictions(self) -> tuple[str, ...]:
-        """The labels of what is left out."""
+        """Labels of the neglected elements."""
         return tuple(element.label for element in self.left_out)
 
     @property
     def gaps(self) -> tuple[str, ...]:
-        """The labels of what is closed."""
+        """Labels of the closed gaps."""
         return tuple(element.label for element in self.closed)
 
 
-def linearise(network: Network) -> Linearised:
-    """Leave friction out (it transmits no force) and close every gap (rigid contact).
+def linearise(network: Network) -> LinearisedNetwork:
+    """Linearise a network: neglect friction (no force) and close every gap (rigid contact).
 
-    Elements that carry no force any more, because they are in series with a friction, or that cannot move, because
-    they are beside a closed gap, are named in `idle`.
+    Elements without force, in series with a friction, or without motion, in parallel with a closed gap, are listed in
+    `idle`.
     """
-    network = unfolded(network, to_analysis)
+    network = expand_elements(network, to_analysis)
     before = list(network.elements())
     kept, rigid = _linear(network)
     after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()
@@ -165,7 +165,7 @@ def linearise(network: Network) -> Linearised:
     left_out, closed = (tuple(e for e in before if e.linear is role) for role in (Linear.OPEN, Linear.CLOSED))
     others = {id(e): e for e in before if e.linear not in _LEFT_OUT}
     idle = tuple(element.label for key, element in others.items() if dropped[key])
-    return Linearised(kept, rigid, left_out, closed, idle)
+    return LinearisedNetwork(kept, rigid, left_out, closed, idle)
 
 
 def _linear(network: Network) -> tuple[Network | None, bool]:
@@ -177,7 +177,7 @@ def _linear(network: Network) -> tuple[Network | None, bool]:
     rigid = [r for kept, r in parts if kept is None]
     kept_parts = tuple(kept for kept, _ in parts if kept is not None)
     in_parallel = isinstance(network, Parallel)
-    if in_parallel in rigid:  # a rigid branch in parallel, or an open link in series, decides alone
+    if in_parallel in rigid:  # a rigid branch in parallel, or an open link in series, determines the whole
         return None, in_parallel
     if not kept_parts:
         return None, not in_parallel

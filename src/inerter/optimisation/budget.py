@@ -19,7 +19,7 @@ from inerter.methods.method import Averaging, Method, Sees, check_request, evalu
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
-from inerter.vehicle.changed import mounted, opened, with_elements
+from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -165,14 +165,14 @@ def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
 
     Raises `DesignError` if there is none, or if they are of several kinds.
     """
-    vehicle = opened(vehicle)
+    vehicle = to_editable(vehicle)
     chosen = {id(element) for element in _elements(vehicle, parameter)}
     return with_elements(vehicle, lambda element: element.with_value(value) if id(element) in chosen else element)
 
 
 def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
-    in_struts, in_tyres = mounted(vehicle)
+    in_struts, in_tyres = mounted_elements(vehicle)
     all_elements = [*in_struts, *in_tyres]
     named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
     kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]

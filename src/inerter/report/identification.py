@@ -12,7 +12,7 @@ from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
 from inerter.files.identification.running import FIT, RESIDUALS, Identified, responses
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
 from inerter.report.identification_text import (
@@ -98,7 +98,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
         .render(
             title=found.title,
             model="that of the configuration" if found.name == CUSTOM else found.name,
-            layout=written(found.model, [e.label for e in found.model.elements()]),
+            layout=format_expression(found.model, [e.label for e in found.model.elements()]),
             status=unreliable(found),
             answers=list(_answers(found)),
             rows=list(_rows(found)),

@@ -9,7 +9,7 @@ import numpy as np
 
 from inerter.files.identification.running import Identified, Reading, Responses
 from inerter.identification.fit import RecordFit
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 from inerter.records.result import Response
 from inerter.records.uncertain import Uncertain
 from inerter.report.identified_values import elements_block
@@ -24,7 +24,7 @@ def identification_data(found: Identified) -> dict[str, Any]:
     data = {
         "title": found.title,
         "model": found.name,
-        "layout": written(found.model, [e.label for e in found.model.elements()]),
+        "layout": format_expression(found.model, [e.label for e in found.model.elements()]),
         "status": str(fit.status),
         "doubt": None if fit.doubt is None else str(fit.doubt.kind),
         "explained": fit.explained,

@@ -8,7 +8,7 @@ from math import isnan
 
 from inerter.files.identification.running import Identified
 from inerter.networks.elements import Element, Free, Tied
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 from inerter.units import format_handy, format_quantity, format_with_interval
 
 _MOST_DIGITS = 6  # of values that are to be read back
@@ -90,7 +90,7 @@ def _rows(found: Identified) -> tuple[dict[str, tuple[str, str]], str]:
             if rows.setdefault(name, (value, remark)) == (value, remark):
                 order.append(name)
                 break
-    return rows, written(found.device, order)
+    return rows, format_expression(found.device, order)
 
 
 def _possible(element: Element) -> Iterator[str]:

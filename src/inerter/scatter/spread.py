@@ -13,7 +13,14 @@ from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, Sees
 from inerter.networks.elements import Element, Free, Tied
-from inerter.vehicle.changed import changed, labelled, masses, opened, quantities, with_elements
+from inerter.vehicle.replace_values import (
+    elements_by_label,
+    masses,
+    quantities,
+    replace_values,
+    to_editable,
+    with_elements,
+)
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -79,7 +86,7 @@ def elements_scatter(vehicle: Vehicle, scatter: Scatter) -> bool:
 
 
 def _is_of_elements(vehicle: Vehicle, name: str) -> bool:
-    return name not in quantities(vehicle) and bool(labelled(vehicle, name))
+    return name not in quantities(vehicle) and bool(elements_by_label(vehicle, name))
 
 
 def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
@@ -98,7 +105,7 @@ def _value(vehicle: Vehicle, name: str) -> float:
         return np.nan
     if name in quantities(vehicle):
         return _number(name, quantities(vehicle)[name])
-    chosen = labelled(vehicle, name)
+    chosen = elements_by_label(vehicle, name)
     if chosen:
         value = chosen[0].value
         if any(element.value != value for element in chosen):
@@ -107,7 +114,7 @@ def _value(vehicle: Vehicle, name: str) -> float:
         return np.nan if isinstance(value, Free | Tied) else value
     if name in masses(vehicle):
         return _number(name, masses(vehicle)[name])
-    changed(vehicle, {name: 1.0})  # which says what there is
+    replace_values(vehicle, {name: 1.0})  # which says what there is
     raise AssertionError("unreachable")
 
 
@@ -139,8 +146,8 @@ def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: C
 def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
     """The vehicle with a free value of its own, by its name, in the place of all that scatters."""
     parts = dict(scatter.spread)
-    vehicle, free = opened(vehicle), vehicle.free_values()
-    chosen = {id(element) for name in parts if name not in free for element in labelled(vehicle, name)}
+    vehicle, free = to_editable(vehicle), vehicle.free_values()
+    chosen = {id(element) for name in parts if name not in free for element in elements_by_label(vehicle, name)}
 
     def loose(element: Element) -> Element:
         value, name = element.value, element.label
@@ -154,9 +161,9 @@ def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
 
 def followed(vehicle: Vehicle, scatter: Scatter) -> dict[str, str]:
     """The free value that each label has its value from, of those labels that scatter and are no free value."""
-    vehicle, found = opened(vehicle), {}
+    vehicle, found = to_editable(vehicle), {}
     for name in set(scatter.names) - set(vehicle.free_values()):
-        for element in labelled(vehicle, name):
+        for element in elements_by_label(vehicle, name):
             if isinstance(element.value, Free):
                 found[name] = str(element.value.name)
     return found

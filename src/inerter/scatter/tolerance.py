@@ -20,7 +20,7 @@ from inerter.methods.averages import CONFIDENCE
 from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_left_out, scatter_of
-from inerter.vehicle.changed import changed
+from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on
 
@@ -141,7 +141,7 @@ def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter,
         tried = [(loosened(design, scatter), dict(zip(own, table.T, strict=True)))]
     else:
         rows = [dict(zip(own, row, strict=True)) for row in table[:: _TRIED // _TRIED_ALONE].tolist()]
-        tried = [(changed(design, row), {}) for row in rows]
+        tried = [(replace_values(design, row), {}) for row in rows]
     unsure = [
         method.share_unsure(vehicle, one, points) for whole, points in tried for vehicle, one in asked_of(whole, index)
     ]
@@ -232,5 +232,5 @@ def scattered(design: Vehicle, index: Asked, method: Method, scatter: Scatter, f
 
 
 def _value(design: Vehicle, index: Asked, method: Method, values: Mapping[str, float]) -> float:
-    found = estimate_of(changed(design, values), index, method)
+    found = estimate_of(replace_values(design, values), index, method)
     return found.value if found.status.ok else np.nan

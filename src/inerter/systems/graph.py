@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
-from inerter.networks.transform import linearise, map_elements, to_analysis, to_simulation, unfolded
+from inerter.networks.transform import expand_elements, linearise, map_elements, to_analysis, to_simulation
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -117,14 +117,14 @@ def switching(mechanism: Mechanism) -> Mechanism:
         return mechanism
     return replace(
         mechanism,
-        struts=tuple(replace(s, network=unfolded(s.network, to_simulation)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=unfolded(t.network, to_simulation)) for t in mechanism.tyres),
+        struts=tuple(replace(s, network=expand_elements(s.network, to_simulation)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=expand_elements(t.network, to_simulation)) for t in mechanism.tyres),
     )
 
 
 def switching_parts(element: Element) -> Iterator[Element]:
     """The elements that simulation takes in the place of one; a free value may be at its upper bound there."""
-    return unfolded(element, _shaped).elements()
+    return expand_elements(element, _shaped).elements()
 
 
 def _shaped(element: Element) -> Network:
@@ -141,7 +141,7 @@ def _labelled(mechanism: Mechanism, view: Callable[[Element], Network]) -> tuple
 
     Each element is an object of its own: one may be mounted several times.
     """
-    networks = {mount.name: map_elements(unfolded(mount.network, view), copy) for mount in mechanism.mounts()}
+    networks = {mount.name: map_elements(expand_elements(mount.network, view), copy) for mount in mechanism.mounts()}
     placed = [(mount, part) for mount, network in networks.items() for part in _with_labels(network)]
     labels = {id(part): label for (_, part), label in zip(placed, _unique(placed), strict=True)}
     return {mount: _with_groups(network, labels) for mount, network in networks.items()}, labels

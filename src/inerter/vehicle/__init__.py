@@ -1,1 +1,1 @@
-"""Mechanisms, and the cars that are mechanisms."""
+"""Mechanisms, and vehicle models based on them."""

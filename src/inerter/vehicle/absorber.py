@@ -1,4 +1,4 @@
-"""A vibration absorber: a tuned mass damper, with an inerter if wished."""
+"""A vibration absorber: a tuned mass damper, optionally with an inerter."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from inerter.vehicle.vehicle import VehicleModel
 
 @dataclass(frozen=True)
 class Absorber(VehicleModel):
-    """A primary mass on its support, a second mass on it, and perhaps a network from that to the ground.
+    """A primary mass on its support, an absorber mass on it, and optionally a network from that to the ground.
 
-    The support is a spring, with a damper beside it if `primary_damping` is not zero. With a spring and a damper as its
-    `mount` this is a tuned mass damper, and with an inerter as its `ground` one with an inerter. Coordinates `primary`
-    and `absorber`, force `primary_force` on the primary mass; there is no road.
+    The support is a spring, with a damper in parallel if `primary_damping` is not zero. With a spring and a damper as
+    its `mount` this is a tuned mass damper, and with an inerter as its `ground` a tuned mass damper inerter.
+    Coordinates `primary` and `absorber`, force `primary_force` on the primary mass; no road.
 
     Raises `MechanismError` unless masses and stiffness are positive and the damping is not negative, `NetworkError` if
-    `mount` or `ground` is no network.
+    `mount` or `ground` is not a network.
     """
 
     primary_mass: float | Free = field(
-        metadata=quantity("kg", "What is to be kept quiet.", "1000 kg", may_be_free=True)
+        metadata=quantity("kg", "Primary mass, whose vibration is to be reduced.", "1000 kg", may_be_free=True)
     )
-    primary_stiffness: float | Free = field(metadata=quantity("N/m", "Of its support.", "40 kN/m", may_be_free=True))
-    mass: float | Free = field(metadata=quantity("kg", "Of the absorber.", "50 kg", may_be_free=True))
+    primary_stiffness: float | Free = field(metadata=quantity("N/m", "Support stiffness.", "40 kN/m", may_be_free=True))
+    mass: float | Free = field(metadata=quantity("kg", "Absorber mass.", "50 kg", may_be_free=True))
     mount: Network = field(metadata=mounted("Between primary mass and absorber."))
     ground: Network | None = field(default=None, metadata=mounted("Between absorber and ground."))
     primary_damping: float | Free = field(
-        default=0.0, metadata=quantity("N s/m", "Of its support.", "100 N s/m", may_be_free=True)
+        default=0.0, metadata=quantity("N s/m", "Support damping.", "100 N s/m", may_be_free=True)
     )
     key: ClassVar[str] = "absorber"
     moved: ClassVar[str] = "primary_force"

@@ -1,4 +1,4 @@
-"""A car on four wheels: heave, pitch and roll of its body."""
+"""A full car: heave, pitch and roll of its body on four wheels."""
 
 from __future__ import annotations
 
@@ -11,33 +11,34 @@ from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import Coordinate, Force, Measures, Mechanism, Port, RoadInput, Strut, Tyre, Weighted
 from inerter.vehicle.vehicle import VehicleModel
 
-_SIDES = {"left": 0.5, "right": -0.5}  # how far aside, in tracks
+_SIDES = {"left": 0.5, "right": -0.5}  # lateral positions, in tracks
 
 
 @dataclass(frozen=True)
 class FullCar(VehicleModel):
-    """A rigid body in heave, pitch and roll on four struts and wheels, whose tracks may be joined across the car.
+    """A rigid body in heave, pitch and roll on four struts, optionally with anti-roll and anti-pitch networks.
 
     Pitch is positive nose up, roll positive left side up, so that the left front port is sprung + distance_front x
-    pitch + track_front / 2 x roll. `front` and `rear` are mounted left and right alike: a value in them is one value.
-    `anti_roll_front` and `anti_roll_rear` act over the travel of the left strut less that of the right one, and
-    `anti_pitch` on each side over the travel of the front strut less that of the rear one. Coordinates `sprung`,
-    `pitch`, `roll`, `unsprung_front_left`, `unsprung_front_right`, `unsprung_rear_left`, `unsprung_rear_right`.
+    pitch + track_front / 2 x roll. `front` and `rear` are mounted on the left and the right: a value is the same on
+    both sides. `anti_roll_front` and `anti_roll_rear` act over the travel of the left strut minus that of the right
+    one, and `anti_pitch` on each side over the travel of the front strut minus that of the rear one. Coordinates
+    `sprung`, `pitch`, `roll`, `unsprung_front_left`, `unsprung_front_right`, `unsprung_rear_left`,
+    `unsprung_rear_right`.
 
     Raises `MechanismError` unless masses, stiffnesses and lengths are positive.
     """
 
     sprung_mass: float | Free = field(
-        metadata=quantity("kg", "The body.", "1400 kg", may_be_free=True, usual=(4.0, 2e5))
+        metadata=quantity("kg", "Body mass.", "1400 kg", may_be_free=True, usual=(4.0, 2e5))
     )
     pitch_inertia: float | Free = field(
         metadata=quantity(
-            "kg m^2", "Of the body, about its centre of mass.", "2400 kg m^2", may_be_free=True, usual=(0.2, 2e6)
+            "kg m^2", "Body pitch inertia about its centre of mass.", "2400 kg m^2", may_be_free=True, usual=(0.2, 2e6)
         )
     )
     roll_inertia: float | Free = field(
         metadata=quantity(
-            "kg m^2", "Of the body, about its centre of mass.", "520 kg m^2", may_be_free=True, usual=(0.05, 5e5)
+            "kg m^2", "Body roll inertia about its centre of mass.", "520 kg m^2", may_be_free=True, usual=(0.05, 5e5)
         )
     )
     unsprung_mass_front: float | Free = field(
@@ -47,10 +48,12 @@ class FullCar(VehicleModel):
         metadata=quantity("kg", "One rear wheel and hub.", "40 kg", may_be_free=True, usual=(0.1, 5e3))
     )
     tyre_stiffness_front: float | Free = field(
-        metadata=quantity("N/m", "Of one front tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
+        metadata=quantity(
+            "N/m", "Vertical stiffness of one front tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7)
+        )
     )
     tyre_stiffness_rear: float | Free = field(
-        metadata=quantity("N/m", "Of one rear tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
+        metadata=quantity("N/m", "Vertical stiffness of one rear tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
     distance_front: float = field(
         metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m", usual=(0.05, 20.0))
@@ -66,17 +69,23 @@ class FullCar(VehicleModel):
     )
     front: Network = field(metadata=mount("Between body and each front wheel."))
     rear: Network = field(metadata=mount("Between body and each rear wheel."))
-    anti_roll_front: Network | None = field(default=None, metadata=mount("Between left and right travel, in front."))
-    anti_roll_rear: Network | None = field(default=None, metadata=mount("Between left and right travel, behind."))
-    anti_pitch: Network | None = field(default=None, metadata=mount("Between front and rear travel, on each side."))
+    anti_roll_front: Network | None = field(
+        default=None, metadata=mount("Anti-roll network between left and right front travel.")
+    )
+    anti_roll_rear: Network | None = field(
+        default=None, metadata=mount("Anti-roll network between left and right rear travel.")
+    )
+    anti_pitch: Network | None = field(
+        default=None, metadata=mount("Anti-pitch network between front and rear travel, on each side.")
+    )
     key: ClassVar[str] = "full-car"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m", "roll_moment": "N m"}
 
     def mechanism(self) -> Mechanism:
         """The same car as a `Mechanism`.
 
-        In ride comfort pitch has the mean distance of the axles as its weight, as in a half car, and roll half the
-        mean track.
+        In ride comfort pitch is weighted by the mean distance of the axles, as in a half car, and roll by half the mean
+        track.
         """
         half_track = 0.25 * (self.track_front + self.track_rear)
         return Mechanism(
@@ -152,10 +161,10 @@ _WHEELS = tuple(f"{axle}_{side}" for axle in _AXLES for side in _SIDES)
 
 
 def _apart(first: float, second: float) -> tuple[float, float]:
-    """Both, the smaller one changed in its last digit if need be, so that their difference is a floating-point number.
+    """Both values, the smaller one changed in its last digit if needed, so that their difference is exact.
 
     Networks over the difference of two travels then add no motion of the size of a rounding error to those of the
-    struts, which analysis would take for one of its own.
+    struts, which the analysis would treat as a separate degree of freedom.
     """
     difference = first - second
     if abs(first) >= abs(second):

@@ -23,7 +23,7 @@ from inerter.vehicle.vehicle import VehicleModel
 
 @dataclass(frozen=True)
 class HalfCar(VehicleModel):
-    """A rigid body in bounce and pitch on two struts, two wheels and one road that reaches the rear wheel later.
+    """A rigid body in bounce and pitch on two struts, two wheels and one road, which is delayed at the rear wheel.
 
     Source: Wang and Su (2008), eqs. (7) to (10). Pitch is positive nose up, so that the front port is
     bounce + distance_front x pitch. Coordinates `sprung`, `pitch`, `unsprung_front`, `unsprung_rear`.
@@ -32,12 +32,10 @@ class HalfCar(VehicleModel):
     """
 
     sprung_mass: float | Free = field(
-        metadata=quantity("kg", "Half of the body.", "363.5 kg", may_be_free=True, usual=(2.0, 1e5))
+        metadata=quantity("kg", "Half of the body mass.", "363.5 kg", may_be_free=True, usual=(2.0, 1e5))
     )
     pitch_inertia: float | Free = field(
-        metadata=quantity(
-            "kg m^2", "Of that half, about its centre of mass.", "200 kg m^2", may_be_free=True, usual=(0.1, 1e6)
-        )
+        metadata=quantity("kg m^2", "Pitch inertia of half the body.", "200 kg m^2", may_be_free=True, usual=(0.1, 1e6))
     )
     unsprung_mass_front: float | Free = field(
         metadata=quantity("kg", "Front wheel and hub.", "25 kg", may_be_free=True, usual=(0.1, 1e4))
@@ -46,10 +44,12 @@ class HalfCar(VehicleModel):
         metadata=quantity("kg", "Rear wheel and hub.", "20 kg", may_be_free=True, usual=(0.1, 1e4))
     )
     tyre_stiffness_front: float | Free = field(
-        metadata=quantity("N/m", "Of the front tyre.", "120 kN/m", may_be_free=True, usual=(2e3, 1e8))
+        metadata=quantity(
+            "N/m", "Vertical stiffness of the front tyre.", "120 kN/m", may_be_free=True, usual=(2e3, 1e8)
+        )
     )
     tyre_stiffness_rear: float | Free = field(
-        metadata=quantity("N/m", "Of the rear tyre.", "100 kN/m", may_be_free=True, usual=(2e3, 1e8))
+        metadata=quantity("N/m", "Vertical stiffness of the rear tyre.", "100 kN/m", may_be_free=True, usual=(2e3, 1e8))
     )
     distance_front: float = field(
         metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m", usual=(0.05, 20.0))
@@ -65,8 +65,8 @@ class HalfCar(VehicleModel):
     def mechanism(self) -> Mechanism:
         """The same car as a `Mechanism`.
 
-        The weight of pitch in ride comfort is the mean lever (l_f + l_r)/2, which the paper's text defines and its
-        formula for J1 leaves out.
+        The weight of pitch in ride comfort is the mean lever arm (l_f + l_r)/2, which is defined in the text of the
+        paper and omitted in its formula for J1.
         """
         front, rear = self.distance_front, self.distance_rear
         return Mechanism(

@@ -1,8 +1,8 @@
 """A mechanism: coordinates with masses, and networks mounted between ports and on roads.
 
-Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever x pitch; a strut's
-may hold roads too, which are motions given from outside. A mounted network's elongation is the displacement of its
-upper end less that of its lower end; its force is positive in tension.
+Vertical up is positive. A port is a linear combination of coordinates, such as body height + lever arm x pitch; that of
+a strut may include roads too, which are prescribed motions. The elongation of a mounted network is the displacement of
+its upper end minus that of its lower end; its force is positive in tension.
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ class Coordinate:
 
     @property
     def element(self) -> Element:
-        """Its inertia as an inerter to a place that has no acceleration."""
+        """The inertia as an inerter to a point without acceleration."""
         return Inerter(self.inertia, self.name)
 
     @property
     def unit(self) -> str:
-        """Of its inertia."""
+        """Unit of the inertia."""
         return "kg m^2" if self.angle else "kg"
 
 
 @dataclass(frozen=True)
 class Strut:
-    """A network mounted between two ports of coordinates and roads; `GROUND` is the port that does not move."""
+    """A network mounted between two ports of coordinates and roads; `GROUND` is the fixed port."""
 
     name: str
     network: Network
@@ -66,10 +66,10 @@ class Tyre:
 
 @dataclass(frozen=True)
 class RoadInput:
-    """Where the mechanism meets the road.
+    """A road input of the mechanism.
 
-    It is `distance` [m] behind the first such place, so that the road arrives distance / speed later, and on the
-    `track` "left" or "right", where there are two; on "" there is one.
+    It acts `distance` [m] behind the first one, with a delay of distance / speed, on the `track` "left" or "right", or
+    "" for a single track.
     """
 
     name: str
@@ -87,7 +87,7 @@ class Force:
 
 @dataclass(frozen=True)
 class Point:
-    """A place that moves as a port does, with outputs of its own; an angle if that is what it measures."""
+    """A tracked point that moves with a port, with its own outputs; an angle if `angle` is true."""
 
     name: str
     port: Port
@@ -96,7 +96,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Weighted:
-    """An output of the mechanism with the weight that brings it to the unit of an index."""
+    """An output of the mechanism with a weight that converts it to the unit of an index."""
 
     output: str
     weight: float = 1.0
@@ -104,24 +104,24 @@ class Weighted:
 
 @dataclass(frozen=True)
 class Measures:
-    """Which outputs answer the questions that indices ask; empty where the mechanism has no answer."""
+    """Performance outputs of each index; empty where the mechanism has none."""
 
     comfort: tuple[Weighted, ...] = ()  # body accelerations [m/s^2 after weighting]
     tyre_load: tuple[Weighted, ...] = ()  # dynamic tyre forces [N]
     load_input: str | None = None  # the external force of the load-carrying index
-    load_output: str | None = None  # the displacement that answers it
+    load_output: str | None = None  # the displacement under that force
 
 
 @dataclass(frozen=True)
 class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces.
 
-    Outputs that analysis may ask for, by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, so of points;
-    `<tyre>_load`, `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
-    `_relative_velocity` are those over the ground, which are the same unless the ground moves.
+    Outputs by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, also of points; `<tyre>_load`,
+    `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
+    `_relative_velocity` are relative to the ground, and equal to the absolute ones unless the ground moves.
 
-    Raises `MechanismError` where a part names a coordinate or a road that is not there, where a mass is not positive,
-    where names clash, and where a coordinate is attached to nothing; `DesignError` where one free name has two ranges.
+    Raises `MechanismError` for unknown coordinates or roads, masses that are not positive, duplicate names, and
+    unconstrained coordinates; `DesignError` where one free name has two ranges.
     """
 
     coordinates: tuple[Coordinate, ...]
@@ -131,9 +131,9 @@ class Mechanism:
     forces: tuple[Force, ...] = ()
     measures: Measures = field(default_factory=Measures)
     points: tuple[Point, ...] = ()
-    mirror: tuple[tuple[str, str], ...] = ()  # coordinates that are each other's image, or turn round: `half_of`
-    still: tuple[Strut, ...] = ()  # struts that nothing moves and that are left out: their outputs are zero
-    ground_moves: bool = False  # coordinates are then relative to it: see `on_moving_ground`
+    mirror: tuple[tuple[str, str], ...] = ()  # mirrored pairs of coordinates, or antisymmetric ones: see `half_of`
+    still: tuple[Strut, ...] = ()  # struts at rest, which are left out: their outputs are zero
+    ground_moves: bool = False  # coordinates are relative to the ground then: see `on_moving_ground`
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():
@@ -154,22 +154,22 @@ class Mechanism:
         object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
 
     def mechanism(self) -> Mechanism:
-        """Itself: a mechanism is a vehicle."""
+        """The mechanism itself, since a mechanism is a vehicle."""
         return self
 
     def on_moving_ground(self) -> Mechanism:
-        """The same mechanism seen from ground that moves up with an acceleration, the input `GROUND_ACCELERATION`.
+        """The mechanism in relative coordinates under base excitation, the input `GROUND_ACCELERATION` (up positive).
 
-        Every mass feels it, m times as a force; roads lie still on the ground, and coordinates are relative to it.
+        Each mass m is loaded by m times the acceleration; roads are fixed to the ground.
         """
         if self.ground_moves:
             return self
         return replace(self, forces=(*self.forces, Force(GROUND_ACCELERATION, {})), ground_moves=True)
 
     def on_one_track(self) -> Mechanism:
-        """The same mechanism with tyres that meet the road at once on one road, where it lies alike on both sides.
+        """The mechanism on a single track: tyres at the same distance share one road input.
 
-        What both sides share is then an input less, and how the road twists between axles no state.
+        This removes inputs, and states for the twist of the road between axles.
         """
         held = {name for strut in self.struts for name in (*strut.upper, *strut.lower)}
         first: dict[float, str] = {}
@@ -180,12 +180,12 @@ class Mechanism:
         return replace(self, tyres=tyres, roads=tuple(road for road in self.roads if road.name in on.values()))
 
     def mounts(self) -> Iterator[Strut | Tyre]:
-        """Struts, then tyres."""
+        """The struts, then the tyres."""
         yield from self.struts
         yield from self.tyres
 
     def free_values(self) -> dict[str, Free]:
-        """The free values by name: those of networks in the order in which they appear, then masses."""
+        """Free values by name: those of networks in order of appearance, then masses."""
         elements = (element for mount in self.mounts() for element in mount.network.elements())
         values = [*(element.value for element in elements), *(c.inertia for c in self.coordinates)]
         return {str(value.name): value for value in values if isinstance(value, Free)}
@@ -209,7 +209,7 @@ class Mechanism:
         )
 
     def with_masses(self, values: Mapping[str, float]) -> Mechanism:
-        """The same mechanism with those free masses fixed that are named; other names are passed over."""
+        """The same mechanism with the named free masses fixed; other names are ignored."""
         if not any(isinstance(c.inertia, Free) for c in self.coordinates):
             return self
         coordinates = tuple(_with_inertia(c, with_values(c.element, values)) for c in self.coordinates)
@@ -233,31 +233,31 @@ _KINDS: dict[str, type] = {
 
 
 def check_known(values: object, free_values: Mapping[str, Free]) -> None:
-    """Raises `DesignError` unless `values` is a mapping whose every name is a free value."""
+    """Raise `DesignError` unless `values` is a mapping of names of free values."""
     if not isinstance(values, Mapping):
         raise DesignError(f"Expected values by name, such as {{'c': 3000.0}}, got {values!r}.")
     for name in values:
         if name not in free_values:
             known = ", ".join(free_values) or "none"
-            raise DesignError(f"There is no free value named {name!r} in this design (free: {known}).")
+            raise DesignError(f"unknown free value {name!r}; free values of this design: {known}.")
 
 
 def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
     parts = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
     for part in parts:
         if not isinstance(part, kind) or parts == (given,):
-            raise MechanismError(f"The {name} of a mechanism are a tuple of {kind.__name__}(...), got {given!r}.")
+            raise MechanismError(f"The {name} of a mechanism must be a tuple of {kind.__name__}(...), got {given!r}.")
     return parts
 
 
 def _with_ground(forces: Iterable[Force], coordinates: Iterable[Coordinate]) -> tuple[Force, ...]:
-    """The forces, that of the ground on the masses as they are now; one that is free is in the middle of its bounds."""
+    """The forces, with that of the ground on the present masses; a free mass is at the middle of its bounds."""
     masses = {c.name: -middle(c.inertia) for c in coordinates if not c.angle}
     return tuple(replace(f, port=masses) if f.name == GROUND_ACCELERATION else f for f in forces)
 
 
 def check_quantity(what: str, value: object, unit: str) -> None:
-    """Raises `MechanismError` unless `value` is positive, or free between positive bounds."""
+    """Raise `MechanismError` unless `value` is positive, or free between positive bounds."""
     if not isinstance(value, Free):
         check_positive(MechanismError, what, value, unit)
     elif value.lower == 0.0:
@@ -266,12 +266,12 @@ def check_quantity(what: str, value: object, unit: str) -> None:
 
 def _check_measures(measures: object) -> None:
     if not isinstance(measures, Measures):
-        raise MechanismError(f"The measures of a mechanism are Measures(...), got {measures!r}.")
+        raise MechanismError(f"The measures of a mechanism must be Measures(...), got {measures!r}.")
     if not isinstance(measures.comfort, tuple) or not isinstance(measures.tyre_load, tuple):
-        raise MechanismError(f"The outputs of measures are tuples of Weighted(...), got {measures!r}.")
+        raise MechanismError(f"The outputs of measures must be tuples of Weighted(...), got {measures!r}.")
     for output in (*measures.comfort, *measures.tyre_load):
         if not isinstance(output, Weighted) or not isinstance(output.output, str) or not is_number(output.weight):
-            raise MechanismError(f"A measure is Weighted(output name, number), got {output!r}.")
+            raise MechanismError(f"A measure must be Weighted(output name, number), got {output!r}.")
 
 
 def _check_names(mechanism: Mechanism) -> None:
@@ -288,10 +288,10 @@ def _check_names(mechanism: Mechanism) -> None:
         kind = type(part).__name__
         if not isinstance(part.name, str) or not NAME.fullmatch(part.name):
             raise MechanismError(
-                f"The name of a {kind} is a letter followed by letters, digits and underscores, got {part.name!r}."
+                f"The name of a {kind} must be a letter followed by letters, digits and underscores, got {part.name!r}."
             )
         if part.name in seen:
-            raise MechanismError(f"Two parts of the mechanism are named {part.name!r}. Give each its own name.")
+            raise MechanismError(f"Duplicate name {part.name!r} in the mechanism. Give each part a unique name.")
         seen.add(part.name)
     for mount in mechanism.mounts():
         check_network(mount.network)
@@ -299,7 +299,7 @@ def _check_names(mechanism: Mechanism) -> None:
 
 def _check_numbers(mechanism: Mechanism) -> None:
     if not mechanism.coordinates and not (mechanism.roads and mechanism.struts):
-        raise MechanismError("A mechanism needs at least one coordinate with a mass, or a strut that a road moves.")
+        raise MechanismError("A mechanism requires at least one coordinate with a mass, or a strut on a road.")
     for coordinate in mechanism.coordinates:
         what = "Moment of inertia" if coordinate.angle else "Mass"
         check_quantity(f"{what} of {coordinate.name!r}", coordinate.inertia, coordinate.unit)
@@ -311,7 +311,7 @@ def _check_numbers(mechanism: Mechanism) -> None:
             )
         if road.track not in TRACKS:
             raise MechanismError(
-                f'The track of road {road.name!r} is "left" or "right", or "" where there is but one, '
+                f'The track of road {road.name!r} must be "left" or "right", or "" for a single track, '
                 f"got {road.track!r}."
             )
 
@@ -325,24 +325,26 @@ def _check_ports(mechanism: Mechanism) -> None:
     ports += [(f"point {p.name!r}", p.port, coordinates) for p in mechanism.points]
     for where, port, may_hold in ports:
         if not isinstance(port, Mapping):
-            raise MechanismError(f"The port of {where} maps coordinates to levers, as {{'body': 1.0}}; got {port!r}.")
+            raise MechanismError(
+                f"The port of {where} must map coordinates to lever arms, as {{'body': 1.0}}; got {port!r}."
+            )
         for name, lever in port.items():
             if name not in may_hold:
                 known = ", ".join(sorted(coordinates)) or "none"
-                raise MechanismError(f"The {where} is at {name!r}, which is not a coordinate (coordinates: {known}).")
+                raise MechanismError(f"{where}: unknown coordinate {name!r}; available: {known}.")
             if not is_number(lever):
-                raise MechanismError(f"The lever of {name!r} in {where} must be a finite number, got {lever!r}.")
+                raise MechanismError(f"The lever arm of {name!r} in {where} must be a finite number, got {lever!r}.")
     for strut in mechanism.struts:
         if _travel(strut) == {}:
-            raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port: it can never move.")
+            raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port, so its travel is zero.")
     for tyre in mechanism.tyres:
         if tyre.road not in roads:
             known = ", ".join(sorted(roads)) or "none"
-            raise MechanismError(f"Tyre {tyre.name!r} stands on {tyre.road!r}, which is not a road (roads: {known}).")
+            raise MechanismError(f"tyre {tyre.name!r}: unknown road {tyre.road!r}; available: {known}.")
 
 
 def check_values(mechanism: Mechanism) -> None:
-    """Raises `MechanismError` for an element or inertia that is so small or large that others are lost beside it."""
+    """Raise `MechanismError` for an element or inertia too small or large for double precision."""
     for mount in mechanism.mounts():
         for element in mount.network.elements():
             if not isinstance(element.value, Free | Tied):
@@ -355,8 +357,8 @@ def check_values(mechanism: Mechanism) -> None:
 def _check_size(what: str, of: str, value: float, unit: str) -> None:
     if value != 0.0 and not _SMALLEST <= value <= _LARGEST:
         raise MechanismError(
-            f"The {what} of {of!r} is {value:g} {unit}, and numbers of 16 digits can only be computed with from "
-            f"{_SMALLEST:g} to {_LARGEST:g} {unit}. Leave out what is so small, and join rigidly what is so stiff."
+            f"The {what} of {of!r} is {value:g} {unit}; double precision supports {_SMALLEST:g} to {_LARGEST:g} "
+            f"{unit}. Omit such a small element, and replace such a stiff one by a rigid joint."
         )
 
 
@@ -372,6 +374,6 @@ def _check_attached(mechanism: Mechanism) -> None:
     for coordinate in mechanism.coordinates:
         if coordinate.name not in held:
             raise MechanismError(
-                f"Coordinate {coordinate.name!r} is held by nothing: no strut or tyre is mounted on it. "
+                f"Coordinate {coordinate.name!r} is unconstrained: no strut or tyre is mounted on it. "
                 f"Mount one, or leave the coordinate out."
             )

@@ -23,24 +23,22 @@ from inerter.vehicle.vehicle import VehicleModel
 
 @dataclass(frozen=True)
 class QuarterCar(VehicleModel):
-    """Body over wheel over road, with one strut between body and wheel.
+    """A body and a wheel on one road, with one strut between body and wheel.
 
     Source: Wang and Su (2008), eqs. (2) and (3). Coordinates `sprung` and `unsprung`, input road `road`, force
     `sprung_force` on the body.
 
-    Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is no network.
+    Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is not a network.
     """
 
     sprung_mass: float | Free = field(
-        metadata=quantity("kg", "A quarter of the body.", "181.75 kg", may_be_free=True, usual=(1.0, 5e4))
+        metadata=quantity("kg", "A quarter of the body mass.", "181.75 kg", may_be_free=True, usual=(1.0, 5e4))
     )
     unsprung_mass: float | Free = field(
-        metadata=quantity(
-            "kg", "Wheel, hub and their share of the suspension.", "25 kg", may_be_free=True, usual=(0.1, 5e3)
-        )
+        metadata=quantity("kg", "Wheel, hub and share of the suspension.", "25 kg", may_be_free=True, usual=(0.1, 5e3))
     )
     tyre_stiffness: float | Free = field(
-        metadata=quantity("N/m", "Of the tyre, vertically.", "120 kN/m", may_be_free=True, usual=(2e3, 5e7))
+        metadata=quantity("N/m", "Vertical tyre stiffness.", "120 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
     strut: Network = field(metadata=mount("Between body and wheel."))
     key: ClassVar[str] = "quarter-car"

@@ -1,4 +1,4 @@
-"""The vehicles that files know by their keys."""
+"""Registry of the vehicle models of files, by key."""
 
 from __future__ import annotations
 

@@ -13,19 +13,19 @@ from inerter.networks.elements import Damper, Network, Spring
 from inerter.vehicle.mechanism import GROUND, Coordinate, Mechanism, RoadInput, Strut
 from inerter.vehicle.vehicle import VehicleModel
 
-_CELL = 1e13  # [N/m] stiffness of a load cell: a millionth of the softness of any device
+_CELL = 1e13  # [N/m] stiffness of a load cell: a millionth of the compliance of any device
 _ON_CELL = {"load_cell": 1.0}
 
 
 @dataclass(frozen=True)
 class Rig(VehicleModel):
-    """A device between a motion table, whose displacement is given, and a load cell on the ground.
+    """A device between a motion table, whose displacement is prescribed, and a load cell on the ground.
 
-    Source: Wang and Su (2008), the test platform. Input `displacement` [m] of the device's upper end; the load cell
-    reads the output `device_force`, positive in tension. A load cell that follows only up to `cell_bandwidth` [Hz]
-    (second order, Butterworth) is a mass on a spring, so stiff that it hardly moves; it then reads `reading_force`.
+    Source: Wang and Su (2008), the test platform. Input `displacement` [m] of the upper end of the device; the load
+    cell reads the output `device_force`, positive in tension. A load cell of bandwidth `cell_bandwidth` [Hz] (second
+    order, Butterworth) is a mass on a very stiff spring; its reading is `reading_force`.
 
-    Raises `NetworkError` if `device` is no network, `MechanismError` if the bandwidth is not positive.
+    Raises `NetworkError` if `device` is not a network, `MechanismError` if the bandwidth is not positive.
     """
 
     device: Network = field(metadata=mount("Between table and load cell."))

@@ -14,22 +14,19 @@ from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle, name_free_qua
 
 @dataclass(frozen=True)
 class Seat(Stage):
-    """A vehicle with an occupant on a seat, where comfort is that of the occupant.
+    """A vehicle with an occupant on a seat; ride comfort is that of the occupant.
 
     The seat is mounted at `place`, a port of the vehicle: {"sprung": 1.0, "pitch": 0.2, "roll": 0.4} is the body of a
     full car 0.2 m ahead of its centre of mass and 0.4 m left of it. Adds the coordinate `occupant` and the strut
-    `seat` to the mechanism. Whatever else is asked of the vehicle, such as tyre load, is asked of it with the occupant
-    on it.
+    `seat` to the mechanism. All other indices, such as tyre load, are those of the vehicle with the occupant.
 
-    Raises `DesignError` if `vehicle` is none, `MechanismError` unless the mass is positive and the place is one of the
-    vehicle's, `NetworkError` if `network` is none.
+    Raises `DesignError` if `vehicle` is not a vehicle, `MechanismError` unless the mass is positive and the place is a
+    port of the vehicle, `NetworkError` if `network` is not a network.
     """
 
     vehicle: Vehicle
     mass: float = field(
-        metadata=quantity(
-            "kg", "The occupant, with what moves along of the seat.", "60 kg", may_be_free=True, usual=(2.0, 500.0)
-        )
+        metadata=quantity("kg", "Occupant and moving part of the seat.", "60 kg", may_be_free=True, usual=(2.0, 500.0))
     )
     network: Network = field(metadata=mount("Between floor and occupant."))
     place: Port = field(default_factory=lambda: {"sprung": 1.0})

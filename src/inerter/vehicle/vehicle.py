@@ -1,4 +1,4 @@
-"""What every analysis takes as a vehicle, and what those vehicles have in common that files know by their key."""
+"""Protocol of vehicles for all analyses, and base classes of vehicle models and stages."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
 
 class Vehicle(Protocol):
-    """What every analysis takes: something that is a mechanism and may have free values."""
+    """Protocol of a vehicle: a mechanism that may have free values."""
 
     def mechanism(self) -> Mechanism:
-        """The mechanism that it is."""
+        """The mechanism of the vehicle."""
         ...
 
     def free_values(self) -> dict[str, Free]:
-        """Its free values by name."""
+        """Free values by name."""
         ...
 
     def with_values(self, values: Mapping[str, float]) -> Self:
@@ -32,24 +32,23 @@ class Vehicle(Protocol):
 
 
 def check_vehicle(vehicle: object) -> None:
-    """Raises `DesignError` unless `vehicle` is one (its class is not)."""
+    """Raise `DesignError` unless `vehicle` is a vehicle, not a class."""
     if isinstance(vehicle, type) or not hasattr(vehicle, "mechanism"):
         raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
 
 
 @dataclass(frozen=True)
 class VehicleModel:
-    """A kind of vehicle that files know by its `key`: some quantities, and the networks that are mounted in it.
+    """Base of a vehicle model of files with a `key`: quantities and mounted networks.
 
-    A kind is a frozen dataclass whose fields say what they are, by `quantity` and `mount`, and which makes a
-    `mechanism` of them.
+    A model is a frozen dataclass whose fields are declared by `quantity` and `mount`, with a method `mechanism`.
 
-    Raises `MechanismError` unless all quantities are positive (or zero, if that is their default) or, where they may
-    be, free; `NetworkError` if what is mounted is no network.
+    Raises `MechanismError` unless all quantities are positive (or zero, if that is their default) or, where allowed,
+    free; `NetworkError` if a mount is not a network.
     """
 
     key: ClassVar[str]
-    moved: ClassVar[str] = "road"  # what a signal moves if nothing else is said: this, a force, a rig's "displacement"
+    moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
 
     def __post_init__(self) -> None:
@@ -57,10 +56,10 @@ class VehicleModel:
         for name, network in name_free_values(self.networks()).items():
             object.__setattr__(self, name, network)
         if any(isinstance(getattr(self, field.name), Free) for field in fields_of(type(self))):
-            self.mechanism()  # which says what goes by the same name
+            self.mechanism()  # which checks for duplicate names
 
     def networks(self) -> dict[str, Network]:
-        """What is mounted, by the names of the mounts; a mount that may be left out is there if it is not None."""
+        """Networks by mount name; optional mounts only where present."""
         given = {name: getattr(self, name) for name in mounts_of(type(self))}
         left_out = {name for name in given.keys() - {*needed_mounts_of(type(self))} if given[name] is None}
         return {name: check_network(network) for name, network in given.items() if name not in left_out}
@@ -82,21 +81,21 @@ class VehicleModel:
 
 
 class Stage(ABC):
-    """What stands on another vehicle, on a network of its own, and is a vehicle together with it; a dataclass."""
+    """Base of a stage on another vehicle, mounted by a network; a dataclass that is a vehicle together with it."""
 
     vehicle: Vehicle
     network: Network
 
     @abstractmethod
     def mechanism(self) -> Mechanism:
-        """Both as a `Mechanism`."""
+        """Vehicle and stage as one `Mechanism`."""
 
     def free_values(self) -> dict[str, Free]:
-        """The free values by name: those of the vehicle, then its own."""
+        """Free values by name: those of the vehicle, then those of the stage."""
         return self.mechanism().free_values()
 
     def with_values(self, values: Mapping[str, float]) -> Self:
-        """The same with the named free values fixed; raises `DesignError` for a name that is not free here."""
+        """The stage and its vehicle with the named free values fixed; raises `DesignError` for other names."""
         check_known(values, self.free_values())
         below = {name: value for name, value in values.items() if name in self.vehicle.free_values()}
         other: Any = self
@@ -106,9 +105,9 @@ class Stage(ABC):
 
 
 def name_free_quantities(of: Any, what: str) -> None:
-    """Check the quantities of a dataclass, and name the free ones without a name after themselves.
+    """Check the quantities of a dataclass, and name unnamed free ones after their field.
 
-    Raises `MechanismError` unless they are positive (or zero, if that is their default) or, where they may be, free.
+    Raises `MechanismError` unless they are positive (or zero, if that is their default) or, where allowed, free.
     """
     for field in fields_of(type(of)):
         value, said = getattr(of, field.name), f"The {field.in_words} of {what}"
@@ -118,7 +117,7 @@ def name_free_quantities(of: Any, what: str) -> None:
         elif not field.may_be_free:
             raise MechanismError(
                 f"{said} cannot be free: the equations of motion are not linear in it. Give a number of "
-                f"{field.unit}, and compare several."
+                f"{field.unit}, and compare several designs."
             )
         else:
             check_quantity(said, value, field.unit)
@@ -126,7 +125,7 @@ def name_free_quantities(of: Any, what: str) -> None:
 
 
 def _fixed_quantities(of: Any, values: Mapping[str, float]) -> dict[str, float]:
-    """The free quantities of a dataclass that are named, with their values."""
+    """Values of the named free quantities of a dataclass."""
     free = {field.name: getattr(of, field.name) for field in fields_of(type(of))}
     return {
         name: values[str(value.name)]

@@ -91,7 +91,7 @@ def _settled(element: Element, known: Mapping[str, float]) -> Element:
     value = element.value
     if not isinstance(value, Tied):
         return element
-    return element.with_value(value.fixed({name: known[name] for name in value.names if name in known}))
+    return element.with_value(value.substitute({name: known[name] for name in value.names if name in known}))
 
 
 def _tree(text: str) -> ast.expr:

@@ -9,7 +9,7 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.rig.loading import load_rig
-from inerter.networks.parser import written
+from inerter.networks.parser import format_expression
 
 
 def check_lines(path: Path) -> Iterator[str]:
@@ -22,7 +22,7 @@ def check_lines(path: Path) -> Iterator[str]:
         samples = request.check()
     except InerterError as error:
         raise refusal(path, [at(("rig",), str(error))]) from None
-    device = written(request.rig.device, [element.label for element in request.rig.device.elements()])
+    device = format_expression(request.rig.device, [element.label for element in request.rig.device.elements()])
     yield (
         f"{path}: ok. Virtual rig with {device}; {request.signal.input}: {request.signal.kind}; "
         f"{samples} samples over {request.duration:.6g} s, at {request.rig.sampling:.6g} Hz."

@@ -52,7 +52,7 @@ from inerter.files.study.task_rows import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
-from inerter.networks.elements.registry import units_told
+from inerter.networks.elements.registry import format_unit_kinds
 from inerter.rows import made_of_rows
 from inerter.units import shown
 from inerter.vehicle.registry import VEHICLES
@@ -300,7 +300,7 @@ def study_codec() -> TableCodec:
         section(
             "elements",
             elements_codec(free=True, tied=True),
-            f"Elements of the struts, by names that you choose. The unit determines the kind: {units_told()}. "
+            f"Elements of the struts, by names that you choose. The unit determines the kind: {format_unit_kinds()}. "
             "A value is fixed, or a design variable between two bounds.",
             'a section [elements] with lines such as k = "120 kN/m"',
         ),

@@ -18,7 +18,7 @@ from inerter.files.study.sections import judged_models
 from inerter.indices.registry import INDICES, make_index
 from inerter.methods.registry import DEFAULT
 from inerter.networks.elements import Damper, Inerter, Network, Spring
-from inerter.networks.elements.registry import units_told
+from inerter.networks.elements.registry import format_unit_kinds
 from inerter.signals.road import Road
 from inerter.units import shown
 from inerter.vehicle.quarter_car import QuarterCar
@@ -115,7 +115,7 @@ def _moved_by_road(kind: type[VehicleModel]) -> bool:
 def _elements(kind: type[VehicleModel]) -> Iterator[str]:
     """A spring, a damper and an inerter; a spring that carries a car is fixed by the load, not by what is best."""
     first, second = _ELEMENTS
-    yield from (first, f"# {units_told()}.", second, "[elements]")
+    yield from (first, f"# {format_unit_kinds()}.", second, "[elements]")
     yield from [_line(as_line("kt", "150 kN/m"), "spring, fixed: the tyre")] if kind is _Quarter else []
     for element, ends in _FREE.items():
         fixed = element is Spring and _moved_by_road(kind)

@@ -1,7 +1,7 @@
-"""Two-terminal elements, one file each with all its roles, and the algebra that joins them.
+"""Two-terminal elements, one file each with all its roles, and the algebra that combines them.
 
-Signs: an element's elongation is the displacement of its upper end less that of its lower end; its force is positive
-in tension, when it pulls its ends together.
+Signs: the elongation of an element is the displacement of its upper end minus that of its lower end; its force is
+positive in tension, when it pulls its ends together.
 """
 
 from inerter.networks.elements.algebra import Network, Parallel, Series, check_network

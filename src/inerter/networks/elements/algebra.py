@@ -1,4 +1,4 @@
-"""The algebra that joins elements: `|` in parallel, `-` in series."""
+"""The algebra of networks: `|` in parallel, `-` in series."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 
 
 class Network:
-    """Anything with two ends that can be mounted: an element, or elements joined by `|` and `-`."""
+    """A two-terminal network: an element, or elements combined by `|` and `-`."""
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))
@@ -35,7 +35,7 @@ class Network:
         return Series((*_parts(other, Series), *_parts(self, Series)))
 
     def elements(self) -> Iterator[Element]:
-        """The elements in the order in which they are written."""
+        """The elements in the order of the expression."""
         raise NotImplementedError
 
     def fraction(self, s: Complex) -> tuple[Complex, Complex]:
@@ -45,10 +45,10 @@ class Network:
     def admittance(self, s: ArrayLike) -> Any:
         """Y(s) = force / velocity [N s/m], in the shape of `s` [rad/s].
 
-        Friction is left out (Y = 0) and gaps are closed (Y infinite), as in all linear analysis. Infinite at poles,
+        Friction is neglected (Y = 0) and gaps are closed (Y infinite), as in all linear analysis. Infinite at poles,
         such as a spring at s = 0.
 
-        Raises `DesignError` if a value is still free, `NetworkError` if `s` is not made of numbers.
+        Raises `DesignError` if a value is still free, `NetworkError` if `s` does not consist of numbers.
 
         >>> from inerter.networks.elements import Damper, Spring
         >>> (Spring(100.0) | Damper(5.0)).admittance(2j)
@@ -56,11 +56,13 @@ class Network:
         """
         for element in self.elements():
             if isinstance(element.value, Free | Tied):
-                raise DesignError(f"The admittance needs numbers, but {element.label!r} is still free. Fix it first.")
+                raise DesignError(
+                    f"The admittance requires numbers, but {element.label!r} is free. Fix its value first."
+                )
         try:
             points = np.asarray(s, dtype=complex)
         except (TypeError, ValueError):
-            raise NetworkError(f"An admittance needs complex numbers s [rad/s], got {s!r}.") from None
+            raise NetworkError(f"An admittance requires complex numbers s [rad/s], got {s!r}.") from None
         numerator, denominator = self.fraction(points)
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(denominator == 0.0, np.inf, numerator / denominator)[()]
@@ -68,7 +70,7 @@ class Network:
 
 @dataclass(frozen=True)
 class Parallel(Network):
-    """Parts side by side: one elongation, forces add. With a name they stay together, and their force is an output."""
+    """Parts in parallel: equal elongations, forces add. Named parts stay one part, whose force is an output."""
 
     parts: tuple[Network, ...]
     name: str | None = field(default=None, kw_only=True, repr=False)
@@ -83,7 +85,7 @@ class Parallel(Network):
 
 @dataclass(frozen=True)
 class Series(Network):
-    """Parts end to end, the first at the upper end: one force, elongations add. A name is as that of `Parallel`."""
+    """Parts in series, the first at the upper end: equal forces, elongations add; named as `Parallel`."""
 
     parts: tuple[Network, ...]
     name: str | None = field(default=None, kw_only=True, repr=False)
@@ -102,17 +104,17 @@ Fraction = tuple[Complex, Complex]
 def _parallel(one: Fraction, other: Fraction) -> Fraction:
     (n, d), (n2, d2) = one, other
     both_rigid = (d == 0.0) & (d2 == 0.0)
-    return _scaled(np.where(both_rigid, 1.0, n * d2 + n2 * d), d * d2)
+    return _normalise(np.where(both_rigid, 1.0, n * d2 + n2 * d), d * d2)
 
 
 def _series(one: Fraction, other: Fraction) -> Fraction:
     (n, d), (n2, d2) = one, other
     both_open = (n == 0.0) & (n2 == 0.0)
-    return _scaled(n * n2, np.where(both_open, 1.0, n * d2 + n2 * d))
+    return _normalise(n * n2, np.where(both_open, 1.0, n * d2 + n2 * d))
 
 
-def _scaled(n: Complex, d: Complex) -> Fraction:
-    """Long chains would overflow without this; powers of two change no digit."""
+def _normalise(n: Complex, d: Complex) -> Fraction:
+    """The fraction scaled by a power of two, exactly, to prevent overflow in long chains."""
     size = np.ldexp(1.0, np.frexp(np.maximum(np.abs(n), np.abs(d)))[1])
     return n / size, d / size
 

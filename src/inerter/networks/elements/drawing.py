@@ -1,4 +1,4 @@
-"""Lines of which the symbols of elements are made, in points (1/72 inch) around their middle."""
+"""Lines of the symbols of elements, in points (1/72 inch) around their middle."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def zigzag(turns: int = 7, half_height: float = 12.0, half_width: float = 6.5) -
     return ((0.0, HALF_HEIGHT), (0.0, half_height), *peaks, (0.0, -half_height), (0.0, -HALF_HEIGHT))
 
 
-BOX: tuple[Line, ...] = (  # what has no symbol of its own
+BOX: tuple[Line, ...] = (  # for elements without a symbol
     ((-8.0, 9.0), (-8.0, -9.0), (8.0, -9.0), (8.0, 9.0), (-8.0, 9.0)),
     ((0.0, 20.0), (0.0, 9.0)),
     ((0.0, -9.0), (0.0, -20.0)),

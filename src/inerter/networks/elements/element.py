@@ -1,4 +1,4 @@
-"""What all elements have in common: a value with a unit, a name, and the roles in which others meet them."""
+"""Base class of all elements: a value with a unit, a name, and its roles in analysis, simulation and drawing."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from inerter.networks.elements.values import Free, Tied, Value, check_name
 
 
 class Element(Network):
-    """One value with a unit, an optional name, and what it is to whom.
+    """Base of an element: one value with a unit, an optional name, and its roles.
 
-    A kind of element is a frozen dataclass whose fields are its value, what else it is made of (`more`), and `name`,
-    in this order; its class attributes are its roles. A kind whose law is none of `Linear`, or whose modes are none of
-    `Switch`, overrides `as_linear` or `as_piecewise`.
+    A kind of element is a frozen dataclass whose fields are its value, its further numbers (`more`), and `name`, in
+    this order; its class attributes are its roles. A kind whose law is not in `Linear`, or whose modes are not those of
+    a `Switch`, overrides `as_linear` or `as_piecewise`.
     """
 
     # to the parser
@@ -31,15 +31,15 @@ class Element(Network):
     unit: ClassVar[str]
     sentence: ClassVar[str]
     example: ClassVar[str]  # of a value with its unit
-    more: ClassVar[tuple[Field, ...]] = ()  # numbers beside the value, all positive
+    more: ClassVar[tuple[Field, ...]] = ()  # further numbers, all positive
     # to analysis
     linear: ClassVar[Linear]
     switch: ClassVar[Switch | None] = None
     statistical: ClassVar[Statistical] = Statistical.ITSELF
-    effect: ClassVar[str] = ""  # what linear analysis does not see of what switches, such as "play"; else the kind
+    effect: ClassVar[str] = ""  # effect neglected in linear analysis, such as "play"; default: the kind
     # to design
-    may_vanish: ClassVar[bool] = False  # a friction or a gap of zero is an element that is not there
-    tried: ClassVar[tuple[float, float] | None] = None  # where a budget is looked for if the value is zero
+    may_vanish: ClassVar[bool] = False  # whether zero is allowed, as for a friction or a gap without effect
+    tried: ClassVar[tuple[float, float] | None] = None  # search range of a break-even value if the value is zero
     # to the drawing
     drawing: ClassVar[tuple[Line, ...]] = BOX
     name: str | None
@@ -79,7 +79,7 @@ class Element(Network):
 
     @classmethod
     def fields(cls) -> tuple[Field, ...]:
-        """All numbers that it is made of, the value first."""
+        """All numbers of the element, the value first."""
         return (Field(cls.quantity, cls.unit, cls.sentence), *cls.more)
 
     @classmethod
@@ -90,12 +90,12 @@ class Element(Network):
 
     @property
     def value(self) -> Value:
-        """The element's one number, in SI units, or the `Free` or `Tied` that stands for it."""
+        """Value of the element in SI units, or its `Free` or `Tied`."""
         return getattr(self, self.quantity)  # type: ignore[no-any-return]
 
     @property
     def gain(self) -> float:
-        """What its law multiplies beside the value, such as the square of a transmission."""
+        """Further factor in the law, such as the square of a transmission ratio."""
         return 1.0
 
     @property
@@ -106,20 +106,20 @@ class Element(Network):
         """
         value = self.value
         if isinstance(value, Free | Tied):
-            raise DesignError(f"The value of {self.label!r} is still free. Fix it with with_values(...).")
+            raise DesignError(f"The value of {self.label!r} is free. Fix it with with_values(...).")
         return value * self.gain
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Between which forces [N], or elongations [m], what switches is in its middle state: plus and minus its value.
+        """Limits of force [N] or elongation [m] in the middle state of a switching element: minus and plus its value.
 
-        A kind whose law is not even in both directions has others. One that is infinite is never met; where both are
-        the same, the force, or the length, is always that one.
+        A kind whose law differs by direction has others. An infinite limit is never reached; where both are equal, the
+        force, or the length, is constant.
         """
         return -self.coefficient, self.coefficient
 
     def checked_limits(self) -> tuple[float, float]:
-        """`limits`; raises `DesignError` if a kind gives two that it cannot be between."""
+        """`limits`; raises `DesignError` if they are not ordered numbers."""
         lower, upper = self.limits
         if not (is_number(lower) or is_number(upper)) or not -np.inf <= lower <= upper <= np.inf:
             raise DesignError(
@@ -130,17 +130,17 @@ class Element(Network):
 
     @property
     def even(self) -> bool:
-        """Whether its limits are minus and plus its value, also while that is free."""
+        """Whether the limits are minus and plus the value, also while that is free."""
         return type(self).limits is Element.limits
 
     @property
     def is_damped(self) -> bool:
-        """Whether statistical linearisation has a damper for it: for dry friction alike in both directions."""
+        """Whether statistical linearisation replaces it by a damper: dry friction equal in both directions."""
         return self.acts and self.even and self.statistical is Statistical.DAMPER
 
     @property
     def acts(self) -> bool:
-        """Whether it switches, by limits that are apart or still to be chosen."""
+        """Whether it switches: its limits are apart or still free."""
         if self.switch is None or isinstance(self.value, Free | Tied):
             return self.switch is not None
         lower, upper = self.limits
@@ -148,7 +148,7 @@ class Element(Network):
 
     @property
     def possible(self) -> tuple[int, ...]:
-        """The states in which what switches can be, the middle one first; with limits in one place, 1 alone."""
+        """Possible states of a switching element, the middle one first; only 1 if both limits are equal."""
         if not self.acts:
             return (1,)
         lower, upper = self.limits
@@ -156,7 +156,7 @@ class Element(Network):
 
     @property
     def always_holds(self) -> bool:
-        """Whether what switches gives way to no force that is small enough: friction with a force, a closed gap."""
+        """Whether a switching element holds against small forces: friction with a force, a closed gap."""
         if self.switches_by(Guard.FORCE):
             lower, upper = self.limits
             return lower < 0.0 < upper
@@ -164,9 +164,9 @@ class Element(Network):
 
     @property
     def role(self) -> tuple[bool, bool]:
-        """All that a mechanism's motions depend on beside its kind: whether it switches, and whether it holds."""
+        """Properties besides the kind on which the motions of a mechanism depend: whether it switches, and holds."""
         if self.even:
-            return self.coefficient > 0.0, True  # as a friction or a gap does, of whichever size
+            return self.coefficient > 0.0, True  # as a friction or a gap of any size does
         return self.acts, self.always_holds
 
     def switches_by(self, guard: Guard) -> bool:
@@ -190,24 +190,24 @@ class Element(Network):
         yield self
 
     def as_linear(self) -> Network:
-        """What linear analysis takes in its place, also where its value is free."""
+        """Network that replaces the element in linear analysis, also where its value is free."""
         return self
 
     def as_piecewise(self) -> Network:
-        """What simulation takes in its place: elements whose laws are linear, or switch.
+        """Network that replaces the element in simulation, of elements with linear or switching laws.
 
-        Raises `DesignError` if its value is free and parts of it cannot be.
+        Raises `DesignError` if its value is free but must not be.
         """
         return self
 
     @property
     def is_switching(self) -> bool:
-        """Whether simulation takes it as it is."""
+        """Whether simulation uses the element itself."""
         return type(self).as_piecewise is Element.as_piecewise
 
     @property
     def plain(self) -> bool:
-        """Whether its value is the one coefficient of its one law."""
+        """Whether its value is the only coefficient of its only law."""
         return self.gain == 1.0 and self.is_switching and type(self).as_linear is Element.as_linear
 
     def fraction(self, s: Complex) -> tuple[Complex, Complex]:

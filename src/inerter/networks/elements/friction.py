@@ -13,7 +13,7 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Friction(Element):
-    """Dry (Coulomb) friction: a force of size f against the motion, any force in [-f, f] at rest."""
+    """Dry (Coulomb) friction: a force of size f that opposes the motion, any force in [-f, f] at rest."""
 
     force: Value  # [N]
     name: str | None = None
@@ -21,7 +21,7 @@ class Friction(Element):
     symbol: ClassVar[str] = "f"
     quantity: ClassVar[str] = "force"
     unit: ClassVar[str] = "N"
-    sentence: ClassVar[str] = "Size of the force while it slips, and the most that it holds."
+    sentence: ClassVar[str] = "Sliding friction force, equal to the break-away force."
     example: ClassVar[str] = "10 N"
     linear: ClassVar[Linear] = Linear.OPEN
     switch: ClassVar[Switch] = Switch(

@@ -21,7 +21,7 @@ class Gap(Element):
     symbol: ClassVar[str] = "gap"
     quantity: ClassVar[str] = "half_width"
     unit: ClassVar[str] = "m"
-    sentence: ClassVar[str] = "How far it moves freely to either side of its middle."
+    sentence: ClassVar[str] = "Free travel to either side of the middle (half of the backlash)."
     example: ClassVar[str] = "0.1 mm"
     linear: ClassVar[Linear] = Linear.CLOSED
     switch: ClassVar[Switch] = Switch(

@@ -1,4 +1,4 @@
-"""The kinds of element that there are, in one place, and how files and messages find the one that is meant."""
+"""Registry of the kinds of elements, and their lookup by unit."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ELEMENTS: Rows[type[Element]] = Rows(
 
 
 def kinds_by_unit() -> dict[str, type[Element]]:
-    """The kinds that the unit of a value tells: of those that share one, the first that needs no other number."""
+    """Kind of element by the unit of its value: the first without further numbers."""
     told: dict[str, type[Element]] = {}
     for kind in ELEMENTS.values():
         if not kind.more:
@@ -28,19 +28,18 @@ def kinds_by_unit() -> dict[str, type[Element]]:
     return told
 
 
-def units_told() -> str:
-    """What the unit of a value tells, for a reader, such as "N/m spring"."""
+def format_unit_kinds() -> str:
+    """Kinds of elements by unit, in words, such as "N/m spring"."""
     return ", ".join(f"{unit} {kind.key}" for unit, kind in kinds_by_unit().items())
 
 
 def kinds_in_unit() -> dict[str, type[Element]]:
-    """The first kind with a value in each unit."""
+    """First kind of element with a value in each unit."""
     return {**{kind.unit: kind for kind in reversed(list(ELEMENTS.values()))}, **kinds_by_unit()}
 
 
 def parse_element(text: str, known: Mapping[str, type[Element]] | None = None) -> tuple[str, float]:
-    """The SI unit that tells the kind of element (a key of `known`, by default of `kinds_by_unit`), and the value in
-    that unit.
+    """SI unit of an element value (a key of `known`, by default of `kinds_by_unit`), and the value in that unit.
 
     Raises `UnitError` unless `text` is a finite number followed by a unit of one of the kinds.
 

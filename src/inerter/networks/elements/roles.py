@@ -1,7 +1,6 @@
-"""What an element may be to those who work with it, as a closed vocabulary: they ask these, never for a kind.
+"""Roles of an element in analysis and simulation, as a closed vocabulary, used instead of its class.
 
-An element that is none of these by itself says of which network of others it is made instead (`Element.as_linear`,
-`Element.as_piecewise`).
+An element without such a role is replaced by a network of others (`Element.as_linear`, `Element.as_piecewise`).
 """
 
 from __future__ import annotations
@@ -11,59 +10,59 @@ from enum import Enum
 
 
 class Linear(Enum):
-    """What an element is to linear analysis. Stiffness, damping and mass are numbered by the power of s they have."""
+    """Role of an element in linear analysis; the values of stiffness, damping and mass are their powers of s."""
 
     STIFFNESS = 0
     DAMPING = 1
     MASS = 2
-    OPEN = "open"  # transmits no force, and is left out
-    CLOSED = "closed"  # joins its ends rigidly
+    OPEN = "open"  # transmits no force, and is neglected
+    CLOSED = "closed"  # rigid connection
 
     @property
     def order(self) -> int:
-        """Power of s in the dynamic stiffness of what has one."""
+        """Power of s in the dynamic stiffness."""
         assert isinstance(self.value, int)
         return self.value
 
 
 class Guard(Enum):
-    """What a switching element is watched by while it holds, or is loose."""
+    """Quantity that guards the states of a switching element."""
 
-    FORCE = "force"  # holds its length in state 0 while its force is between its limits; moves against one of them else
-    ELONGATION = "elongation"  # loose in state 0 between its limits; holds at one of them else
+    FORCE = "force"  # constant length in state 0 while the force is between its limits; else sliding at one of them
+    ELONGATION = "elongation"  # no force in state 0 between its limits; else contact at one of them
 
 
 class Statistical(Enum):
-    """What statistical linearisation makes of an element. What switches and is no damper to it, it refuses."""
+    """Replacement in statistical linearisation, which rejects switching elements without an equivalent damper."""
 
     ITSELF = "itself"
-    DAMPER = "damper"  # one that takes as much power from a Gaussian velocity, by its value as a force
+    DAMPER = "damper"  # dissipates the same power under a Gaussian velocity
 
 
 @dataclass(frozen=True)
 class Switch:
-    """The modes of an element of the piecewise system: what guards them, and their names in states -1, 0 and 1.
+    """Contact states of an element of the piecewise system: their guard, and their names for -1, 0 and 1.
 
-    A report tells which part of the time it spent in each by the same names, or by those in `spent`.
+    Reports of the share of time in each state use the same names, or those in `spent`.
     """
 
     guard: Guard
     lower: str
     middle: str
     upper: str
-    at_middle: str = ""  # what one does in its middle state, to go after its name; "is ..." if left out
+    at_middle: str = ""  # verb phrase of the middle state, for use after the name; default: "is ..."
     spent: tuple[str, str, str] | None = None  # such as "stuck", in the order of the states
 
-    def said(self, name: str) -> str:
-        """That an element of this name is in its middle state."""
+    def middle_state_text(self, name: str) -> str:
+        """Clause that an element of this name is in its middle state."""
         return f"{name} {self.at_middle or f'is {self.middle}'}"
 
     def time_in(self, state: str) -> str:
-        """How a report tells of the time in the state of that name."""
+        """Name of a state in reports of the share of time."""
         names = (self.lower, self.middle, self.upper)
         return (self.spent or names)[names.index(state)]
 
     @property
     def states(self) -> dict[int, str]:
-        """The names of the states by their numbers."""
+        """Names of the states by number."""
         return {-1: self.lower, 0: self.middle, 1: self.upper}

@@ -1,8 +1,9 @@
-"""Values of elements: a number, one that an optimiser may choose, or one that follows from such; and names."""
+"""Values of elements: a number, a design variable, or a dependent value; and names."""
 
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -18,7 +19,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 @dataclass(frozen=True)
 class Free:
-    """A value that an optimiser may choose between two bounds. Two of the same name are one."""
+    """A design variable between two bounds. Two of the same name are one."""
 
     lower: float
     upper: float
@@ -37,14 +38,14 @@ class Free:
 
 
 def middle(value: float | Free) -> float:
-    """The value, or the middle of the bounds of one that is free: on a logarithmic scale, if neither is zero."""
+    """The value; for a free one the geometric mean of its bounds, or the upper bound if the lower is zero."""
     if not isinstance(value, Free):
         return value
     return (value.lower * value.upper) ** 0.5 or value.upper
 
 
 def free(lower: float, upper: float, name: str | None = None) -> Free:
-    """A value to be chosen between `lower` and `upper`, in the unit of the element that it is given to.
+    """A design variable between `lower` and `upper`, in the unit of its element.
 
     Raises `NetworkError` unless 0 <= lower < upper, both finite.
     """
@@ -53,50 +54,55 @@ def free(lower: float, upper: float, name: str | None = None) -> Free:
 
 @dataclass(frozen=True)
 class Tied:
-    """A value that follows from others by their names: sums, differences, products and quotients of them and numbers.
+    """A dependent value: sums, differences, products and quotients of other values, by name, and numbers.
 
-    `program` has names and numbers, each operation after the two that it takes.
+    `program` lists names and numbers in postfix notation, each operation after its two operands.
     """
 
     program: tuple[str | float, ...]
 
     def __add__(self, other: Tied | float) -> Tied:
-        return _joined(self, other, "+")
+        return _combine(self, other, "+")
 
     def __radd__(self, other: float) -> Tied:
-        return _joined(other, self, "+")
+        return _combine(other, self, "+")
 
     def __sub__(self, other: Tied | float) -> Tied:
-        return _joined(self, other, "-")
+        return _combine(self, other, "-")
 
     def __rsub__(self, other: float) -> Tied:
-        return _joined(other, self, "-")
+        return _combine(other, self, "-")
 
     def __mul__(self, other: Tied | float) -> Tied:
-        return _joined(self, other, "*")
+        return _combine(self, other, "*")
 
     def __rmul__(self, other: float) -> Tied:
-        return _joined(other, self, "*")
+        return _combine(other, self, "*")
 
     def __truediv__(self, other: Tied | float) -> Tied:
-        return _joined(self, other, "/")
+        return _combine(self, other, "/")
 
     def __rtruediv__(self, other: float) -> Tied:
-        return _joined(other, self, "/")
+        return _combine(other, self, "/")
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What it follows from."""
+        """Names of the values on which it depends."""
         return tuple(dict.fromkeys(x for x in self.program if isinstance(x, str) and x not in _ARITHMETIC))
 
-    def fixed(self, values: Mapping[str, float]) -> Tied | float:
-        """The same with some values known; a number once all are."""
+    def substitute(self, values: Mapping[str, float]) -> Tied | float:
+        """The value with some names replaced by numbers; a number once all are."""
         known = tuple(float(values[x]) if isinstance(x, str) and x in values else x for x in self.program)
         found = Tied(known)
         return found if found.names else float(found.slopes({})[0])
 
+    def fixed(self, values: Mapping[str, float]) -> Tied | float:
+        """The old name of `substitute`."""
+        warnings.warn("`fixed` is now `substitute`; the old name goes with the next version.", DeprecationWarning, 2)
+        return self.substitute(values)
+
     def slopes(self, values: Mapping[str, ArrayLike]) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
-        """The value, and its derivatives over what it follows from; infinite or nan where it divides by zero."""
+        """The value, and its derivatives by name; infinite or nan where it divides by zero."""
         stack: list[tuple[Any, dict[str, Any]]] = []
         with np.errstate(all="ignore"):
             for x in self.program:
@@ -133,20 +139,20 @@ _ARITHMETIC: dict[str, Callable[[Any, Any], tuple[Any, Any, Any]]] = {  # the re
 
 
 def tied(name: str, factor: float = 1.0, plus: float = 0.0) -> Tied:
-    """A value that is `factor` times the free value of that name, `plus` a number in its unit.
+    """A dependent value: `factor` times the free value of that name, `plus` a number in its unit.
 
     Ties can be added, subtracted, multiplied and divided, by one another and by numbers.
 
-    Raises `NetworkError` for what is no name, or no number.
+    Raises `NetworkError` for an invalid name or number.
 
     >>> import inerter as it
     >>> rear = it.Spring(it.tied("k_front", factor=0.8))
     >>> made_up = it.Spring(1.0 / (1.0 / 120e3 - 1.0 / it.tied("k1")))  # 120 kN/m in series with k1
-    >>> made_up.with_value(made_up.value.fixed({"k1": 360e3})).value
+    >>> made_up.with_value(made_up.value.substitute({"k1": 360e3})).value
     180000.0
     """
     if name is None:
-        raise NetworkError("A tied value follows from a free one: give its name.")
+        raise NetworkError("A tied value depends on a free one. Give its name.")
     check_name(name)
     found = Tied((name,))
     if factor != 1.0:
@@ -154,14 +160,14 @@ def tied(name: str, factor: float = 1.0, plus: float = 0.0) -> Tied:
     return found + plus if plus != 0.0 else found
 
 
-def _joined(one: Tied | float, other: Tied | float, operation: str) -> Tied:
+def _combine(one: Tied | float, other: Tied | float, operation: str) -> Tied:
     parts = [x.program if isinstance(x, Tied) else (_number(x),) for x in (one, other)]
     return Tied((*parts[0], *parts[1], operation))
 
 
 def _number(value: object) -> float:
     if not is_number(value):
-        raise NetworkError(f"A tied value is made of other values and of finite numbers, got {value!r}.")
+        raise NetworkError(f"A tied value must consist of other values and finite numbers, got {value!r}.")
     return float(value)
 
 
@@ -169,6 +175,6 @@ Value = float | Free | Tied
 
 
 def check_name(name: object) -> None:
-    """Raises `NetworkError` unless `name` can stand in an expression; there need not be one."""
+    """Raise `NetworkError` unless `name` is None or valid in an expression."""
     if name is not None and (not isinstance(name, str) or not NAME.fullmatch(name)):
-        raise NetworkError(f"A name is a letter followed by letters, digits and underscores, got {name!r}.")
+        raise NetworkError(f"A name must be a letter followed by letters, digits and underscores, got {name!r}.")

@@ -1,4 +1,4 @@
-"""One half of a mechanism whose two sides are alike, where both sides are driven alike."""
+"""Symmetric and antisymmetric halves of a mechanism with mirror symmetry."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from inerter.vehicle.mechanism import Coordinate, Mechanism, Point, Port, Strut,
 
 
 def half_of(mechanism: Mechanism) -> Mechanism:
-    """`alike_half`, unless a mount that nothing moves then has a free value, which is to be told of."""
+    """`alike_half`, unless a mount at rest in it has a free value, which must be reported."""
     half = alike_half(mechanism)
     still = half.still[len(mechanism.still) :]
     if any(isinstance(element.value, Free) for strut in still for element in strut.network.elements()):
@@ -20,23 +20,21 @@ def half_of(mechanism: Mechanism) -> Mechanism:
 
 
 def alike_half(mechanism: Mechanism) -> Mechanism:
-    """What moves where both sides move alike, if both are alike: an equal mechanism of fewer coordinates; else itself.
+    """The symmetric half of a symmetric mechanism: an equivalent mechanism of fewer coordinates; else the mechanism.
 
-    Of two coordinates that are each other's mirror image the first has the mass of both, and those that turn round lie
-    still. All mounts stay, two of them beside each other, but for those that nothing moves then; a coordinate that goes
-    is a `Point` of its name. What the mirror says is not believed but tried: masses and mounts must be the same in it.
+    Of two mirrored coordinates the first has the mass of both, and antisymmetric ones are at rest. All mounts are kept,
+    mirrored ones in parallel, except those at rest; a removed coordinate becomes a `Point` of its name. The symmetry is
+    verified: masses and mounts must be equal in the mirror image.
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism
-    return _folded(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
+    return _fold(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
 
 
 def opposed_half(mechanism: Mechanism) -> Mechanism:
-    """What moves where the right side moves against the left, on roads that do so too, if both sides are alike; else
-    the mechanism itself.
+    """The antisymmetric half of a symmetric mechanism, on antisymmetric roads; else the mechanism.
 
-    What is its own image lies still, and what turns round moves. Tyres of the right are turned over, onto the roads of
-    the left.
+    Symmetric coordinates are at rest, and antisymmetric ones move. Right tyres are mirrored onto the left roads.
     """
     merged = mechanism.on_one_track()
     if not mechanism.mirror or any(road.track != "left" for road in merged.roads) or not _is_its_image(merged):
@@ -44,7 +42,7 @@ def opposed_half(mechanism: Mechanism) -> Mechanism:
     follows: dict[str, Port] = {b: {a: -1.0} for a, b in mechanism.mirror if a != b}
     moved = {a for a, _ in mechanism.mirror}
     follows |= {c.name: {} for c in mechanism.coordinates if c.name not in {*moved, *follows}}
-    half = _folded(replace(mechanism, tyres=merged.tyres, roads=merged.roads), follows)
+    half = _fold(replace(mechanism, tyres=merged.tyres, roads=merged.roads), follows)
     turned = (
         one if one.road == own.road else replace(one, port={name: -lever for name, lever in one.port.items()})
         for one, own in zip(half.tyres, mechanism.tyres, strict=True)
@@ -52,18 +50,18 @@ def opposed_half(mechanism: Mechanism) -> Mechanism:
     return replace(half, tyres=tuple(turned))
 
 
-def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
-    """The mechanism whose coordinates follow others so."""
+def _fold(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
+    """The mechanism with coordinates replaced by multiples of others."""
     doubled = {a for a, b in mechanism.mirror if a != b}
 
-    def folded(port: Port) -> Port:
+    def fold_port(port: Port) -> Port:
         found: dict[str, float] = {}
         for name, lever in port.items():
             for other, share in follows.get(name, {name: 1.0}).items():
                 found[other] = found.get(other, 0.0) + share * lever
         return {name: lever for name, lever in found.items() if lever != 0.0}
 
-    struts = [replace(s, upper=folded(s.upper), lower=folded(s.lower)) for s in mechanism.struts]
+    struts = [replace(s, upper=fold_port(s.upper), lower=fold_port(s.lower)) for s in mechanism.struts]
     still = tuple(strut for strut in struts if strut.upper == strut.lower)
     coordinates = (
         replace(c, inertia=2.0 * c.element.coefficient) if c.name in doubled else c for c in mechanism.coordinates
@@ -73,16 +71,16 @@ def _folded(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
         mechanism,
         coordinates=tuple(c for c in coordinates if c.name not in follows),
         struts=tuple(strut for strut in struts if strut not in still),
-        tyres=tuple(replace(tyre, port=folded(tyre.port)) for tyre in mechanism.tyres),
-        forces=tuple(replace(force, port=folded(force.port)) for force in mechanism.forces),
-        points=(*(replace(point, port=folded(point.port)) for point in mechanism.points), *gone),
+        tyres=tuple(replace(tyre, port=fold_port(tyre.port)) for tyre in mechanism.tyres),
+        forces=tuple(replace(force, port=fold_port(force.port)) for force in mechanism.forces),
+        points=(*(replace(point, port=fold_port(point.port)) for point in mechanism.points), *gone),
         mirror=(),
         still=(*mechanism.still, *still),
     )
 
 
 def _is_its_image(mechanism: Mechanism) -> bool:
-    """Whether masses and mounts are the same in the mirror, and no mass is free: that of two would be another."""
+    """Whether masses and mounts are equal in the mirror image, and no mass is free, as pairs of masses are added."""
     if any(isinstance(c.inertia, Free) for c in mechanism.coordinates):
         return False
     images: dict[str, tuple[str, float]] = {}
@@ -91,15 +89,15 @@ def _is_its_image(mechanism: Mechanism) -> bool:
     known = {c.name: c for c in mechanism.coordinates}
     if any(_law(known[a]) != _law(known[b]) for a, b in mechanism.mirror):
         return False
-    return Counter(_mounted(mechanism, {})) == Counter(_mounted(mechanism, images))
+    return Counter(_mount_signatures(mechanism, {})) == Counter(_mount_signatures(mechanism, images))
 
 
 def _law(coordinate: Coordinate) -> tuple[float | Free, bool]:
     return coordinate.inertia, coordinate.angle
 
 
-def _mounted(mechanism: Mechanism, images: Mapping[str, tuple[str, float]]) -> list[object]:
-    """Every mount as its network and how far it is stretched, in the mirror; turned end for end it is the same."""
+def _mount_signatures(mechanism: Mechanism, images: Mapping[str, tuple[str, float]]) -> list[object]:
+    """Network and elongation of every mount in the mirror image, independent of the order of its ends."""
     found: list[object] = []
     for mount in mechanism.mounts():
         stretched: dict[str, float] = {}

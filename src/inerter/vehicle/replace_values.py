@@ -1,4 +1,4 @@
-"""A vehicle with other numbers by their names: quantities of the vehicle, values of elements, masses of coordinates."""
+"""Replacement of vehicle quantities, element values and masses by name."""
 
 from __future__ import annotations
 
@@ -15,39 +15,39 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 
 
-def changed(vehicle: Vehicle, values: Mapping[str, float], *, if_there: bool = False) -> Vehicle:
-    """The same vehicle with other numbers (SI), each by its name.
+def replace_values(vehicle: Vehicle, values: Mapping[str, float], *, if_there: bool = False) -> Vehicle:
+    """The same vehicle with replaced values (SI), by name.
 
-    That is a quantity of the vehicle such as `sprung_mass`, or of what stands on it, else the label of elements, else a
-    coordinate of a `Mechanism`, whose mass it is.
+    A name is that of a quantity of the vehicle or of a stage on it, such as `sprung_mass`, else the label of elements,
+    else the coordinate of a `Mechanism`, for its mass.
 
-    Raises `DesignError` for a name that stands for nothing here, unless what is not there may be named (`if_there`), or
-    for elements of several kinds.
+    Raises `DesignError` for an unknown name, unless unknown names are ignored (`if_there`), or for elements of several
+    kinds.
     """
-    vehicle = opened(vehicle)
+    vehicle = to_editable(vehicle)
     for name, value in values.items():
         if not is_number(value):
             raise DesignError(f"The value of {name!r} must be a finite number in SI units, got {value!r}.")
-        if not if_there or name in _known(vehicle):
-            vehicle = _one_changed(vehicle, name, float(value))
+        if not if_there or name in _known_names(vehicle):
+            vehicle = _replace_value(vehicle, name, float(value))
     return vehicle
 
 
-def opened(vehicle: Vehicle) -> Vehicle:
-    """The vehicle, as its mechanism if it does not say what it is made of; its elements then stay the same objects."""
+def to_editable(vehicle: Vehicle) -> Vehicle:
+    """The vehicle, or its mechanism if its class has no fields; elements are the same objects then."""
     if isinstance(vehicle, Stage):
-        return _standing_on(vehicle, opened(vehicle.vehicle))
+        return _standing_on(vehicle, to_editable(vehicle.vehicle))
     return vehicle if isinstance(vehicle, VehicleModel | Mechanism) else vehicle.mechanism()
 
 
 def quantities(vehicle: Vehicle) -> dict[str, float | Free]:
-    """The quantities of a vehicle by name, and of what stands on it."""
+    """Quantities of a vehicle and of the stages on it, by name."""
     below = quantities(vehicle.vehicle) if isinstance(vehicle, Stage) else {}
     return below | _own_quantities(vehicle)
 
 
 def masses(vehicle: Vehicle) -> dict[str, float | Free]:
-    """The inertias of the coordinates of a `Mechanism`, which may carry something, by their names."""
+    """Inertias of the coordinates of a `Mechanism`, also below stages, by name."""
     if isinstance(vehicle, Stage):
         return masses(vehicle.vehicle)
     return {c.name: c.inertia for c in vehicle.coordinates} if isinstance(vehicle, Mechanism) else {}
@@ -59,15 +59,15 @@ def _own_quantities(vehicle: Vehicle) -> dict[str, float | Free]:
     return {field.name: getattr(vehicle, field.name) for field in fields_of(type(vehicle))}
 
 
-def _one_changed(vehicle: Vehicle, name: str, value: float) -> Vehicle:
+def _replace_value(vehicle: Vehicle, name: str, value: float) -> Vehicle:
     if name in quantities(vehicle):
         return _with_quantity(vehicle, name, value)
-    chosen = {id(element) for element in labelled(vehicle, name)}
+    chosen = {id(element) for element in elements_by_label(vehicle, name)}
     if chosen:
         return with_elements(vehicle, lambda e: e.with_value(value) if id(e) in chosen else e)
     if name in masses(vehicle):
         return _with_mass(vehicle, name, value)
-    raise DesignError(f"There is nothing named {name!r} to change (there are: {', '.join(_known(vehicle))}).")
+    raise DesignError(f"unknown value {name!r}; available: {', '.join(_known_names(vehicle))}.")
 
 
 def _with_quantity(vehicle: Vehicle, name: str, value: float) -> Vehicle:
@@ -91,15 +91,15 @@ def _with_mass(vehicle: Vehicle, name: str, value: float) -> Vehicle:
     return dataclasses.replace(mechanism, coordinates=coordinates)
 
 
-def _known(vehicle: Vehicle) -> list[str]:
-    labels = [element.label for part in mounted(vehicle) for element in part]
+def _known_names(vehicle: Vehicle) -> list[str]:
+    labels = [element.label for part in mounted_elements(vehicle) for element in part]
     return list(dict.fromkeys([*quantities(vehicle), *labels, *masses(vehicle)]))
 
 
-def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
-    """The elements of the struts, and of tyres that are given as networks."""
+def mounted_elements(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
+    """Elements of the struts, and of tyres that are given as networks."""
     if isinstance(vehicle, Stage):
-        struts, tyres = mounted(vehicle.vehicle)
+        struts, tyres = mounted_elements(vehicle.vehicle)
         return [*struts, *vehicle.network.elements()], tyres
     if isinstance(vehicle, VehicleModel):
         return [e for network in vehicle.networks().values() for e in network.elements()], []
@@ -109,29 +109,33 @@ def mounted(vehicle: Vehicle) -> tuple[list[Element], list[Element]]:
     return of_struts, of_tyres
 
 
-def labelled(vehicle: Vehicle, label: str) -> list[Element]:
-    """The elements of that label, in struts if there are some, else in tyres.
+def elements_by_label(vehicle: Vehicle, label: str) -> list[Element]:
+    """Elements with a label, in struts if there are any, else in tyres.
 
     Raises `DesignError` if they are of several kinds, or unnamed with several values.
     """
-    of_struts, of_tyres = ([element for element in part if element.label == label] for part in mounted(vehicle))
+    of_struts, of_tyres = (
+        [element for element in part if element.label == label] for part in mounted_elements(vehicle)
+    )
     chosen = of_struts or of_tyres
     if len({(e.unit, e.value) for e in chosen if e.name is None and not isinstance(e.value, Free)}) > 1:
         values = " and ".join(dict.fromkeys(str(e) for e in chosen))
-        raise DesignError(f"{label!r} stands for {values}. Name the one that is meant, as in Spring(..., name=...).")
+        raise DesignError(f"{label!r} is ambiguous: {values}. Name the element, as in Spring(..., name=...).")
     if len({e.unit for e in chosen}) > 1:
         raise DesignError(f"{label!r} names elements of different kinds. Give them different names.")
     return chosen
 
 
 def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
-    """The same vehicle with other elements in what is mounted."""
+    """The same vehicle with changed elements in its mounted networks."""
     if isinstance(vehicle, Stage):
         network = map_elements(vehicle.network, change)
         return _standing_on(vehicle, with_elements(vehicle.vehicle, change), network=network)
     if isinstance(vehicle, VehicleModel):
-        mounted: dict[str, Any] = {name: map_elements(network, change) for name, network in vehicle.networks().items()}
-        return dataclasses.replace(vehicle, **mounted)
+        mounted_elements: dict[str, Any] = {
+            name: map_elements(network, change) for name, network in vehicle.networks().items()
+        }
+        return dataclasses.replace(vehicle, **mounted_elements)
     mechanism = vehicle.mechanism()
     return dataclasses.replace(
         mechanism,

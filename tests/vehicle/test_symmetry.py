@@ -9,7 +9,7 @@ import pytest
 from test_full_car import ROAD, across, car
 
 import inerter as it
-from inerter.vehicle.halves import half_of
+from inerter.vehicle.symmetry import half_of
 
 
 def pair(seed: int) -> tuple[it.FullCar, it.Mechanism]:
@@ -93,5 +93,5 @@ def test_a_point_moves_as_its_port() -> None:
     run = it.simulate(whole, road=it.multisine(ROAD, seed=0), duration=0.2, step=5e-4)
     expected = run["sprung_acceleration"] + 0.3 * run["pitch_acceleration"] + 0.4 * run["roll_acceleration"]
     np.testing.assert_allclose(run["driver_acceleration"], expected, atol=1e-9 * np.abs(expected).max())
-    with pytest.raises(it.InerterError, match="point 'driver' is at 'yaw', which is not a coordinate"):
+    with pytest.raises(it.InerterError, match="point 'driver': unknown coordinate 'yaw'"):
         replace(whole, points=(it.Point("driver", {"yaw": 1.0}),))

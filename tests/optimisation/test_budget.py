@@ -259,7 +259,7 @@ def test_a_play_that_is_not_there_yet_is_looked_for_between_a_micrometre_and_a_c
 
 
 WRONG = {
-    "no such name": (lambda: budget(series(), conventional(), J3, parameter="q", method=Norm()), "named 'q'"),
+    "no such name": (lambda: budget(series(), conventional(), J3, parameter="q", method=Norm()), "unknown element 'q'"),
     "no gap there": (lambda: budget(series(), conventional(), J3, parameter="gap", method=Norm()), "Gap(0.0)"),
     "two kinds": (
         lambda: budget(
@@ -292,7 +292,7 @@ WRONG = {
             paper_quarter_car(Spring(it.free(1e4, 1e5, "k"), "k") | Damper(1e3)),
             conventional(), J3, parameter="k", method=Norm(),
         ),
-        "is free; fix it",
+        "is free. Fix it",
     ),
 }  # fmt: skip
 

@@ -10,7 +10,7 @@ from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
 from inerter.methods.sampled import SampledObjective
-from inerter.optimisation.constrained import Limited
+from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.limits import bounds_of, for_each
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -206,11 +206,11 @@ def test_limits_of_what_is_simulated():
     [
         (lambda: it.at_most(J1, 0.0), "must be a positive number of m/s\\^2"),
         (lambda: it.at_most(J1, float("nan")), "must be a positive number"),
-        (lambda: it.at_most("J1", 1.0), "is put on an index"),
-        (lambda: it.at_most(it.RideComfort, 1.0), "is put on an index"),
-        (lambda: it.optimise(quarter(), J1, NORM, subject_to=it.at_most(J3, 1.0)), "is a list of limits"),
-        (lambda: it.optimise(quarter(), J1, NORM, subject_to=[J3]), "is a list of limits"),
-        (lambda: it.optimise(quarter(), J1, NORM, subject_to="J3"), "is a list of limits"),
+        (lambda: it.at_most("J1", 1.0), "requires an index"),
+        (lambda: it.at_most(it.RideComfort, 1.0), "requires an index"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to=it.at_most(J3, 1.0)), "must be a list of constraints"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to=[J3]), "must be a list of constraints"),
+        (lambda: it.optimise(quarter(), J1, NORM, subject_to="J3"), "must be a list of constraints"),
         (lambda: it.optimise(quarter(), J1, NORM, subject_to=[it.equal(it.static_stiffness("front"), 1.0)]), "Nothing"),
     ],
 )
@@ -265,7 +265,9 @@ def test_a_start_counts_the_less_the_further_it_is_beyond_a_limit(number):
     points = np.exp(np.random.default_rng(number).uniform(np.log(lower), np.log(upper), (40, lower.size)))
     values, limited = (NORM.objective(car, one).values(points) for one in (index, limit))
     bound = float(np.median(limited))
-    found = Limited(NORM.objective(car, index), bounds_of(car, [it.at_most(limit, bound)], NORM), lower, upper)
+    found = ConstrainedProblem(
+        NORM.objective(car, index), bounds_of(car, [it.at_most(limit, bound)], NORM), lower, upper
+    )
     factor = found.values(points) / values
     np.testing.assert_allclose(factor[limited <= bound], 1.0, rtol=1e-12)
     beyond = np.argsort(limited)[np.sort(limited) > bound]

@@ -331,4 +331,4 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
     page.locator("#tab-panel").get_by_role("button", name="Find out").click()
     page.wait_for_selector("table[data-scatter]")
     told = page.inner_text("#tab-panel")
-    assert told.index("does not see the scatter of f") < told.index("standard deviation")
+    assert told.index("ignores the tolerance of f") < told.index("standard deviation")

@@ -117,7 +117,7 @@ def test_what_is_made_of_estimates_is_no_better_than_the_worst(name, monkeypatch
     worsen(monkeypatch, which)
     found = make()
     assert found.status.kind in ("inaccurate", "failed")
-    assert "so so" in found.status.message or "sure" in found.status.message
+    assert "so so" in found.status.message or "reliable" in found.status.message
     if name in ("comparison", "tie"):
         assert str(found).startswith("not certain (inaccurate")
 
@@ -179,7 +179,7 @@ def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path
     worsen(monkeypatch, is_about_tyres)
     doubtful = judged_study(tmp_path, LIMITED)
     assert doubtful["headline"].startswith(
-        "Not certain (inaccurate: S1 and S2, the limit dynamic tyre load at most 900 N"
+        "Not certain (inaccurate: S1 and S2, the constraint dynamic tyre load at most 900 N"
     )
     assert all(one["status"].startswith("inaccurate") for one in doubtful["json"]["designs"])
 

@@ -44,7 +44,7 @@ def counted(stop_at: int | None = None) -> Iterator[list[int]]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(kept, "_SELDOM", 0.0)
-        for module in ("levels", "local"):
+        for module in ("minimax_level", "local"):
             patch.setattr(f"inerter.optimisation.{module}.evaluated", count_one)
         yield count
 

@@ -80,7 +80,7 @@ def slowly(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
         time.sleep(seconds)
         before()
 
-    monkeypatch.setattr("inerter.optimisation.levels.evaluated", slow)
+    monkeypatch.setattr("inerter.optimisation.minimax_level.evaluated", slow)
 
 
 def test_progress_moves_within_a_search(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,8 +14,8 @@ from inerter.files.study.limits import StudyLimit, limits_in, part_words
 from inerter.files.study.study import Study
 from inerter.methods.asking import Asked
 from inerter.methods.method import Estimate, Method, evaluate
-from inerter.optimisation.constrained import KEPT_COSTLY
-from inerter.optimisation.held import Held
+from inerter.optimisation.active_constraints import ConstraintResult
+from inerter.optimisation.constrained_search import KEPT_COSTLY
 from inerter.optimisation.limits import Limit, for_each, output_of
 from inerter.units import format_quantity
 from inerter.vehicle.vehicle import Vehicle
@@ -52,7 +52,7 @@ def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
 def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
     try:
         single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
-        held = [Held(limit, valued(vehicle, limit.of, method), False, 0.0) for limit in single]
+        held = [ConstraintResult(limit, valued(vehicle, limit.of, method), False, 0.0) for limit in single]
         closest = max(held, key=lambda one: inf if isnan(one.value) else one.excess)
         worst, part = closest.estimate, part_words(vehicle, output_of(closest.limit.of))
         kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)

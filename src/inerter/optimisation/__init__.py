@@ -1,1 +1,1 @@
-"""The best values of a design's free values."""
+"""Optimisation of the free values of a design."""

@@ -1,4 +1,4 @@
-"""How much friction, backlash or softness a design can bear before it loses to another, and where two curves cross."""
+"""Break-even values of friction, backlash or compliance of a design against a baseline."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ from inerter.vehicle.replace_values import mounted_elements, to_editable, with_e
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
-_POINTS = 16  # between which crossings are looked for
-_REACH = 1e3  # default bounds lie so many times below and above the present value
+_POINTS = 16  # of the grid between which crossings are sought
+_REACH = 1e3  # ratio of the default bounds to the present value
 _SLOPE = 0.02  # relative step of the slope's difference
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """A value of the parameter at which design and baseline are equally good."""
+    """A break-even value of the parameter, at which design and baseline are equal."""
 
     value: float  # SI
     standard_error: float
-    interval: tuple[float, float]  # of 95 % confidence
-    better: str  # on which side the design beats the baseline: "below" or "above"
+    interval: tuple[float, float]  # 95 % confidence interval
+    better: str  # side on which the index of the design is lower: "below" or "above"
     status: Status = OK
 
 
 @dataclass(frozen=True)
 class BudgetRange:
-    """Values of the parameter (SI) between crossings or bounds, and whether the design beats the baseline there."""
+    """A range of the parameter (SI) between crossings or bounds, and whether the design is better there."""
 
     lower: float
     upper: float
@@ -50,12 +50,12 @@ class BudgetRange:
 
 @dataclass(frozen=True)
 class Budget:
-    """The values of a parameter for which a design beats a baseline.
+    """The values of a parameter for which a design has a lower index than a baseline.
 
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
-    nan, and `status` says why, where the design is better (or worse) at every value between `bounds`. All are in SI
-    units; `interval` is of 95 % confidence and symmetric in the logarithm. Standard errors and intervals are nan for a
-    method that models friction and has none. `status` is no better than the worst of the estimates that were compared.
+    nan, with the reason in `status`, where the design is better (or worse) at every value between `bounds`. All are in
+    SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
+    nan for a method that models friction and has none. `status` is no better than the worst of the compared estimates.
     """
 
     parameter: str
@@ -63,8 +63,8 @@ class Budget:
     value: float
     standard_error: float
     interval: tuple[float, float]
-    crossings: tuple[Crossing, ...]  # all that were found, in rising order
-    ranges: tuple[BudgetRange, ...]  # between them, in rising order: all of `bounds`
+    crossings: tuple[Crossing, ...]  # in ascending order
+    ranges: tuple[BudgetRange, ...]  # between them, in ascending order, covering `bounds`
     bounds: tuple[float, float]
     status: Status
     evaluations: int
@@ -82,16 +82,17 @@ def budget(
 ) -> Budget:
     """The values of `parameter` for which `design` has a lower `index` than `baseline`.
 
-    `parameter` names elements of the struts, or of tyres, by their label, or is "friction" or "gap" for all that there
-    are. Where the baseline has it too, it changes there alike: the crossing of two curves over a stiffness is found so.
-    Values between `bounds` (SI; by default a thousandth to a thousand times the present value) are tried on a grid in
-    logarithms, and each change of sign is found by Brent's method, on the same roads throughout. The standard error of
-    a crossing is that of the difference, over the slope. An `executor` shares the roads, as that of `evaluate` does.
+    `parameter` names elements of the struts, or of tyres, by their label, or is "friction" or "gap" for all of them.
+    Where the baseline has it too, it changes there in the same way, which gives the crossing of two curves over a
+    stiffness. Values between `bounds` (SI; by default a thousandth to a thousand times the present value) are evaluated
+    on a logarithmic grid, and each change of sign is located by Brent's method, on the same roads throughout. The
+    standard error of a crossing is that of the difference, over the slope. An `executor` shares the roads, as that of
+    `evaluate` does.
 
-    Two crossings between neighbouring points of the grid are not seen: narrow the bounds where that may be.
+    Two crossings between neighbouring points of the grid are not detected: narrow the bounds where that is possible.
 
-    Raises `DesignError` if no element has that name, if elements of several kinds have it, if its value is free and no
-    bounds are given, or if the bounds are not positive and in order; and what `evaluate` raises.
+    Raises `DesignError` for an unknown element, for elements of several kinds, for a free value without bounds, or for
+    bounds that are not positive and in order; and the errors of `evaluate`.
 
     >>> import inerter as it
     >>> k, c, b = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
@@ -163,7 +164,7 @@ def _budget(
 def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
     """The vehicle with another value (SI) of the elements that `parameter` names.
 
-    Raises `DesignError` if there is none, or if they are of several kinds.
+    Raises `DesignError` for an unknown element, or for elements of several kinds.
     """
     vehicle = to_editable(vehicle)
     chosen = {id(element) for element in _elements(vehicle, parameter)}
@@ -171,7 +172,7 @@ def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
 
 
 def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
-    """The elements that a name stands for; raises `DesignError` if there is none, or if they are of several kinds."""
+    """The elements of a name; raises `DesignError` for an unknown name, or elements of several kinds."""
     in_struts, in_tyres = mounted_elements(vehicle)
     all_elements = [*in_struts, *in_tyres]
     named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
@@ -180,21 +181,19 @@ def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
     if not chosen:
         labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
         raise DesignError(
-            f"No strut or tyre has an element named {parameter!r} (there are: {labels}; or take {_kinds()} "
-            f"for all). To find how much friction or backlash a design bears, put in a Friction(0.0) or Gap(0.0)."
+            f"unknown element {parameter!r}; available: {labels}, or {_kinds()} for all of a kind. For the break-even "
+            f"friction or backlash of a design without it, add a Friction(0.0) or Gap(0.0)."
         )
     if len({(e.unit, e.value) for e in chosen if e.name is None}) > 1:
         values = " and ".join(dict.fromkeys(str(e) for e in chosen))
-        raise DesignError(
-            f"{parameter!r} stands for {values}. Name the one that is meant, as in Spring(..., name=...)."
-        )
+        raise DesignError(f"{parameter!r} is ambiguous: {values}. Name the element, as in Spring(..., name=...).")
     if len({e.unit for e in chosen}) > 1:
         raise DesignError(f"{parameter!r} names elements of different kinds. Give them different names.")
     return chosen
 
 
 def _kinds() -> str:
-    """The kinds of which all elements are meant by the name of the kind."""
+    """Names of the kinds that select all of their elements."""
     return " or ".join(f'"{kind.key}"' for kind in ELEMENTS.values() if kind.may_vanish)
 
 
@@ -208,17 +207,17 @@ def _has(vehicle: Vehicle, parameter: str) -> bool:
 def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[float, float]:
     if given is not None:
         if not isinstance(given, Sequence) or len(given) != 2 or not all(map(is_number, given)):
-            raise DesignError(f"The bounds of {parameter!r} are two numbers in SI units, got {given!r}.")
+            raise DesignError(f"The bounds of {parameter!r} must be two numbers in SI units, got {given!r}.")
         lower, upper = float(given[0]), float(given[1])
         if not 0.0 < lower < upper:
             raise DesignError(f"The bounds of {parameter!r} must be positive and in order, got {lower:g}, {upper:g}.")
         return lower, upper
     present: Any = chosen[0].value
     if not is_number(present):
-        raise DesignError(f"The value of {parameter!r} is free; fix it, or give bounds=(lower, upper).")
+        raise DesignError(f"The value of {parameter!r} is free. Fix it, or give bounds=(lower, upper).")
     if present == 0.0:
         if chosen[0].tried is None:
-            raise DesignError(f"The value of {parameter!r} is 0: give bounds=(lower, upper) between which to look.")
+            raise DesignError(f"The value of {parameter!r} is 0. Give bounds=(lower, upper) of the search.")
         return chosen[0].tried
     return present / _REACH, present * _REACH
 
@@ -242,7 +241,7 @@ def _crossing(
     found = here.difference
     error, reach = (part / abs(slope) if slope else np.inf for part in (found.standard_error, found.reach))
     if not exact and here.first.standard_error is None and here.second.standard_error is None:
-        error = reach = np.nan  # how far the method is off is not known
+        error = reach = np.nan  # the error of the method is unknown
     value = float(np.exp(root))
     with np.errstate(over="ignore"):
         interval = (value * float(np.exp(-reach)), value * float(np.exp(reach)))
@@ -252,7 +251,7 @@ def _crossing(
 def _ranges(
     grid: Sequence[float], gaps: Sequence[float], crossings: Sequence[Crossing], bounds: tuple[float, float]
 ) -> tuple[BudgetRange, ...]:
-    """What the design is between crossings; a range without values ends half way to its neighbours."""
+    """The ranges between crossings; one without values ends half-way to its neighbours."""
     found: list[BudgetRange] = []
     ends = [c.value for c in crossings]
     for i, (at, gap) in enumerate(zip(grid, gaps, strict=True)):
@@ -269,7 +268,7 @@ def _ranges(
 
 
 def lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
-    """Whether a point of the grid (a logarithm) is one on which a range up to its end, or from it on, rests."""
+    """Whether a point of the grid (a logarithm) belongs to the range on the better side of its end."""
     beyond = at - float(np.log(end.value))
     return beyond <= step if end.better == "below" else beyond >= -step
 
@@ -277,16 +276,16 @@ def lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
 def _status(
     ranges: Sequence[BudgetRange], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
 ) -> Status:
-    """The worst of all that were compared; where there is no end, for which values the design is better."""
+    """The worst status of all compared estimates; without an end, the values for which the design is better."""
     bad, said = worst_of(statuses), _sentence(ranges, parameter, unit)
     if not bad.ok:
-        alike = "" if end is not None else f". Taken as it is, {said}"
-        return Status(bad.kind, f"{bad.message.rstrip('.')}{alike}")
+        tentative = "" if end is not None else f". Nevertheless, {said}"
+        return Status(bad.kind, f"{bad.message.rstrip('.')}{tentative}")
     return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
 
 
 def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
-    """For which values the design is better, in words."""
+    """Clause on the values for which the design is better."""
     whole = f"{parameter} {_span(ranges[0].lower, ranges[-1].upper, unit)}"
     better = [f"{_span(one.lower, one.upper, unit)}" for one in ranges if one.better]
     if all(one.better for one in ranges):

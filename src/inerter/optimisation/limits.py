@@ -1,4 +1,4 @@
-"""Limits on what a design may be: at most, at least or just so much of an index, each of several outputs by itself."""
+"""Constraints on indices of a design: at most, at least or equal, separately for each of several outputs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MOTIONS = ("displacement", "velocity", "acceleration", "relative_displacement",
 
 
 class Sense(Enum):
-    """On which side of its value a limited quantity may lie."""
+    """Sense of a constraint."""
 
     AT_MOST = "at most"
     AT_LEAST = "at least"
@@ -33,7 +33,7 @@ class Sense(Enum):
 
 @dataclass(frozen=True)
 class Limit:
-    """What an optimum must keep: `of` is an index, `value` is in its SI unit."""
+    """A constraint of an optimisation: `of` is an index, `value` is in its SI unit."""
 
     of: Asked
     sense: Sense
@@ -42,7 +42,7 @@ class Limit:
     def __post_init__(self) -> None:
         if not is_index(self.of):
             raise PerformanceIndexError(
-                f"A limit is put on an index, such as TyreLoad(road) or static_stiffness('strut'), got {self.of!r}."
+                f"A constraint requires an index, such as TyreLoad(road) or static_stiffness('strut'), got {self.of!r}."
             )
         if not is_number(self.value) or self.value <= 0.0:
             raise PerformanceIndexError(
@@ -54,26 +54,26 @@ class Limit:
 
 
 def at_most(index: Asked, value: float) -> Limit:
-    """The limit that an index is at most `value`, in its SI unit; of several struts or tyres that each is."""
+    """Constraint that an index is at most `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.AT_MOST, value)
 
 
 def at_least(index: Asked, value: float) -> Limit:
-    """The limit that an index is at least `value`, in its SI unit; of several struts or tyres that each is."""
+    """Constraint that an index is at least `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.AT_LEAST, value)
 
 
 def equal(index: Asked, value: float) -> Limit:
-    """The limit that an index is `value`, in its SI unit; of several struts or tyres that each is."""
+    """Constraint that an index equals `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.EQUAL, value)
 
 
 def check_limits(subject_to: object) -> tuple[Limit, ...]:
-    """`subject_to` as a tuple; raises `PerformanceIndexError` unless it is limits."""
+    """`subject_to` as a tuple; raises `PerformanceIndexError` unless it consists of constraints."""
     several = tuple(subject_to) if isinstance(subject_to, Iterable) and not isinstance(subject_to, str) else None
     if several is None or not all(isinstance(one, Limit) for one in several):
         raise PerformanceIndexError(
-            f"`subject_to` is a list of limits, such as [at_most(TyreLoad(road), 500.0)], got {subject_to!r}."
+            f"`subject_to` must be a list of constraints, such as [at_most(TyreLoad(road), 500.0)], got {subject_to!r}."
         )
     return several
 
@@ -87,18 +87,18 @@ class OneOutput(OfIndex):
 
     @property
     def title(self) -> str:
-        """That of the index, with the output."""
+        """Title of the index with the output."""
         return f"{self.index.title} ({self.output})"
 
     def question(self, mechanism: Mechanism) -> Question:
-        """The question of the index with that output alone."""
+        """The definition of the index with that output only."""
         whole = self.index.question(mechanism)
         i = [weighted.output for weighted in whole.outputs].index(self.output)
         return replace(whole, outputs=(whole.outputs[i],), filter=(whole.filters[i],))
 
 
 def output_of(index: object) -> str:
-    """The one output of an index, in whatever way it is taken, that a limit holds for by itself; else empty."""
+    """The output of an index to which a constraint applies separately; empty if there is none."""
     while not isinstance(index, OneOutput):
         if (inner := getattr(index, "index", None)) is None:
             return ""
@@ -107,9 +107,9 @@ def output_of(index: object) -> str:
 
 
 def for_each(index: Asked, vehicle: Vehicle) -> Sequence[Asked]:
-    """What a limit is put on: each output of an index that has several, unless motions of coordinates are among them.
+    """Constrained quantities: each output of an index with several, unless it includes motions of coordinates.
 
-    The parts of ride comfort add up to what is felt; a strut's travel says nothing of another's.
+    The parts of ride comfort are added, but travels of struts are constrained separately.
     """
     if is_composed(index):
         return index.per_output(for_each, vehicle)
@@ -124,13 +124,13 @@ def for_each(index: Asked, vehicle: Vehicle) -> Sequence[Asked]:
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """A limit on one quantity of a vehicle, as a function of its free values."""
+    """A constraint on one quantity of a vehicle, as a function of its free values."""
 
     limit: Limit
     function: Objective
 
     def excess(self, points: Array) -> Array:
-        """By how much the logarithm is beyond its limit at each row of `points`; infinite where nothing is known."""
+        """Constraint violation of the logarithm at each row of `points`; infinite where unknown."""
         with np.errstate(divide="ignore", invalid="ignore"):
             off = np.log(self.function.values(points) / self.limit.value)
         off = np.where(np.isnan(off), np.inf, off)
@@ -144,7 +144,7 @@ class Bound:
 
 
 def bounds_of(vehicle: Vehicle, limits: Sequence[Limit], method: Method) -> tuple[Bound, ...]:
-    """The limits on each single quantity; raises what `evaluate` raises."""
+    """The constraints on each single quantity; raises the errors of `evaluate`."""
     found = []
     for limit in limits:
         check_request(vehicle, limit.of, method)

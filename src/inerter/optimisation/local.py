@@ -1,9 +1,9 @@
-"""From one starting point to a local optimum, in logarithms of the values and of the index.
+"""Local searches from one starting point, in logarithms of the values and of the index.
 
-Smooth indices go downhill with their gradient. A peak gain is the largest of many smooth functions, and at its optimum
-two or more are equally large: there the level that all of them stay below is minimised instead. `approach` does that
-with the peaks of the current point, which gets close in a few steps; `polish` with fixed frequencies, to which it adds
-the peaks that stand out, until none does.
+Smooth indices are minimised with their gradient. A peak gain is the largest of many smooth functions, and at its
+optimum two or more are equally large: there their upper level is minimised instead. `approach` does that with the peaks
+of the current point, which gets close in a few steps; `polish` with fixed frequencies, to which it adds exceeding peaks
+until there are none.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
-from inerter.optimisation.levels import LogRows, below, lowest_level
+from inerter.optimisation.minimax_level import LogRows, below, lowest_level
 from inerter.work.progress import evaluated, report
 
 Array = NDArray[np.float64]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
 _MOST_PEAKS = 8  # slots for peaks during the approach
-_HIDDEN = -700.0  # logarithm of a component that is not there
+_HIDDEN = -700.0  # logarithm of an absent component
 
 
 @dataclass(frozen=True, eq=False)
 class LocalOptimum:
-    """Where a search ended, and how many evaluations it took."""
+    """Result of a local search, with its number of evaluations."""
 
     point: Array
     value: float
     evaluations: int
-    excess: float = 0.0  # by how much the logarithm of a limited quantity is beyond its limit
+    excess: float = 0.0  # constraint violation of the logarithm
 
 
 def descend(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
@@ -81,7 +81,7 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
 
 
 def tell_of_costly(count: int, most: int, best: LocalOptimum) -> None:
-    """Tell how many of the most evaluations are done, and what the best of them is."""
+    """Report the number of evaluations, out of at most `most`, and the best value."""
     lowest = best.value if np.isfinite(best.value) else None
     report("evaluations", count, most, best=lowest, share=count / most)
 
@@ -104,17 +104,17 @@ def approach(objective: Differentiable, start: Array, lower: Array, upper: Array
 
 
 def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: Array) -> LocalOptimum:
-    """The minimax optimum near `start`: the level above known frequencies, and the peaks that stand out added."""
+    """The minimax optimum near `start`: the level above fixed frequencies, to which exceeding peaks are added."""
     best, known, evaluations = start, _active(objective, start.point), start.evaluations
     point = start.point
     for _ in range(20):
 
-        def fixed(point: Array, which: Array = known) -> LogRows:
+        def at_known_peaks(point: Array, which: Array = known) -> LogRows:
             values, gradients = objective.components(point, which)
             return below(np.log(values), gradients * point / values[:, None])
 
-        point, count = lowest_level(fixed, point, lower, upper, tolerance=1e-13, most_steps=100)
-        value, level = float(objective.values(point[None])[0]), float(np.exp(fixed(point).logs.max()))
+        point, count = lowest_level(at_known_peaks, point, lower, upper, tolerance=1e-13, most_steps=100)
+        value, level = float(objective.values(point[None])[0]), float(np.exp(at_known_peaks(point).logs.max()))
         evaluations += count + 2
         if value < best.value:
             best = LocalOptimum(point, value, evaluations)

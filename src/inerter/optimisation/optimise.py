@@ -1,4 +1,4 @@
-"""`optimise`: many starts of a gradient method, because these problems have many local optima."""
+"""`optimise`: multi-start gradient search, because these problems have many local optima."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
-from inerter.optimisation.constrained import KEPT, KEPT_COSTLY, Limited, searches, trust_region_within
-from inerter.optimisation.held import Held, held_at, infeasible, with_limits
+from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
+from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
@@ -34,9 +34,9 @@ from inerter.work.running import running_on
 Array = NDArray[np.float64]
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
 COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
-_MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are valued, and searches from the best of them, of a costly index
-_APART = 0.05  # logarithmic distance from which on two starts of such searches are two
-_PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is carried to the end
+_MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches from the best of them, of a costly index
+_APART = 0.05  # logarithmic distance above which two starts of such searches are distinct
+_PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is converged fully
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -44,19 +44,20 @@ _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on 
 
 @dataclass(frozen=True)
 class Optimum:
-    """The best design found, and what speaks for its being the best.
+    """The best design found, with its convergence, active bounds and constraints.
 
     `agreed` of `starts` local searches ended within 1e-6 of the best value, 1e-4 for a method that simulates (for a
     peak gain: or approached the very place where one did); `ranges` gives for each parameter the least and the largest
     value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to "lower" or "upper"
-    where its bound holds it back.
+    where its bound is active.
 
-    `limits` has each limited quantity with its value, whether it holds the optimum back, and what that costs;
-    `active_limits` and `sensitivities` are those of them in short. Where nothing keeps the limits, the status is
-    "infeasible" and the design the one that misses them least.
+    `limits` has each constrained quantity with its value, activity and sensitivity; `active_limits` and `sensitivities`
+    summarise them. Where no design is feasible, the status is "infeasible" and the design that with the smallest
+    violation.
 
-    `over_linear`, for methods other than `Norm`: the optimum beside the best linear design, by the same method on the
-    same roads (a negative difference: so much lower); None where linear analysis cannot decide all values.
+    `over_linear`, for methods other than `Norm`: comparison of the optimum with the best linear design, by the same
+    method on the same roads (a negative difference is an improvement); None where linear analysis does not determine
+    all values.
     """
 
     estimate: Estimate
@@ -69,18 +70,18 @@ class Optimum:
     evaluations: int
     seed: int
     over_linear: Comparison | None = None
-    limits: tuple[Held, ...] = ()
+    limits: tuple[ConstraintResult, ...] = ()
 
     @property
     def active_limits(self) -> tuple[str, ...]:
-        """The limits that hold the optimum back, in words."""
+        """Active constraints, in words."""
         return tuple(held.label for held in self.limits if held.active)
 
     @property
     def sensitivities(self) -> dict[str, float]:
-        """Per cent by which the optimum changes for one per cent of each limit, by the limit's words.
+        """Sensitivity of the optimum to each limit [% per %], by the constraint in words.
 
-        0 for a limit that does not hold it back, nan where that is not known.
+        0 for an inactive constraint, nan where unknown.
         """
         return {held.label: held.sensitivity for held in self.limits}
 
@@ -96,7 +97,7 @@ class Optimum:
 
     @property
     def status(self) -> Status:
-        """How far the value can be trusted."""
+        """Status of the estimate."""
         return self.estimate.status
 
 
@@ -110,30 +111,30 @@ def optimise(
     starts: int | None = None,
     executor: Executor | None = None,
 ) -> Optimum:
-    """The free values of `vehicle` that make `index` smallest, within their bounds.
+    """Minimise `index` over the free values of `vehicle`, within their bounds.
 
-    An even sample in the logarithms of the values is searched for local minima; the best `starts` of them
-    (8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with SLSQP. The
-    same seed gives the same result.
+    A quasi-random sample in the logarithms of the values is searched for local minima; the best `starts` of them
+    (default: 8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with
+    SLSQP. The same seed gives the same result.
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
     the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the
     best.
 
-    `subject_to` has limits: `at_most`, `at_least` or `equal` of other indices by the same method, or of
-    `static_stiffness`. Then all searches are SLSQP, or COBYQA with the limits as constraints, in logarithms. An
-    optimum keeps them to 1e-7, where quantities are simulated to 1e-4.
+    `subject_to` are constraints: `at_most`, `at_least` or `equal` of other indices by the same method, or of
+    `static_stiffness`. Then all searches are SLSQP, or COBYQA, with constraints in logarithms. An optimum satisfies
+    them within 1e-7, or 1e-4 for simulated quantities.
 
     An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) shares the random roads of such a method.
 
-    Raises `PerformanceIndexError` for what is no limit, `DesignError` if nothing is free, if a free value has no effect
-    in the method, or if `starts` is not a positive whole number; and what `evaluate` raises.
+    Raises `PerformanceIndexError` for an invalid constraint, `DesignError` without free values, for a free value
+    without effect in the method, or if `starts` is not a positive integer; and the errors of `evaluate`.
     """
     check_request(vehicle, index, method)
     free = check_free(vehicle)
     starts = 8 * len(free) if starts is None else starts
     if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
-        raise DesignError(f"`starts` and `seed` must be whole numbers, starts >= 1, seed >= 0; got {starts}, {seed}.")
+        raise DesignError(f"`starts` and `seed` must be integers, starts >= 1, seed >= 0; got {starts}, {seed}.")
     limits = check_limits(subject_to)
     with one_blas_thread(), running_on(executor):
         return _best(vehicle, index, method, free, limits, int(seed), starts)
@@ -151,7 +152,7 @@ def _best(
     lower = np.array([value.lower for value in free.values()])
     upper = np.array([value.upper for value in free.values()])
     objective = objective_of(vehicle, index, method)
-    problem = Limited(objective, bounds_of(vehicle, limits, method), lower, upper)
+    problem = ConstrainedProblem(objective, bounds_of(vehicle, limits, method), lower, upper)
     quick = isinstance(objective, Differentiable) and is_smooth(problem.bounds)
     agreement = AGREEMENT if quick else COSTLY_AGREEMENT
     linear = None
@@ -165,14 +166,14 @@ def _best(
         first = [] if linear is None else [linear]
         with within("quick approximation", 0.5 * _QUICK, _QUICK):
             first += _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
-        found, evaluations = _costly_searches(problem, _apart(first))
+        found, evaluations = _costly_searches(problem, _distinct_points(first))
     evaluations += sum(local.evaluations for local in found)
     kept = KEPT if quick else KEPT_COSTLY
     best = min(found, key=lambda local: (max(local.excess, kept), local.value), default=None)
     if best is None or not np.isfinite(best.value):
         best = LocalOptimum(np.sqrt(lower * upper), np.inf, 0)
     if best.excess > kept and quick:
-        nearest = _nearest(problem, first)
+        nearest = _closest_design(problem, first)
         again = _searches(problem, [nearest.point]) if nearest.excess <= kept else [nearest]
         found, best = again, again[0]
     same = [
@@ -186,8 +187,10 @@ def _best(
     if linear is not None:
         best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
         over_linear = compare(design, best_linear, index, method)
-    held = held_at(problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value))
-    estimate = over_linear.first if over_linear else _confirmed(estimate_of(design, index, method), best.value)
+    held = constraint_results(
+        problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value)
+    )
+    estimate = over_linear.first if over_linear else _verify_estimate(estimate_of(design, index, method), best.value)
     estimate = with_limits(estimate, held)
     if not best.excess <= kept:
         estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
@@ -206,8 +209,8 @@ def _best(
     )
 
 
-def _nearest(problem: Limited, first: list[Array]) -> LocalOptimum:
-    """The design that misses the limits least."""
+def _closest_design(problem: ConstrainedProblem, first: list[Array]) -> LocalOptimum:
+    """The design with the smallest constraint violation."""
     missed = replace(problem, objective=None)
     order = np.argsort(missed.values(np.array(first)), kind="stable")[:_MOST_TRIED]
     found = searches(missed, [first[i] for i in order])
@@ -217,7 +220,7 @@ def _nearest(problem: Limited, first: list[Array]) -> LocalOptimum:
 def _linear_optimum(
     vehicle: Vehicle, index: Asked, method: Method, limits: tuple[Limit, ...], seed: int, starts: int
 ) -> Array | None:
-    """The best linear design under the conventions of `method`; None if linear analysis cannot decide all values."""
+    """The best linear design under the conventions of `method`; None if not determined by linear analysis."""
     norm = Norm(getattr(method, "conventions", "exact"))
     try:
         found = optimise(vehicle, index, norm, subject_to=limits, seed=seed, starts=starts)
@@ -235,10 +238,12 @@ def _quick_optima(
     starts: int,
     seed: int,
 ) -> list[Array]:
-    """Local optima, the best first, of the first quick method that takes the design; else points of a sample."""
+    """Local optima, the best first, of the first quick method that supports the design; else points of a sample."""
     for quick in with_gradients(getattr(method, "conventions", "exact")):
         try:
-            problem = Limited(objective_of(vehicle, index, quick), bounds_of(vehicle, limits, quick), *bounds)
+            problem = ConstrainedProblem(
+                objective_of(vehicle, index, quick), bounds_of(vehicle, limits, quick), *bounds
+            )
             if not (isinstance(problem.objective, Differentiable) and is_smooth(problem.bounds)):
                 continue
             first, _ = _starting_points(problem if limits else problem.objective, *bounds, starts, seed)
@@ -249,8 +254,8 @@ def _quick_optima(
     return _starting_points(objective_of(vehicle, index, method), *bounds, _MOST_TRIED, seed)[0]
 
 
-def _apart(points: list[Array]) -> list[Array]:
-    """The first few points that are not close to one before."""
+def _distinct_points(points: list[Array]) -> list[Array]:
+    """The first few distinct points."""
     chosen: list[Array] = []
     for point in points:
         if all(np.abs(np.log(point / other)).max() > _APART for other in chosen):
@@ -258,8 +263,8 @@ def _apart(points: list[Array]) -> list[Array]:
     return chosen[:_MOST_TRIED]
 
 
-def _costly_searches(problem: Limited, tried: list[Array]) -> tuple[list[LocalOptimum], int]:
-    """A search from each of the best two starts, and how many starts were valued to tell which they are."""
+def _costly_searches(problem: ConstrainedProblem, tried: list[Array]) -> tuple[list[LocalOptimum], int]:
+    """Searches from the best two starts, and the number of starts evaluated to select them."""
     objective, lower, upper = problem.objective, problem.lower, problem.upper
     assert objective is not None
     limited = problem if problem.bounds else objective
@@ -277,8 +282,8 @@ def _costly_searches(problem: Limited, tried: list[Array]) -> tuple[list[LocalOp
     return found, len(tried)
 
 
-def _searches(problem: Limited, first: list[Array]) -> list[LocalOptimum]:
-    """A local search from each start; for a peak gain only those that come close to the best are carried to the end."""
+def _searches(problem: ConstrainedProblem, first: list[Array]) -> list[LocalOptimum]:
+    """A local search from each start; for a peak gain only those close to the best are converged fully."""
     if problem.bounds:
         return searches(problem, first)
     objective, lower, upper = problem.objective, problem.lower, problem.upper
@@ -304,20 +309,18 @@ def _searches(problem: Limited, first: list[Array]) -> list[LocalOptimum]:
 
 
 def check_free(vehicle: Vehicle) -> dict[str, Free]:
-    """The free values of `vehicle`; raises `DesignError` if there is none, or if one may be zero."""
+    """The free values of `vehicle`; raises `DesignError` without any, or if one may be zero."""
     free = vehicle.free_values()
     if not free:
-        raise DesignError("Nothing to optimise: the design has no free value. Give one with free(lower, upper).")
+        raise DesignError("The design has no free value to optimise. Define one with free(lower, upper).")
     for name, value in free.items():
         if value.lower == 0.0:
-            raise DesignError(
-                f"The lower bound of {name!r} is 0; the search runs in logarithms and needs a positive bound."
-            )
+            raise DesignError(f"The lower bound of {name!r} is 0; the search in logarithms requires a positive bound.")
     return free
 
 
 def _starting_points(
-    objective: Objective | Limited, lower: Array, upper: Array, starts: int, seed: int
+    objective: Objective | ConstrainedProblem, lower: Array, upper: Array, starts: int, seed: int
 ) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
     unit = _even(2 ** min(6 + lower.size, 12), lower.size, seed)
@@ -337,7 +340,7 @@ def _starting_points(
 
 
 def _even(count: int, size: int, seed: int) -> Array:
-    """Points (a row each) that fill a unit cube evenly: an additive recurrence from a random place.
+    """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start.
 
     Its steps are the powers of the inverse root of x**(size + 1) = x + 1 (M. Roberts, The unreasonable effectiveness of
     quasirandom sequences, 2018). SciPy's sequences are as good, but `scipy.stats` takes half a second to load.
@@ -360,9 +363,11 @@ def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[
     return active
 
 
-def _confirmed(estimate: Estimate, searched: float) -> Estimate:
-    """The estimate, which must be the value that the search saw."""
+def _verify_estimate(estimate: Estimate, searched: float) -> Estimate:
+    """The estimate, with a status if it differs from the value of the search."""
     if not estimate.status.ok or abs(estimate.value - searched) <= 1e-6 * abs(searched):
         return estimate
-    message = f"the search saw {searched:.9g}, the exact value of the design is {estimate.value:.9g}"
+    message = (
+        f"the value of the search, {searched:.9g}, differs from the exact value of the design, {estimate.value:.9g}"
+    )
     return replace(estimate, status=Status(StatusKind.INACCURATE, message))

@@ -40,6 +40,6 @@ def kept_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalOptimu
 
 
 def lowest(found: Sequence[LocalOptimum]) -> float | None:
-    """The lowest value that keeps the limits; None if there is none yet."""
+    """The lowest feasible value; None if there is none yet."""
     values = [local.value for local in found if local.excess <= _KEPT and np.isfinite(local.value)]
     return min(values, default=None)

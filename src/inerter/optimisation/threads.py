@@ -23,5 +23,5 @@ def one_blas_thread() -> AbstractContextManager[object]:
 
 @cache
 def _controller(loaded: ModuleType) -> ThreadpoolController:
-    """What limits the libraries that are loaded, SciPy's own among them: one that came later would keep its threads."""
+    """Thread controller of the loaded libraries, including that of SciPy, which must be loaded before."""
     return ThreadpoolController()

@@ -1,1 +1,1 @@
-"""Designs whose values scatter: what that does to an index, and which design bears it best."""
+"""Tolerance analysis: distribution of an index under tolerances of a design, and robust optimisation."""

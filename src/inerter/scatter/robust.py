@@ -1,4 +1,4 @@
-"""`robust`: the design whose index is least at a quantile, when values scatter; and that quantile as an index."""
+"""`robust`: robust optimisation of a quantile of an index under tolerances; and that quantile as an index."""
 
 from __future__ import annotations
 
@@ -21,21 +21,29 @@ from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.scatter.spread import Scatter, elements_scatter, followed, loosened, nominal, scatter_left_out, scatter_of
-from inerter.scatter.tolerance import quantile_error, rank_weights, scattered
+from inerter.scatter.spread import (
+    Scatter,
+    elements_scatter,
+    nominal,
+    scatter_left_out,
+    scatter_of,
+    source_values,
+    with_free_scatter,
+)
+from inerter.scatter.tolerance import evaluate_sample, quantile_error, rank_weights
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
-_WEIGHT = 1e-6  # of a sample that counts in a gradient
+_WEIGHT = 1e-6  # smallest weight of a sample that contributes to a gradient
 
 
 @dataclass(frozen=True)
 class Quantile(OfIndex):
-    """An index: the value that another one stays below in this share of cases, when values scatter.
+    """An index: the quantile of another index at this probability `share`, under tolerances.
 
-    Elements alone may scatter here. The quantile is a mean of all `samples` by weights that are those of their ranks
-    (Harrell and Davis 1982), which changes smoothly with the design; all designs of a search see the same sample. Its
-    optimum fits that sample a little too well: `apart` is a sample to judge it by.
+    Only element values may have tolerances here. The quantile is a mean of all `samples` weighted by their ranks
+    (Harrell and Davis 1982), which changes smoothly with the design; all designs of a search use the same sample. Its
+    optimum is slightly overfitted to that sample: `apart` is an independent sample for its evaluation.
     """
 
     index: Asked
@@ -46,52 +54,50 @@ class Quantile(OfIndex):
 
     def __post_init__(self) -> None:
         if not is_number(self.share) or not 0.0 < self.share < 1.0:
-            raise DesignError(f"The share of a quantile lies between 0 and 1, got {self.share!r}.")
+            raise DesignError(f"The probability of a quantile must be between 0 and 1, got {self.share!r}.")
         if not isinstance(self.samples, Integral) or self.samples < 16 or self.samples & (self.samples - 1):
-            raise DesignError(f"The number of samples is a power of two from 16 on, got {self.samples!r}.")
+            raise DesignError(f"The number of samples must be a power of two of at least 16, got {self.samples!r}.")
         if not isinstance(self.seed, Integral) or self.seed < 0:
-            raise DesignError(f"The seed is a whole number from 0 on, got {self.seed!r}.")
+            raise DesignError(f"The seed must be a non-negative integer, got {self.seed!r}.")
 
     @property
     def title(self) -> str:
-        """That of the index, with the share."""
+        """Title of the index with the probability."""
         return f"{self.index.title}, {100.0 * self.share:g} % quantile"
 
     @property
     def factors(self) -> Array:
-        """What the values that scatter are multiplied by (samples, names)."""
+        """Factors on the values with tolerances, shape (samples, names)."""
         sampler = scipy.stats.qmc.Sobol(len(self.scatter.names), rng=np.random.default_rng(self.seed))
         return self.scatter.factors(sampler.random(self.samples))
 
     @property
     def apart(self) -> Quantile:
-        """The same quantile by another sample, four times as large."""
+        """The same quantile with an independent sample, four times as large."""
         seed = int(np.random.SeedSequence([int(self.seed), 1]).generate_state(1)[0])
         return replace(self, samples=4 * self.samples, seed=seed)
 
     @property
     def weights(self) -> Array:
-        """Of the samples in rising order."""
+        """Weights of the samples in ascending order."""
         return rank_weights(self.samples, self.share)
 
     def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
-        """What is asked of each sample; raises `DesignError` where something else than elements is to scatter."""
+        """Vehicles and indices evaluated for each sample; raises `DesignError` unless only elements have tolerances."""
         if not elements_scatter(vehicle, self.scatter):
-            raise DesignError("In a search only values of elements may scatter; name them by their labels.")
+            raise DesignError("A search supports tolerances of element values only. Name them by their labels.")
         return asked_of(vehicle, self.index)
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[Quantile]:
-        """The quantile of each output that is limited by itself."""
+        """The quantile of each output that is constrained separately."""
         return [replace(self, index=one) for one in split(self.index, vehicle)]
 
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The quantile for a vehicle without free values, with its standard error and interval."""
-        values = scattered(vehicle, self.index, method, self.scatter, self.factors)
+        values = evaluate_sample(vehicle, self.index, method, self.scatter, self.factors)
         if not np.all(np.isfinite(values)):
             lost = int(np.sum(~np.isfinite(values)))
-            status = Status(
-                StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value that is sure"
-            )
+            status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
         error, interval = quantile_error(values, self.share)
@@ -100,16 +106,16 @@ class Quantile(OfIndex):
         return Estimate(value, self.unit, status, error, interval, values.size, error_sources=sources)
 
     def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
-        """The quantiles (designs,) at many values of the free values, nan where one is not known."""
+        """Quantiles (designs,) at many values of the free values, nan where unknown."""
         rows = np.column_stack([points[name] for name in vehicle.free_values()]) if points else np.zeros((1, 0))
         found = self.as_objective(vehicle, method).values(rows)
         return np.where(np.isfinite(found), found, np.nan)
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
         """The quantile as a function of the free values, with its gradient if the index has one."""
-        loose = loosened(vehicle, self.scatter)
+        loose = with_free_scatter(vehicle, self.scatter)
         inner = objective_of(loose, self.index, method)
-        own, after = nominal(vehicle, self.scatter), followed(vehicle, self.scatter)
+        own, after = nominal(vehicle, self.scatter), source_values(vehicle, self.scatter)
         names = tuple(vehicle.free_values()), tuple(loose.free_values())
         plain = _Values(self, inner, *names, tuple(own.items()), tuple(after.items()))
         return _Smooth(plain) if isinstance(inner, Differentiable) else plain
@@ -122,18 +128,18 @@ class _Values:
     of: Quantile
     inner: Any
     names: tuple[str, ...]  # of the free values
-    inner_names: tuple[str, ...]  # of those and of what scatters besides
+    inner_names: tuple[str, ...]  # of the free values and of further values with tolerances
     own: tuple[tuple[str, float], ...]
-    after: tuple[tuple[str, str], ...]  # which of the free values those have that scatter about one
+    after: tuple[tuple[str, str], ...]  # free value about which each label varies
 
     @cached_property
     def weights(self) -> Array:
-        """Of the samples in rising order."""
+        """Weights of the samples in ascending order."""
         return self.of.weights
 
     @cached_property
     def table(self) -> Array:
-        """Factors (samples, inner values)."""
+        """Factors on the inner values, shape (samples, inner values)."""
         factors = dict(zip(self.of.scatter.names, self.of.factors.T, strict=True))
         return np.column_stack([factors.get(name, np.ones(self.of.samples)) for name in self.inner_names])
 
@@ -145,12 +151,12 @@ class _Values:
 
     @cached_property
     def follows(self) -> Array:
-        """Which free value each inner value scatters about (inner values, names)."""
+        """Incidence of the free value about which each inner value varies, shape (inner values, names)."""
         after = dict(self.after)
         return np.array([[after.get(inner, inner) == name for name in self.names] for inner in self.inner_names], float)
 
     def values(self, points: Array) -> Array:
-        """The quantile at each row of `points`; infinite where it is not known."""
+        """The quantile at each row of `points`; infinite where unknown."""
         found = self.inner.values(np.vstack([self.inner_points(point) for point in points]))
         table = np.sort(found.reshape(len(points), -1), axis=1)
         good = np.all(np.isfinite(table), axis=1)
@@ -166,7 +172,7 @@ class _Smooth:
     plain: _Values
 
     def values(self, points: Array) -> Array:
-        """As without gradients."""
+        """The quantile at each row of `points`; infinite where unknown."""
         return self.plain.values(points)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -184,10 +190,10 @@ class _Smooth:
         return float(values[order] @ plain.weights), gradient
 
     def active(self, point: Array) -> None:
-        """None: it is smooth but for where two samples change places."""
+        """None, as the quantile is smooth except where two samples change ranks."""
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """It has none."""
+        """Not supported: a quantile is a single function."""
         raise AssertionError("a quantile is one function")
 
 
@@ -211,14 +217,15 @@ def robust(
     seed: int = 0,
     executor: Executor | None = None,
 ) -> Optimum:
-    """The free values that make an index least in the worse cases: at its 95 % quantile, when values scatter.
+    """Robust optimisation: minimise a quantile (default: 95 %) of an index under tolerances.
 
-    `spread` is that of `tolerance`, of elements alone, all between equally likely: free values scatter about what is
-    chosen, fixed ones about what they are, and tied ones, by their labels, about what they follow from. All designs of
-    the search see one sample; the optimum's value, with its interval, is that quantile over another sample, four times
-    as large. Everything else is as in `optimise`, with two starts for each free value. `Quantile` has what is left.
+    `spread` is that of `tolerance`, of element values only, uniformly distributed: free values vary about their chosen
+    value, fixed ones about their own, and tied ones, by their labels, about their dependent value. All designs of the
+    search use one sample; the value of the optimum, with its interval, is that quantile over an independent sample,
+    four times as large. Otherwise as `optimise`, with two starts for each free value. For further options use
+    `Quantile`.
 
-    Raises what `optimise` and `tolerance` raise.
+    Raises the errors of `optimise` and `tolerance`.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))

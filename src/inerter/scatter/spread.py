@@ -1,4 +1,4 @@
-"""Values that scatter: which of a vehicle's, how far, and by what distribution."""
+"""Tolerances of the values of a vehicle: names, half-widths, and distribution."""
 
 from __future__ import annotations
 
@@ -25,19 +25,18 @@ from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("uniform", "normal")
-_DEVIATIONS = 3.0  # of a normal distribution, at which it is cut off
+_DEVIATIONS = 3.0  # standard deviations at which a normal distribution is truncated
 
 
 @dataclass(frozen=True)
 class Scatter:
-    """By what part values lie above or below their own at the most, by their names.
+    """Relative tolerances (half-widths) of values, by name.
 
-    Under "uniform" all values between are equally likely; under "normal" the standard deviation is a third of the
-    spread, where the distribution is cut off. All scatter by themselves; elements of one label together. It is parts
-    that scatter as they are made: what is tied to a value follows that in the design, not in its scatter, and has a
-    scatter of its own under its own label.
+    Values are uniformly distributed under "uniform"; under "normal" the standard deviation is a third of the tolerance,
+    at which the distribution is truncated. All values are independent; elements of one label vary together. A tied
+    value follows another one in the design but not in its tolerance: it has a separate tolerance under its own label.
 
-    Raises `DesignError` for a spread that is not between 0 and 1, or another distribution.
+    Raises `DesignError` for a tolerance that is not between 0 and 1, or an unknown distribution.
     """
 
     spread: tuple[tuple[str, float], ...]
@@ -45,21 +44,21 @@ class Scatter:
 
     def __post_init__(self) -> None:
         if not self.spread:
-            raise DesignError("A tolerance needs a spread, such as spread={'c': 0.1} for a damping within 10 %.")
+            raise DesignError("spread is required, such as spread={'c': 0.1} for a damping within 10 %.")
         for name, part in self.spread:
             if not is_number(part) or not 0.0 < part < 1.0:
-                raise DesignError(f"The spread of {name!r} is a part of its value between 0 and 1, got {part!r}.")
+                raise DesignError(f"The relative tolerance of {name!r} must be between 0 and 1, got {part!r}.")
         if self.distribution not in DISTRIBUTIONS:
             known = " or ".join(repr(one) for one in DISTRIBUTIONS)
-            raise DesignError(f"The distribution of a tolerance is {known}, got {self.distribution!r}.")
+            raise DesignError(f"The distribution of a tolerance must be {known}, got {self.distribution!r}.")
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What scatters."""
+        """Names of the values with tolerances."""
         return tuple(name for name, _ in self.spread)
 
     def factors(self, unit: Array) -> Array:
-        """Factors (n, names) of the values, from numbers that are evenly spread between 0 and 1."""
+        """Factors (n, names) on the values, from quasi-random numbers between 0 and 1."""
         parts = np.array([part for _, part in self.spread])
         if self.distribution == "uniform":
             return 1.0 + parts * (2.0 * unit - 1.0)
@@ -73,14 +72,14 @@ class Scatter:
 
 
 def scatter_of(spread: object, distribution: str) -> Scatter:
-    """The scatter; raises `DesignError` for what is none."""
+    """Tolerances from a table; raises `DesignError` for an invalid one."""
     if not isinstance(spread, Mapping) or not all(isinstance(name, str) for name in spread):
-        raise DesignError(f"The spread maps names to parts of values, such as {{'c': 0.1}}, got {spread!r}.")
+        raise DesignError(f"spread must map names to relative tolerances, such as {{'c': 0.1}}, got {spread!r}.")
     return Scatter(tuple(spread.items()), distribution)
 
 
 def elements_scatter(vehicle: Vehicle, scatter: Scatter) -> bool:
-    """Whether all that scatters is values of elements; raises `DesignError` for a name that stands for nothing."""
+    """Whether all tolerances are of element values; raises `DesignError` for an unknown name."""
     nominal(vehicle, scatter)
     return all(name in vehicle.free_values() or _is_of_elements(vehicle, name) for name in scatter.names)
 
@@ -90,12 +89,12 @@ def _is_of_elements(vehicle: Vehicle, name: str) -> bool:
 
 
 def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
-    """What scatters, with its value; nan where that is free. Raises `DesignError` for a name without a value."""
+    """Nominal values with tolerances, by name; nan where free. Raises `DesignError` for a name without a value."""
     found = {}
     for name in scatter.names:
         value = _value(vehicle, name)
         if value == 0.0:
-            raise DesignError(f"{name!r} is 0, and cannot scatter by a part of itself.")
+            raise DesignError(f"{name!r} is 0, so it cannot have a relative tolerance.")
         found[name] = value
     return found
 
@@ -110,24 +109,24 @@ def _value(vehicle: Vehicle, name: str) -> float:
         value = chosen[0].value
         if any(element.value != value for element in chosen):
             several = " and ".join(dict.fromkeys(str(element) for element in chosen))
-            raise DesignError(f"{name!r} stands for {several}, which cannot scatter as one. Give them different names.")
+            raise DesignError(f"{name!r} is ambiguous: {several}. Give them different names.")
         return np.nan if isinstance(value, Free | Tied) else value
     if name in masses(vehicle):
         return _number(name, masses(vehicle)[name])
-    replace_values(vehicle, {name: 1.0})  # which says what there is
+    replace_values(vehicle, {name: 1.0})  # which raises with the available names
     raise AssertionError("unreachable")
 
 
 def _number(name: str, value: float | Free) -> float:
     if isinstance(value, Free):
-        raise DesignError(f"{name!r} is free by the name of {value.name!r}; name that.")
+        raise DesignError(f"{name!r} is free under the name {value.name!r}. Use that name.")
     return value
 
 
 def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> Status:
-    """Whether a method sees all that scatters: what linear analysis leaves out would seem not to matter.
+    """Status of a method that neglects elements with tolerances, as linear analysis does.
 
-    `idle` names values that turned out to have no effect: with friction left out, what carries no force then has none.
+    `idle` names values without effect: with friction neglected, elements without force have none.
     """
     if method.sees is not Sees.NEITHER:
         return OK
@@ -138,13 +137,13 @@ def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: C
         return OK
     return Status(
         StatusKind.INACCURATE,
-        "linear analysis leaves friction out and closes gaps, and so does not see the scatter of "
-        f"{' and '.join(unseen)}, which seems not to matter; take a method that simulates",
+        "the linear model neglects friction and treats gaps as closed, and so ignores the tolerance of "
+        f"{' and '.join(unseen)}; use a method that simulates",
     )
 
 
-def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
-    """The vehicle with a free value of its own, by its name, in the place of all that scatters."""
+def with_free_scatter(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
+    """The vehicle with separate free values for all elements with tolerances, by label."""
     parts = dict(scatter.spread)
     vehicle, free = to_editable(vehicle), vehicle.free_values()
     chosen = {id(element) for name in parts if name not in free for element in elements_by_label(vehicle, name)}
@@ -159,8 +158,8 @@ def loosened(vehicle: Vehicle, scatter: Scatter) -> Vehicle:
     return with_elements(vehicle, loose)
 
 
-def followed(vehicle: Vehicle, scatter: Scatter) -> dict[str, str]:
-    """The free value that each label has its value from, of those labels that scatter and are no free value."""
+def source_values(vehicle: Vehicle, scatter: Scatter) -> dict[str, str]:
+    """Free value by label, for labels with tolerances that are not names of free values."""
     vehicle, found = to_editable(vehicle), {}
     for name in set(scatter.names) - set(vehicle.free_values()):
         for element in elements_by_label(vehicle, name):

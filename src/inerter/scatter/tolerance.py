@@ -1,4 +1,4 @@
-"""`tolerance`: what an index becomes when values scatter, and which of them that is due to."""
+"""`tolerance`: distribution of an index under tolerances, and its Sobol' sensitivity indices."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ from inerter.methods.asking import Asked, estimate_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
-from inerter.scatter.spread import Scatter, elements_scatter, loosened, nominal, scatter_left_out, scatter_of
+from inerter.scatter.spread import Scatter, elements_scatter, nominal, scatter_left_out, scatter_of, with_free_scatter
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on
 
 Array = NDArray[np.float64]
-_MOST_CORNERS = 10  # values that scatter, whose extremes are all combined
+_MOST_CORNERS = 10  # values with tolerances up to which all extremes are combined
 _FEWEST = 16  # samples
-_TRIED, _FEW = 64, 256  # designs that are tried before the sample, and those that are taken where each takes long
-_TRIED_ALONE = 16  # of them, where each is a mechanism of its own
+_TRIED, _FEW = 64, 256  # designs tested before the sample, and size of the sample where each takes long
+_TRIED_ALONE = 16  # designs tested where each is a separate mechanism
 
 
 @dataclass(frozen=True, eq=False)
 class Tolerance:
-    """An index whose design scatters.
+    """Distribution of an index under tolerances of a design.
 
-    `main` is the part of its variance that each value makes by itself, `total` the part that would go if that value
-    did not scatter (Sobol' indices; they have no error bound, and differ by rounding of the sample from 0 and 1).
-    `worst` is the largest value found, at the `worst_values`, in the sample and where all are at an end of their range.
-    All are nan, and the status says so, where the index has no value for some of the sample.
+    `main` are the first-order and `total` the total-order Sobol' indices of each value (estimates without error bound,
+    which may slightly exceed the range 0 to 1). `worst` is the largest value found, at the `worst_values`, in the
+    sample and at the corners of the tolerances. All are nan, with a status, where the index has no value for some of
+    the sample.
     """
 
     nominal: Estimate
@@ -59,16 +59,16 @@ class Tolerance:
         return self.nominal.unit
 
     def quantile(self, share: float) -> float:
-        """The value that the index stays below in this share of cases.
+        """Quantile of the index at this probability.
 
-        Raises `DesignError` unless the share is between 0 and 1.
+        Raises `DesignError` unless the probability is between 0 and 1.
         """
         if not is_number(share) or not 0.0 <= share <= 1.0:
-            raise DesignError(f"The share of a quantile lies between 0 and 1, got {share!r}.")
+            raise DesignError(f"The probability of a quantile must be between 0 and 1, got {share!r}.")
         return float(np.quantile(self.values, share))
 
     def quantile_estimate(self, share: float) -> Estimate:
-        """The same with its standard error and 95 % confidence interval (`quantile_error`).
+        """Quantile with its standard error and 95 % confidence interval (`quantile_error`).
 
         Raises `DesignError` unless the share is between 0 and 1.
         """
@@ -90,19 +90,18 @@ def tolerance(
     distribution: str = "uniform",
     executor: Executor | None = None,
 ) -> Tolerance:
-    """What an index becomes when values of a design scatter.
+    """Tolerance analysis: distribution of an index under tolerances of the values of a design.
 
-    `spread` says for values by their names (elements by their labels, quantities of the vehicle, coordinates of a
-    mechanism) by what part of themselves they scatter, up and down at the most: {"c": 0.1} is 10 %. Under the
-    `distribution` "uniform" all between is equally likely; under "normal" the standard deviation is a third of the
-    spread, at which it is cut off. What was tied to a value is a part of its own, which scatters by its own label, and
-    not with that value. `samples`, a power of two, are points of a scrambled Sobol' sequence; the index is
-    taken at 2 + n times as many, for n values that scatter. Elements go through compiled code where the method has
-    some, other quantities one by one, on the `executor` if there is one.
+    `spread` gives the relative tolerance (half-width) of values by name (elements by label, quantities of the vehicle,
+    coordinates of a mechanism): {"c": 0.1} is 10 %. Under the `distribution` "uniform" values are uniformly
+    distributed; under "normal" the standard deviation is a third of the tolerance, at which it is truncated. A tied
+    value has a separate tolerance under its own label. `samples`, a power of two, are points of a scrambled Sobol'
+    sequence; the index is evaluated at 2 + n times as many, for n values with tolerances. Element values use compiled
+    code where the method has some, other quantities are evaluated one by one, on the `executor` if there is one.
 
-    Raises `DesignError` for a name that stands for nothing, a spread that is not between 0 and 1, and samples that are
-    no power of two; and what `evaluate` raises. Where most of the designs need more digits than double precision has,
-    256 samples are taken at the most, and the status is "inaccurate".
+    Raises `DesignError` for an unknown name, a tolerance that is not between 0 and 1, and samples that are not a power
+    of two; and the errors of `evaluate`. Where most of the designs require extended precision, at most 256 samples are
+    used, and the status is "inaccurate".
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)
@@ -114,23 +113,23 @@ def tolerance(
     """
     scatter = scatter_of(spread, distribution)
     if not isinstance(samples, Integral) or samples < _FEWEST or samples & (samples - 1):
-        raise DesignError(f"The number of samples is a power of two from {_FEWEST} on, got {samples!r}.")
+        raise DesignError(f"The number of samples must be a power of two of at least {_FEWEST}, got {samples!r}.")
     if not isinstance(seed, Integral) or seed < 0:
-        raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
+        raise DesignError(f"The seed must be a non-negative integer, got {seed!r}.")
     with one_blas_thread(), running_on(executor):
         here = evaluate(design, index, method)
         fewer = _affordable(design, index, method, scatter, int(samples), int(seed))
-        found = _found(design, index, method, scatter, fewer, int(seed), here)
+        found = _analyse(design, index, method, scatter, fewer, int(seed), here)
         if fewer == samples or not found.status.ok:
             return found
-        reason = f"{fewer} of {samples} designs of the sample were taken, since most need more digits than 16"
+        reason = f"only {fewer} of {samples} designs of the sample evaluated: most require more than double precision"
         return replace(found, status=Status(StatusKind.INACCURATE, reason))
 
 
 def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int) -> int:
-    """How many samples to take: few where most designs need more digits than double precision has.
+    """Number of samples to use: few where most designs require extended precision.
 
-    Of an index that is made of several answers, such as one over conditions, each may need them.
+    For a composite index, such as one over conditions, this applies to each part.
     """
     if samples <= _FEW or not isinstance(method, Doubting):
         return samples
@@ -138,7 +137,7 @@ def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter,
     own = nominal(design, scatter)
     table = scatter.factors(unit) * np.array(list(own.values()))
     if elements_scatter(design, scatter):
-        tried = [(loosened(design, scatter), dict(zip(own, table.T, strict=True)))]
+        tried = [(with_free_scatter(design, scatter), dict(zip(own, table.T, strict=True)))]
     else:
         rows = [dict(zip(own, row, strict=True)) for row in table[:: _TRIED // _TRIED_ALONE].tolist()]
         tried = [(replace_values(design, row), {}) for row in rows]
@@ -148,7 +147,7 @@ def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter,
     return _FEW if sum(unsure) > 0.5 * len(tried) else samples
 
 
-def _found(
+def _analyse(
     design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int, here: Estimate
 ) -> Tolerance:
     count = len(scatter.names)
@@ -160,13 +159,13 @@ def _found(
         mixed[:, i] = b[:, i]
         crossed.append(mixed)
     corners = scatter.corners() if count <= _MOST_CORNERS else np.zeros((0, count))
-    values = scattered(design, index, method, scatter, np.vstack([a, b, *crossed, corners]))
+    values = evaluate_sample(design, index, method, scatter, np.vstack([a, b, *crossed, corners]))
     both, mixed_values = values[: 2 * samples], values[2 * samples : (2 + count) * samples].reshape(count, samples)
     extreme, factors = np.append(both, values[(2 + count) * samples :]), np.vstack([a, b, corners])
     status, known = here.status, bool(np.all(np.isfinite(values)))
     if not known:
         lost = int(np.sum(~np.isfinite(values)))
-        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs that scatter have no value that is sure")
+        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
     names = scatter.names
     same = np.all(mixed_values == both[:samples], axis=1)
     idle = [name for name, is_same in zip(names, same.tolist(), strict=True) if is_same]
@@ -190,7 +189,7 @@ def _found(
 
 
 def rank_weights(count: int, share: float) -> Array:
-    """Weights of `count` values in rising order whose mean is a quantile (Harrell and Davis 1982)."""
+    """Weights of `count` values in ascending order whose mean is a quantile (Harrell and Davis 1982)."""
     a, b = (count + 1) * share, (count + 1) * (1.0 - share)
     return np.asarray(np.diff(scipy.special.betainc(a, b, np.arange(count + 1) / count)))
 
@@ -209,7 +208,7 @@ def quantile_error(values: Array, share: float) -> tuple[float, tuple[float, flo
 
 
 def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
-    """Main and total Sobol' indices; 0 where nothing varies."""
+    """First-order and total-order Sobol' indices; 0 where nothing varies."""
     samples = mixed.shape[1]
     if len(mixed) == 1 or np.ptp(both) == 0.0:
         share = np.full(len(mixed), float(np.ptp(both) > 0.0))
@@ -220,13 +219,13 @@ def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
     return np.ravel(found.first_order), np.ravel(found.total_order)
 
 
-def scattered(design: Vehicle, index: Asked, method: Method, scatter: Scatter, factors: Array) -> Array:
-    """The index at the values of a design times these factors; nan where it has none."""
+def evaluate_sample(design: Vehicle, index: Asked, method: Method, scatter: Scatter, factors: Array) -> Array:
+    """The index at the values of a design times these factors; nan where it has no value."""
     own = nominal(design, scatter)
     table = factors * np.array(list(own.values()))
     if elements_scatter(design, scatter):
         points = dict(zip(own, table.T, strict=True))
-        return evaluate_many(loosened(design, scatter), index, points, method)[:, 0]
+        return evaluate_many(with_free_scatter(design, scatter), index, points, method)[:, 0]
     rows = [dict(zip(own, row, strict=True)) for row in table.tolist()]
     return np.array(mapped(partial(_value, design, index, method), rows))
 

@@ -1,1 +1,1 @@
-"""Trade-offs: the best designs of several indices at once."""
+"""Pareto fronts: the trade-off between several indices."""

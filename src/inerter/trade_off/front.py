@@ -1,4 +1,4 @@
-"""A front: designs of which none is better than another in every criterion, with what they come to."""
+"""A Pareto front: non-dominated designs with their criteria."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.methods.asking import Asked
-from inerter.optimisation.held import Held
+from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -20,12 +20,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """The trade-off between two or three indices, in rising order of the first.
+    """The Pareto front of two or three indices, in ascending order of the first.
 
-    `values` (points, criteria) are the indices of the designs, `parameters` their free values, `statuses` how far each
-    point can be trusted. `jumps` are pairs of neighbours between which the front has no points: there it leaps from one
-    kind of design to another (told for two criteria). `limits` has what is limited at each point. `status` says why
-    there are no points, if so.
+    `values` (points, criteria) are the indices of the designs, `parameters` their free values, `statuses` those of the
+    points. `jumps` are pairs of neighbours between which the front is discontinuous (for two criteria). `limits` has
+    the constraints at each point. `status` gives the reason for a front without points.
     """
 
     indices: tuple[Asked, ...]
@@ -34,47 +33,47 @@ class Front:
     designs: tuple[Vehicle, ...]
     statuses: tuple[Status, ...]
     jumps: tuple[tuple[int, int], ...]
-    limits: tuple[tuple[Held, ...], ...]
+    limits: tuple[tuple[ConstraintResult, ...], ...]
     seed: int
     status: Status = OK
 
     @property
     def ideal(self) -> Array:
-        """The least value of each criterion: the ends of the front have them."""
+        """Ideal point: the smallest value of each criterion."""
         return np.asarray(self.values.min(axis=0))
 
     @property
     def nadir(self) -> Array:
-        """The largest value of each criterion on the front."""
+        """Nadir point: the largest value of each criterion on the front."""
         return np.asarray(self.values.max(axis=0))
 
     @property
     def normalised(self) -> Array:
-        """The values with 0 for the least and 1 for the largest of each criterion on the front."""
+        """The values scaled to 0 for the smallest and 1 for the largest of each criterion on the front."""
         size = self.nadir - self.ideal
         return (self.values - self.ideal) / np.where(size > 0.0, size, 1.0)
 
     @property
     def knee(self) -> int:
-        """The point that is farthest from the plane through the ends, in normalised criteria.
+        """Index of the knee: the point farthest from the plane through the ends, in normalised criteria.
 
-        Beyond it either criterion is bought dearly. Raises `DesignError` if there are no points.
+        Beyond the knee, improving one criterion costs most in the other. Raises `DesignError` if there are no points.
         """
         if not len(self.values):
-            raise DesignError(f"A front without points has no knee: {self.status.message}.")
+            raise DesignError(f"The Pareto front has no points, so no knee: {self.status.message}.")
         return int(np.argmin(self.normalised.sum(axis=1)))
 
     def hypervolume(self, reference: Sequence[float]) -> float:
-        """The area (or volume) that the front dominates up to a reference point, in the units of the indices.
+        """Hypervolume: area (or volume) dominated by the front up to a reference point, in the units of the indices.
 
-        Of two criteria exactly; of three by the package moocore (extra "fronts").
+        For two criteria exactly; for three by the package moocore (extra "fronts").
 
         Raises `PerformanceIndexError` unless the reference has a number for each criterion.
         """
         count = len(self.indices)
         if isinstance(reference, str) or len(reference) != count or not all(map(is_number, reference)):
             raise PerformanceIndexError(
-                f"The reference of a hypervolume has {count} numbers, one for each criterion, got {reference!r}."
+                f"The reference of a hypervolume must have {count} numbers, one for each criterion, got {reference!r}."
             )
         inside = self.values[np.all(self.values < np.array(reference), axis=1)]
         if not len(inside):
@@ -94,6 +93,6 @@ def _volume(values: Array, reference: Sequence[float]) -> float:
         moocore = import_module("moocore")
     except ImportError:
         raise PerformanceIndexError(
-            'The hypervolume of three criteria needs the package moocore: pip install "inerter[fronts]".'
+            'The hypervolume of three criteria requires the package moocore: pip install "inerter[fronts]".'
         ) from None
     return float(moocore.hypervolume(values, ref=list(reference)))

@@ -1,8 +1,8 @@
-"""`pareto`: the front of two or three indices, each point a local optimum of exact gradients from many starts.
+"""`pareto`: the Pareto front of two or three indices, each point by multi-start search with exact gradients.
 
-The criteria are normalised by what the single optima have of them. A point of the front is the solution of: the least
-t such that criterion i exceeds a_i by t at the most, where a lies on the line (or triangle) through the single optima.
-So points are evenly spread whether the front is convex or not, and one after the other starts from its neighbours.
+The criteria are normalised by their values at the single optima. A point of the front minimises t such that criterion i
+exceeds a_i by at most t, where a is on the line (or triangle) through the single optima.
+So points are evenly spread for convex and non-convex fronts, and each starts from its neighbours.
 """
 
 from __future__ import annotations
@@ -26,25 +26,25 @@ from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
-from inerter.optimisation.constrained import Limited, polished, searches, trust_region_within
-from inerter.optimisation.held import held_at
+from inerter.optimisation.active_constraints import constraint_results
+from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region_within
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.trade_off.front import Front
-from inerter.trade_off.points import FrontPoint, beats, gaps, pair, sparse, thinned, undominated
+from inerter.trade_off.points import FrontPoint, dominates, gap_key, gaps, non_dominated, sparse, thin_out
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
 _NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
 _SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
-_SLACK = 1e-6  # of a normalised criterion that is better than asked for
-_WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: what is filled, and what is looked into for a jump
-_AT_END = 0.02  # of a gap, up to which a point lies at its end
+_SLACK = 1e-6  # tolerance of a normalised criterion
+_WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: those that are filled, and those tested for a discontinuity
+_AT_END = 0.02  # of a gap, within which a point is at its end
 _STARTS = 3  # from the sample for each point
-_RESTARTS = 4  # from ends that points of the front have turned out to beat
+_RESTARTS = 4  # with improved ends
 
 
 def pareto(
@@ -57,15 +57,15 @@ def pareto(
     seed: int = 0,
     executor: Executor | None = None,
 ) -> Front:
-    """The trade-off between two or three indices: designs of which none is better than another in all of them.
+    """The Pareto front of two or three indices: non-dominated designs.
 
     The ends are the single optima. Between them `points` are spread evenly in the criteria, normalised by the ends;
-    each is searched from a sample of all designs and from its neighbours, and taken again where another came upon
-    something better. `subject_to` is as that of `optimise`. A method that simulates starts from the front of a quick
-    one. The same seed gives the same front. An `executor` shares random roads, as that of `optimise` does.
+    each is searched from a sample of all designs and from its neighbours, and repeated where another search found a
+    better start. `subject_to` is as that of `optimise`. A method that simulates starts from the front of a quick one.
+    The same seed gives the same front. An `executor` shares random roads, as that of `optimise` does.
 
-    Raises `PerformanceIndexError` unless there are two or three indices that differ, `DesignError` if `points` is not
-    a whole number from 3 on (6 for three indices), and what `optimise` raises.
+    Raises `PerformanceIndexError` unless there are two or three different indices, `DesignError` if `points` is not an
+    integer of at least 3 (6 for three indices), and the errors of `optimise`.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
@@ -76,11 +76,11 @@ def pareto(
     array([[  2.428, 503.131],
            [  2.437, 501.205]])
     """
-    criteria = _checked(vehicle, indices, method, points)
+    criteria = _check_request(vehicle, indices, method, points)
     limits = check_limits(subject_to)
     free = check_free(vehicle)
     if not isinstance(seed, Integral) or seed < 0:
-        raise DesignError(f"The seed is a whole number from 0 on, got {seed!r}.")
+        raise DesignError(f"The seed must be a non-negative integer, got {seed!r}.")
     with one_blas_thread(), running_on(executor):
         ends = []
         for one in criteria:
@@ -93,16 +93,16 @@ def pareto(
         return _front(trade, found, int(seed))
 
 
-def _checked(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:
+def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:
     if not isinstance(indices, Sequence) or isinstance(indices, str) or len(indices) not in (2, 3):
-        raise PerformanceIndexError(f"A trade-off is between two or three indices, got {indices!r}.")
+        raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {indices!r}.")
     for one in indices:
         check_request(vehicle, one, method)
     if len(set(map(repr, indices))) < len(indices):
-        raise PerformanceIndexError("A trade-off is between indices that differ; one is there twice.")
+        raise PerformanceIndexError("A Pareto front requires different indices; one is repeated.")
     least = 3 if len(indices) == 2 else 6
     if not isinstance(points, Integral) or isinstance(points, bool) or points < least:
-        raise DesignError(f"A front of {len(indices)} indices has at least {least} points, got points={points!r}.")
+        raise DesignError(f"A front of {len(indices)} indices requires at least {least} points, got points={points!r}.")
     return tuple(indices)
 
 
@@ -118,7 +118,7 @@ class _Trade:
     lower: Array
     upper: Array
     ends: tuple[Array, ...]  # points
-    hints: Array  # points that a quick method has found
+    hints: Array  # points of the front of a quick method
     seed: int
 
     def criteria(self, points: Array) -> Array:
@@ -127,21 +127,21 @@ class _Trade:
 
     @cached_property
     def scale(self) -> tuple[Array, Array]:
-        """The least of each criterion, and how far the largest at an end is from it."""
+        """Smallest value of each criterion at the ends, and its range."""
         table = self.criteria(np.array(self.ends))
         ideal = table.min(axis=0)
         size = table.max(axis=0) - ideal
         return ideal, np.where(size > 0.0, size, 1.0)
 
     def at(self, point: Array) -> FrontPoint:
-        """What a point comes to."""
+        """The point with its criteria."""
         values = self.criteria(point[None])[0]
         ideal, size = self.scale
         return FrontPoint(point, values, (values - ideal) / size)
 
     @cached_property
     def sample(self) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Many designs that keep the limits, with their normalised criteria, and the numbers of their neighbours."""
+        """Sample of designs, with penalised normalised criteria, and the numbers of their neighbours."""
         if not self._quick:
             table = self.criteria(self.hints)
             own = np.arange(len(self.hints), dtype=np.int64)[:, None]
@@ -151,7 +151,7 @@ class _Trade:
         unit = sampler.random_base2(min(7 + count, 12))
         points = np.exp(np.log(self.lower) + unit * (np.log(self.upper) - np.log(self.lower)))
         table = (self.criteria(points) - self.scale[0]) / self.scale[1]
-        over = Limited(None, self.bounds, self.lower, self.upper).excess(points)
+        over = ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(points)
         table += 10.0 * np.maximum(over, 0.0)[:, None]
         near = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * count + 1)[1], dtype=np.int64)
         return points, table, near
@@ -161,17 +161,17 @@ class _Trade:
         return all(isinstance(one, Differentiable) for one in self.objectives) and is_smooth(self.bounds)
 
     def from_strict_ends(self) -> _Trade:
-        """The same, where a single optimum that leaves another criterion open is the best in that, too."""
+        """The problem with single optima that are also non-dominated."""
         strict = tuple(self.strict(self.at(point)).point for point in self.ends)
         return replace(self, ends=strict)
 
-    def problem(self, aim: Array, which: Sequence[int]) -> Limited:
-        """The least of what the normalised criteria exceed their aims by."""
+    def problem(self, aim: Array, which: Sequence[int]) -> ConstrainedProblem:
+        """Minimisation of the largest excess of the normalised criteria over their aims."""
         ideal, size = self.scale
         parts = [
             ObjectivePart(self.objectives[i], None, 1.0 / size[i], _SHIFT - ideal[i] / size[i] - aim[i]) for i in which
         ]
-        return Limited(combined(parts, worst=True), self.bounds, self.lower, self.upper)
+        return ConstrainedProblem(combined(parts, worst=True), self.bounds, self.lower, self.upper)
 
     def starts(self, aim: Array, which: Sequence[int]) -> list[Array]:
         """The lowest local minima of the sample."""
@@ -183,7 +183,7 @@ class _Trade:
         return [points[i] for i in lowest[:_STARTS]]
 
     def solve(self, aim: Array, known: Sequence[FrontPoint], which: Sequence[int] = ()) -> FrontPoint | None:
-        """The point of the front that comes closest to an aim, from the sample and from what is known."""
+        """The point of the front closest to an aim, from the sample and known points; None if none is feasible."""
         which = which or range(len(self.objectives))
         close = sorted(known, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
         first = [one.point for one in close[:2]] + self.starts(aim, which)
@@ -199,7 +199,7 @@ class _Trade:
         return best
 
     def strict(self, found: FrontPoint) -> FrontPoint:
-        """A design that is no worse in any criterion, and cannot be better in one alone."""
+        """A non-dominated design that is no worse in any criterion."""
         ideal, size = self.scale
         parts = [
             ObjectivePart(one, None, 1.0 / s, -i / s + 1.0)
@@ -209,19 +209,19 @@ class _Trade:
             Bound(Limit(index, Sense.AT_MOST, float(value)), objective)
             for index, value, objective in zip(self.indices, found.values, self.objectives, strict=True)
         )
-        problem = Limited(combined(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper)
+        problem = ConstrainedProblem(combined(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper)
         if not self._quick:
             return found
         start = problem.at(found.point, 0)
-        better = self.at(polished(problem, start).point)
+        better = self.at(refine_minimax(problem, start).point)
         gained = found.normal.sum() - better.normal.sum()
         no_worse_now = np.all(better.normal <= found.normal + _SLACK) and np.all(
-            Limited(None, self.bounds, self.lower, self.upper).excess(better.point[None]) <= 1e-6
+            ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(better.point[None]) <= 1e-6
         )
         return better if gained > _SLACK and no_worse_now else found
 
     def front(self, count: int, restarts: int = _RESTARTS) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
-        """Points of the front, and the pairs between which it jumps."""
+        """Points of the front, and the pairs between which it is discontinuous."""
         ends = [self.at(point) for point in self.ends]
         table = np.array([one.values for one in ends])
         if np.all(np.ptp(table, axis=0) <= _NO_CONFLICT * self.scale[0]):
@@ -229,10 +229,10 @@ class _Trade:
         if len(self.objectives) == 3:
             return self.over_triangle(ends, count), set()
         found = self.between(ends, count)
-        closer = [next((one for one in found if beats(one, end)), end) for end in ends]
+        closer = [next((one for one in found if dominates(one, end)), end) for end in ends]
         if restarts and any(one is not end for one, end in zip(closer, ends, strict=True)):
             return replace(self, ends=tuple(one.point for one in closer)).front(count, restarts - 1)
-        return self.filled(found, count, (0, 1))
+        return self.fill_gaps(found, count, (0, 1))
 
     def between(self, ends: Sequence[FrontPoint], count: int, which: Sequence[int] = (0, 1)) -> list[FrontPoint]:
         """Points of the front of two criteria, from one end to the other."""
@@ -242,23 +242,23 @@ class _Trade:
         for aim in aims:
             one = self.solve(aim, found, which)
             found += [] if one is None else [one]
-        for aim in reversed(aims):  # again where another search came upon something better
-            problem, best = self.problem(aim, which), self.reached(aim, found, which)
-            again = polished(problem, problem.at(best.point, 0)) if self._quick else None
+        for aim in reversed(aims):  # repeated from the best of all points
+            problem, best = self.problem(aim, which), self.closest_to(aim, found, which)
+            again = refine_minimax(problem, problem.at(best.point, 0)) if self._quick else None
             if again is not None and again.excess <= 1e-6:
                 found.append(self.at(again.point))
-        return undominated(found, which)
+        return non_dominated(found, which)
 
-    def reached(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
-        """What comes closest to an aim of all that was found."""
+    def closest_to(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
+        """The point closest to an aim."""
         return min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
 
-    def filled(
+    def fill_gaps(
         self, found: list[FrontPoint], count: int, which: Sequence[int]
     ) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
-        """So many points, in whose widest gaps others were put; and the gaps in which there is nothing."""
+        """Up to `count` points after filling the widest gaps, and the gaps without points."""
         jumps: set[tuple[bytes, bytes]] = set()
-        found = thinned(found, count, which)
+        found = thin_out(found, count, which)
         for _ in range(3 * count):
             free = gaps(found, jumps, which)
             if not free:
@@ -268,20 +268,20 @@ class _Trade:
                 break
             one = self.inside(found[i], found[i + 1], which)
             if one is None:
-                jumps.add(pair(found, i))
+                jumps.add(gap_key(found, i))
             else:
-                found = thinned(undominated([*found, one], which), max(count, 3), which, keep=one)
+                found = thin_out(non_dominated([*found, one], which), max(count, 3), which, keep=one)
         free = gaps(found, jumps, which)
         typical = float(np.median([gap for gap, _ in free])) if free else 0.0
         jumps |= {
-            pair(found, i)
+            gap_key(found, i)
             for gap, i in free
             if gap > _DOUBTED * typical and self.inside(found[i], found[i + 1], which) is None
         }
         return found, jumps
 
     def inside(self, a: FrontPoint, b: FrontPoint, which: Sequence[int]) -> FrontPoint | None:
-        """A point between two neighbours; None if the search for one ends at one of them: the front jumps there."""
+        """A point between two neighbours; None if the search ends at one of them: the front is discontinuous there."""
         one = self.solve(0.5 * (a.normal + b.normal), [a, b], which)
         if one is None:
             return None
@@ -294,25 +294,25 @@ class _Trade:
         found = list(ends)
         for i, j in combinations(range(3), 2):
             along = self.between([ends[i], ends[j]], steps + 1, (i, j))
-            found += self.filled(along, steps + 1, (i, j))[0]
+            found += self.fill_gaps(along, steps + 1, (i, j))[0]
         found = [self.strict(one) for one in found]
         corners = np.array([one.normal for one in ends])
         for a in range(1, steps):
             for b in range(1, steps - a):
                 one = self.solve(np.array([a, b, steps - a - b]) / steps @ corners, found)
                 found += [] if one is None else [one]
-        found = undominated(found, (0, 1, 2))
+        found = non_dominated(found, (0, 1, 2))
         rng = scipy.stats.qmc.Sobol(3, rng=np.random.default_rng(self.seed))
         shares = -np.log(np.maximum(rng.random(32), 1e-9))
         for share in shares / shares.sum(axis=1, keepdims=True):
             if len(found) >= count:
                 break
             one = self.solve(share @ corners, found)
-            found = found if one is None else undominated([*found, one], (0, 1, 2))
+            found = found if one is None else non_dominated([*found, one], (0, 1, 2))
         return sparse(found, count, ends)
 
 
-def _costly(problem: Limited, first: Sequence[Array]) -> LocalOptimum:
+def _costly(problem: ConstrainedProblem, first: Sequence[Array]) -> LocalOptimum:
     start = first[int(np.argmin(problem.values(np.array(first))))]
     if problem.bounds:
         return trust_region_within(problem, start)
@@ -347,7 +347,7 @@ def _trade(
 def _hints(
     vehicle: Vehicle, indices: tuple[Asked, ...], method: Method, limits: tuple[Limit, ...], seed: int
 ) -> list[Array]:
-    """Points of the front of a quick method, for one that gives no gradients."""
+    """Points of the front of a quick method, for a method without gradients."""
     if isinstance(objective_of(vehicle, indices[0], method), Differentiable):
         return []
     for quick in with_gradients(getattr(method, "conventions", "exact")):
@@ -374,9 +374,9 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     statuses = tuple(worst_of(e.status for e in row) for row in estimates)
     bad, troubled = worst_of(statuses), sum(not one.ok for one in statuses)
     status = OK if bad.ok else Status(bad.kind, f"{troubled} of {len(statuses)} points, such as one with {bad.message}")
-    problem = Limited(None, trade.bounds, trade.lower, trade.upper)
+    problem = ConstrainedProblem(None, trade.bounds, trade.lower, trade.upper)
     held = tuple(
-        held_at(problem, design, trade.method, one.point, known=False)
+        constraint_results(problem, design, trade.method, one.point, known=False)
         for design, one in zip(designs, several, strict=True)
     )
     keys = [one.point.tobytes() for one in several]

@@ -1,4 +1,4 @@
-"""Points of a front while it is made: which of them stay, and how wide the gaps between them are."""
+"""Points of a Pareto front during its computation: dominance, thinning, and gaps between them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-_SAME = 1e-4  # normalised distance up to which two points are one
+_SAME = 1e-4  # normalised distance within which two points are equal
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,26 +21,26 @@ class FrontPoint:
     normal: Array
 
 
-def pair(found: Sequence[FrontPoint], i: int) -> tuple[bytes, bytes]:
-    """What tells the gap behind a point from others."""
+def gap_key(found: Sequence[FrontPoint], i: int) -> tuple[bytes, bytes]:
+    """Key of the gap after a point."""
     return found[i].point.tobytes(), found[i + 1].point.tobytes()
 
 
 def gaps(found: Sequence[FrontPoint], jumps: set[tuple[bytes, bytes]], which: Sequence[int]) -> list[tuple[float, int]]:
-    """The widths of the gaps between neighbours that are no jumps, with their numbers."""
+    """Widths and numbers of the gaps between neighbours, except discontinuities."""
     table = np.array([one.normal for one in found])[:, list(which)]
     widths = np.linalg.norm(np.diff(table, axis=0), axis=1).tolist()
-    return [(width, i) for i, width in enumerate(widths) if pair(found, i) not in jumps]
+    return [(width, i) for i, width in enumerate(widths) if gap_key(found, i) not in jumps]
 
 
-def beats(one: FrontPoint, other: FrontPoint) -> bool:
-    """Whether one is better in a criterion by more than two points that are one differ, and worse in none."""
+def dominates(one: FrontPoint, other: FrontPoint) -> bool:
+    """Whether `one` is better in a criterion by more than the tolerance, and worse in none."""
     gained = other.normal - one.normal
     return bool(np.all(gained >= -1e-12) and np.any(gained > _SAME))
 
 
-def undominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[FrontPoint]:
-    """Those that no other one is better than, each once, in order of the first criterion."""
+def non_dominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[FrontPoint]:
+    """The non-dominated points without duplicates, in order of the first criterion."""
     table = np.array([one.normal for one in found])[:, list(which)]
     kept: list[int] = []
     for i in np.lexsort(table.T[::-1]):
@@ -51,10 +51,10 @@ def undominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[Front
     return [found[i] for i in kept]
 
 
-def thinned(
+def thin_out(
     found: list[FrontPoint], count: int, which: Sequence[int], keep: FrontPoint | None = None
 ) -> list[FrontPoint]:
-    """At most so many, without those that lie closest to their neighbours; the ends stay."""
+    """At most `count` points, without those closest to their neighbours; the ends are kept."""
     found = list(found)
     while len(found) > count:
         table = np.array([one.normal for one in found])[:, list(which)]
@@ -66,7 +66,7 @@ def thinned(
 
 
 def sparse(found: list[FrontPoint], count: int, ends: Sequence[FrontPoint]) -> list[FrontPoint]:
-    """At most so many of three criteria, without those that lie closest together; the ends stay."""
+    """At most `count` points of three criteria, without those closest together; the ends are kept."""
     found = list(found)
     while len(found) > count:
         table = np.array([one.normal for one in found])

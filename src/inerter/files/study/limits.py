@@ -18,7 +18,7 @@ from inerter.indices.names import index_names
 from inerter.methods.asking import Asked
 from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
-from inerter.optimisation.held import Held
+from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
 from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown, unit_in
 from inerter.vehicle.vehicle import Vehicle
@@ -192,7 +192,7 @@ def part_words(vehicle: Vehicle, output: str) -> str:
     return output.replace("_", " ")
 
 
-def kept(study: Study, vehicle: Vehicle, held: tuple[Held, ...]) -> list[tuple[float, bool, float, str]]:
+def kept(study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]) -> list[tuple[float, bool, float, str]]:
     """Of each limit: the value that comes closest, whether it holds the optimum back, the per cent that 1 % gives, and
     of which tyre or strut the value is where the limit holds for each.
 

@@ -1,4 +1,4 @@
-"""The lowest level above some functions where others keep their limits, all in logarithms (SLSQP)."""
+"""The lowest level above some functions under constraints on others, all in logarithms (SLSQP)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 class LogRows:
     """Logarithms of functions at a point, and their slopes over the logarithms of its values.
 
-    `under` is 1 for those that stay below the level and 0 for those that stay below zero; `equal` are those that are
+    `under` is 1 for functions bounded by the level and 0 for those bounded by zero; `equal` are those constrained to
     zero.
     """
 
@@ -31,7 +31,7 @@ class LogRows:
 
 
 def below(logs: Array, slopes: Array) -> LogRows:
-    """Rows that all stay below the level."""
+    """Rows that are all bounded by the level."""
     none = np.zeros(0), np.zeros((0, slopes.shape[1]))
     return LogRows(logs, slopes, np.ones(logs.size), *none)
 
@@ -39,7 +39,7 @@ def below(logs: Array, slopes: Array) -> LogRows:
 def lowest_level(
     rows: Callable[[Array], LogRows], start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
 ) -> tuple[Array, int]:
-    """Minimise t over (log point, t) subject to `rows`; returns the point and how often these were computed."""
+    """Minimise t over (log point, t) subject to `rows`; returns the point and the number of evaluations."""
     memory: dict[bytes, LogRows] = {}
 
     def at(z: Array) -> LogRows:

@@ -1,8 +1,8 @@
-"""Local optima within limits: of an index, or, where nothing keeps the limits, of how far they are missed.
+"""Local optima under constraints: of an index, or, where no design is feasible, of the constraint violation.
 
-All functions are taken in logarithms. What is smooth is one row, what is the largest of smooth functions has a row for
-each of its peaks: during the approach those of the current point, which gets close in a few steps; to the end those
-that are known, to which the ones that stand out are added until none does.
+All functions are in logarithms. A smooth function is one row; a maximum of smooth functions has a row for each of its
+peaks: during the approach those of the current point, which gets close in a few steps; then a fixed set, to which
+exceeding peaks are added until there are none.
 """
 
 from __future__ import annotations
@@ -17,29 +17,29 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
-from inerter.optimisation.levels import LogRows, lowest_level
 from inerter.optimisation.limits import Bound, Sense
 from inerter.optimisation.local import LocalOptimum, tell_of_costly
+from inerter.optimisation.minimax_level import LogRows, lowest_level
 from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
 from inerter.work.progress import report
 
 Array = NDArray[np.float64]
-KEPT = 1e-7  # of a logarithm beyond its limit that counts as kept; the exact optimum lies on it
+KEPT = 1e-7  # tolerance of a constraint, of the logarithm; the exact optimum is on the limit
 KEPT_COSTLY = 1e-4  # the same for values that are simulated
-_STEEP = 10.0  # how much a logarithm beyond its limit weighs where starts are chosen
+_STEEP = 10.0  # weight of the constraint violation in the selection of starts
 _PEAKS = 8  # slots for peaks during the approach
-_HIDDEN = -700.0  # logarithm of a peak that is not there
-_PROMISING, _SAME_PLACE = 0.02, 0.01  # as in searches without limits
+_HIDDEN = -700.0  # logarithm of an absent peak
+_PROMISING, _SAME_PLACE = 0.02, 0.01  # as in searches without constraints
 _STANDS_OUT = 1e-9
-_EXACTLY = 1e-8  # of a logarithm beyond its limit that does not matter when two ends of one search are compared
-_TIGHT = 1e-5  # distance of a logarithm from its limit up to which it may hold the optimum back
-_TRUSTED = 1e-3  # what multipliers may leave of the gradient
-Known = tuple[Any, ...]  # of each function the peaks that are followed; None for those of the current point
+_EXACTLY = 1e-8  # constraint violation that is ignored in the comparison of two ends of one search
+_TIGHT = 1e-5  # distance of a logarithm from its limit up to which a constraint may be active
+_TRUSTED = 1e-3  # largest relative residual of the gradient balance of trusted multipliers
+Known = tuple[Any, ...]  # peaks of each function; None for those of the current point
 
 
 @dataclass(frozen=True, eq=False)
-class Limited:
-    """An index within limits, as a function of the free values; without an index, how far limits are missed."""
+class ConstrainedProblem:
+    """A constrained problem: an index, or without one the constraint violation, over the free values."""
 
     objective: Objective | None
     bounds: tuple[Bound, ...]
@@ -47,27 +47,27 @@ class Limited:
     upper: Array
 
     def values(self, points: Array) -> Array:
-        """What starts are chosen by, at each row of `points`: the index, made larger where a limit is missed."""
+        """Merit function for the selection of starts at each row of `points`: the index with a penalty."""
         over = np.exp(np.minimum(_STEEP * np.maximum(self.excess(points), 0.0), 600.0))
         return np.asarray(over if self.objective is None else over * self.objective.values(points), dtype=float)
 
     def excess(self, points: Array) -> Array:
-        """By how much the logarithm of the worst limited quantity is beyond its limit; negative if it is not."""
+        """Largest constraint violation of the logarithms at each row of `points`; negative if feasible."""
         found = [np.full(points.shape[0], -np.inf), *(bound.excess(points) for bound in self.bounds)]
         return np.asarray(np.max(found, axis=0))
 
     @property
     def functions(self) -> tuple[Any, ...]:
-        """The index, if there is one, and what is limited."""
+        """The index, if there is one, and the constrained quantities."""
         own = () if self.objective is None else (self.objective,)
         return (*own, *(bound.function for bound in self.bounds))
 
-    def known(self, point: Array) -> Known:
-        """The peaks of each function at a point; None of smooth ones."""
+    def active_peaks(self, point: Array) -> Known:
+        """Peaks of each function at a point; None for smooth ones."""
         return tuple(function.active(point) for function in self.functions)
 
     def rows(self, point: Array, known: Known | None = None) -> LogRows:
-        """The logarithms at a point with their slopes; limits are relative to their values, and below zero if kept."""
+        """Logarithms at a point and their slopes; constraints relative to their limits, not positive if satisfied."""
         which = (None,) * len(self.functions) if known is None else known
         found = [_logs(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
         own = [] if self.objective is None else [found.pop(0)]
@@ -75,7 +75,7 @@ class Limited:
         equal, equal_slopes = [np.zeros(0)], [np.zeros((0, point.size))]
         for bound, (values, gradients) in zip(self.bounds, found, strict=True):
             off = values - np.log(bound.limit.value)
-            if bound.limit.sense is not Sense.AT_MOST:  # that of a peak gain is one of its highest peak
+            if bound.limit.sense is not Sense.AT_MOST:  # of a peak gain, that of its highest peak
                 top = [int(np.argmax(off))]
                 off, gradients = off[top], gradients[top]
             level = np.full(off.size, 1.0 if self.objective is None else 0.0)
@@ -91,7 +91,7 @@ class Limited:
         return LogRows(*map(np.concatenate, (logs, slopes, under, equal, equal_slopes)))
 
     def at(self, point: Array, evaluations: int) -> LocalOptimum:
-        """The point with what it comes to."""
+        """The point as a local optimum, with its value and constraint violation."""
         excess = float(self.excess(point[None])[0])
         value = np.exp(excess) if self.objective is None else float(self.objective.values(point[None])[0])
         return LocalOptimum(point, value, evaluations, excess)
@@ -113,9 +113,9 @@ def _logs(function: Differentiable, point: Array, which: Any, following: bool) -
     return np.append(logs, np.full(spare, _HIDDEN)), np.vstack([slopes, np.zeros((spare, point.size))])
 
 
-def searches(problem: Limited, first: Sequence[Array]) -> list[LocalOptimum]:
-    """A local search from each start; those that come close to the best within the limits are carried to the end."""
-    near = searches_from(first, partial(_approached, problem), APPROACHED)
+def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalOptimum]:
+    """A local search from each start; those close to the best feasible one are converged fully."""
+    near = searches_from(first, partial(_approach_minimax, problem), APPROACHED)
     near.sort(key=lambda local: (max(local.excess, _TIGHT), local.value))
     ended: list[LocalOptimum] = []
     for number, local in enumerate(near):
@@ -127,21 +127,21 @@ def searches(problem: Limited, first: Sequence[Array]) -> list[LocalOptimum]:
         if same is None:
             share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
             report("ends", number, len(near), best=lowest([*ended, *near]), share=share)
-            ended.append(kept_search(local.point, partial(polished, problem, local)))
+            ended.append(kept_search(local.point, partial(refine_minimax, problem, local)))
         else:
             ended.append(replace(same, evaluations=local.evaluations))
     return ended
 
 
-def _approached(problem: Limited, start: Array) -> LocalOptimum:
+def _approach_minimax(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
     point, count = lowest_level(problem.rows, start, problem.lower, problem.upper, tolerance=1e-7, most_steps=60)
     return problem.at(point, count + 1)
 
 
-def polished(problem: Limited, start: LocalOptimum) -> LocalOptimum:
-    """The optimum near `start`: peaks that are known, and those that stand out added."""
+def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOptimum:
+    """The optimum near `start`, over a fixed set of peaks, to which exceeding ones are added."""
     best, point, evaluations = start, start.point, start.evaluations
-    known = problem.known(point)
+    known = problem.active_peaks(point)
     for _ in range(20):
         fixed = partial(problem.rows, known=known)
         point, count = lowest_level(fixed, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
@@ -149,22 +149,22 @@ def polished(problem: Limited, start: LocalOptimum) -> LocalOptimum:
         evaluations += count + 2
         if _better(found, best):
             best = found
-        seen = problem.known(point)
-        if all(peaks is None for peaks in seen) or _steady(problem, point, known, found):
+        seen = problem.active_peaks(point)
+        if all(peaks is None for peaks in seen) or _is_converged(problem, point, known, found):
             break
         known = tuple(None if old is None else np.concatenate([old, new]) for old, new in zip(known, seen, strict=True))
     return replace(best, evaluations=evaluations)
 
 
 def _better(one: LocalOptimum, other: LocalOptimum) -> bool:
-    """Whether one keeps the limits where the other does not, or is lower."""
+    """Whether `one` has a smaller violation than `other`, or a lower value if both are feasible."""
     if max(one.excess, other.excess) <= _EXACTLY:
         return one.value < other.value
     return one.excess < other.excess
 
 
-def _steady(problem: Limited, point: Array, known: Known, found: LocalOptimum) -> bool:
-    """Whether the peaks that are known are the highest, of the index and of what is limited."""
+def _is_converged(problem: ConstrainedProblem, point: Array, known: Known, found: LocalOptimum) -> bool:
+    """Whether the fixed set contains the highest peaks of the index and the constrained quantities."""
     if not np.isfinite(found.value):
         return True
     rows = problem.rows(point, known)
@@ -174,7 +174,7 @@ def _steady(problem: Limited, point: Array, known: Known, found: LocalOptimum) -
     return bool(np.log(found.value) <= level + _STANDS_OUT and missed <= _STANDS_OUT)
 
 
-def trust_region_within(problem: Limited, start: Array) -> LocalOptimum:
+def trust_region_within(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
     """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
     assert problem.objective is not None
     objective, best = problem.objective, [LocalOptimum(start, np.inf, 0, np.inf)]
@@ -212,9 +212,9 @@ def _no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
     return one.excess < other.excess
 
 
-def sensitivities(problem: Limited, point: Array) -> list[float]:
-    """Per cent by which the index changes for one per cent of each limit: its multiplier; nan where it is not told."""
-    known = problem.known(point)
+def sensitivities(problem: ConstrainedProblem, point: Array) -> list[float]:
+    """Sensitivity of the index to each limit, in % per %, from its multiplier; nan where unknown."""
+    known = problem.active_peaks(point)
     slopes, own, limit_of, signs = [], [], [], []
     for number, (peaks, function) in enumerate(zip(known, problem.functions, strict=True)):
         logs, gradients = _logs(function, point, peaks, False)
@@ -242,8 +242,8 @@ def sensitivities(problem: Limited, point: Array) -> list[float]:
     return found
 
 
-def _multipliers(slopes: Array, own: Array, senses: list[Sense], point: Array, problem: Limited) -> Array:
-    """Of each limit's row: those with which the slopes of index, limits and bounds balance; nan if none do."""
+def _multipliers(slopes: Array, own: Array, senses: list[Sense], point: Array, problem: ConstrainedProblem) -> Array:
+    """Multipliers that balance the slopes of index, constraints and bounds; nan if there are none."""
     least = [0.0] * int(own.sum()) + [-np.inf if sense is not Sense.AT_MOST else 0.0 for sense in senses]
     most = [np.inf] * int(own.sum()) + [0.0 if sense is Sense.AT_LEAST else np.inf for sense in senses]
     at_lower = np.isclose(point, problem.lower, rtol=1e-9, atol=0.0)

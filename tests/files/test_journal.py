@@ -63,7 +63,7 @@ def test_a_journal_of_other_work_is_refused(tmp_path: Path, monkeypatch: pytest.
     with pytest.raises(StudyError, match="another study"):
         list(Journal(journal.path, {"study": "that"}).read())
     monkeypatch.setattr(journals, "origin", lambda: "corrected")
-    with pytest.raises(StudyError, match="sources or libraries that make the numbers"):
+    with pytest.raises(StudyError, match="sources or numerical libraries"):
         list(journal.read())
 
 

@@ -10,7 +10,7 @@ from strategies import paper_quarter_car
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, free
 from inerter.optimisation.local import trust_region
-from inerter.work.progress import ProgressStep, heard
+from inerter.work.progress import ProgressStep, receiving_steps
 
 J1 = RideComfort(Road(roughness=5e-7, speed=25.0))
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
@@ -117,7 +117,7 @@ class Steps(list):
 @pytest.mark.parametrize("size", [1, 3])
 def test_a_costly_search_counts_each_evaluation_once(size):
     bowl, steps = Bowl(), Steps()
-    with heard(steps):
+    with receiving_steps(steps):
         found = trust_region(bowl, np.full(size, 2.0), np.full(size, 1.0), np.full(size, 10.0))
     np.testing.assert_allclose(found.point, 3.0, rtol=1e-2)
     assert [step.done for step in steps] == list(range(1, bowl.asked + 1))

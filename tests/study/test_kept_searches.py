@@ -102,4 +102,4 @@ def test_rows_that_were_altered_are_refused(tmp_path: Path, capsys: pytest.Captu
     digit = lines[at : at + 1]
     journal.write_bytes(lines[:at] + (b"1" if digit != b"1" else b"2") + lines[at + 1 :])
     assert call(["run", str(path), "-o", str(out), "--resume"]) == 2
-    assert "this line is not the one that was written here" in capsys.readouterr().err
+    assert "modified line" in capsys.readouterr().err

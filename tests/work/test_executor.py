@@ -88,7 +88,7 @@ def test_what_a_study_keeps_is_told_when_its_executor_has_ended(tmp_path: Path) 
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     study, threads = it.load_study(tmp_path / "study.toml"), ThreadPoolExecutor(1)
     threads.shutdown()
-    with pytest.raises(WorkError, match=r"executor .* has ended, .* is kept; continue with --resume\.$"):
+    with pytest.raises(WorkError, match=r"executor has ended, .* are kept; continue with --resume\.$"):
         it.run_study(study, tmp_path / "out", executor=threads)
     assert it.run_study(study, tmp_path / "out", resume=True).computed == 4
 

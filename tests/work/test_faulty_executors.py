@@ -18,7 +18,7 @@ import inerter as it
 from inerter.cli import cluster as of_command
 from inerter.cli.main import call
 from inerter.errors import DesignError, InerterError, WorkError
-from inerter.work.pieces import Piece, Worked
+from inerter.work.pieces import ChunkResult, Piece
 from inerter.work.pool import Pool
 from inerter.work.running import mapped, running_on
 
@@ -42,7 +42,7 @@ class Faulty(Executor):
         future: Future[Any] = Future()
         try:
             found = self.fault(self, call, *args) if self.when(self.calls) else call(*args)
-            if isinstance(found, Worked) and found.piece == args[1].number:
+            if isinstance(found, ChunkResult) and found.piece == args[1].number:
                 self.before = found
             future.set_result(found)
         except Exception as error:
@@ -154,7 +154,7 @@ def test_a_run_ends_right_or_with_a_sentence_and_nothing_is_lost(
     executor, out = Faulty(fault, when), tmp_path / "out"
     found, error = ended(lambda: it.run_study(study, out, executor=executor))
     if found is None:
-        assert re.fullmatch(r"[^\n]{20,600}\. What was computed is kept; continue with --resume\.", str(error))
+        assert re.fullmatch(r"[^\n]{20,600}\. Completed results are kept; continue with --resume\.", str(error))
         assert fault.__name__ in NEVER_MENDED or (not when(1) and (when(3) or fault is relabelled))
         again = it.run_study(study, out, resume=True)
         assert again.computed < 12  # at least the first piece is kept
@@ -236,7 +236,7 @@ def test_a_scheduler_that_ends_while_a_run_connects_is_told(
     error: Exception, call_that_fails: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: Any
 ) -> None:
     distributed = pytest.importorskip("distributed")
-    from inerter.work.cluster import told  # noqa: PLC0415
+    from inerter.work.cluster import process_versions  # noqa: PLC0415
 
     class Client(distributed.Client):  # type: ignore[misc,name-defined]
         """Of a scheduler with one worker, which ends at one of the calls."""
@@ -272,11 +272,11 @@ def test_a_scheduler_that_ends_while_a_run_connects_is_told(
 
         def run_on_scheduler(self, *args: object, **settings: object) -> object:
             self._reached("run_on_scheduler")
-            return told()
+            return process_versions()
 
         def run(self, *args: object, **settings: object) -> dict[str, object]:
             self._reached("run")
-            return {"tcp://1": told()}
+            return {"tcp://1": process_versions()}
 
         def scheduler_info(self, *args: object, **settings: object) -> dict[str, object]:
             self._reached("scheduler_info")

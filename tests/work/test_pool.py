@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 from inerter.errors import WorkError
 from inerter.work import cluster
-from inerter.work.pieces import WORTH, Cutter, Worked
+from inerter.work.pieces import WORTH, ChunkResult, Cutter
 from inerter.work.pool import KILLS, Pool, _Start, pooled
 from inerter.work.processes import Processes, is_started
 from inerter.work.running import mapped, running_on
@@ -55,13 +55,13 @@ def test_a_result_whose_process_ended_just_after_it_is_asked_for_again() -> None
     class Lost:
         status = "lost"
 
-        async def _result(self, raiseit: bool) -> Worked[int]:
-            return Worked((1,), 0.0, "")
+        async def _result(self, raiseit: bool) -> ChunkResult[int]:
+            return ChunkResult((1,), 0.0, "")
 
     async def cascade() -> None:
         await cfexecutor._cascade_future(Lost(), future)
 
-    future: Future[Worked[int]] = Future()
+    future: Future[ChunkResult[int]] = Future()
     asyncio.run(cascade())
     error = future.exception()
     assert isinstance(error, TypeError)
@@ -158,14 +158,14 @@ def test_any_executor_works_and_goes_on_afterwards() -> None:
 def test_an_executor_that_has_ended_is_told() -> None:
     threads = ThreadPoolExecutor(1)
     threads.shutdown()
-    with Pool(executor=threads) as pool, pytest.raises(WorkError, match=r"executor .* has ended"):
+    with Pool(executor=threads) as pool, pytest.raises(WorkError, match=r"executor has ended"):
         list(pool.spread(abs, [1]))
 
 
 class Elsewhere(Executor):
     """Where results are altered on the way."""
 
-    def __init__(self, alter: Callable[[Worked[object]], Worked[object]]) -> None:
+    def __init__(self, alter: Callable[[ChunkResult[object]], ChunkResult[object]]) -> None:
         self.alter = alter
 
     def submit(self, call: Callable[..., object], /, *args: object, **keywords: object) -> Future[object]:
@@ -186,10 +186,10 @@ def test_numbers_of_another_version_are_not_taken() -> None:
 
 
 def test_a_process_without_the_package_is_told() -> None:
-    def fail(found: object) -> Worked[object]:
+    def fail(found: object) -> ChunkResult[object]:
         raise ModuleNotFoundError("No module named 'inerter'", name="inerter")
 
-    with Pool(executor=Elsewhere(fail)) as pool, pytest.raises(WorkError, match=r"cannot load .*No module named"):
+    with Pool(executor=Elsewhere(fail)) as pool, pytest.raises(WorkError, match=r"cannot import .*No module named"):
         list(pool.spread(abs, [1]))
 
 
@@ -286,7 +286,7 @@ def test_processes_have_started_when_one_has_unless_all_have_ended():
     assert is_started([broken, done])
     assert not is_started([broken, waiting])
     assert not is_started([waiting])
-    with pytest.raises(WorkError, match="no process can be started"):
+    with pytest.raises(WorkError, match="worker processes cannot be started"):
         is_started([broken, broken])
 
 

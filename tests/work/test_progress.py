@@ -26,7 +26,7 @@ KEEP = f"{KEPT}.keep({KEPT}.Kept('a case', 2, [['mark', 1.0]]))"
 
 
 @contextmanager
-def heard(clock: Callable[[], float] = time.monotonic) -> Iterator[list[tuple[float, it.ProgressStep]]]:
+def receiving_steps(clock: Callable[[], float] = time.monotonic) -> Iterator[list[tuple[float, it.ProgressStep]]]:
     """When each step came, by the clock or by the CPU, with the beginning and the end of the block."""
     steps: list[tuple[float, it.ProgressStep]] = [(clock(), it.ProgressStep("begin"))]
     with it.progress(lambda step: steps.append((clock(), step))):
@@ -59,14 +59,14 @@ WORK: dict[str, Callable[[], object]] = {
 @pytest.mark.parametrize("work", WORK.values(), ids=WORK)
 def test_no_kind_of_work_is_silent(work: Callable[[], object]) -> None:
     """By the time that the process works: on a machine with much else to do seconds go by without it."""
-    with heard(time.process_time) as steps:
+    with receiving_steps(time.process_time) as steps:
         work()
     assert len(steps) > 3
     assert largest_gap(steps) < SILENCE
 
 
 def test_nor_is_work_that_waits() -> None:
-    with heard() as steps:
+    with receiving_steps() as steps:
         time.sleep(3.0)
     assert len(steps) >= 4
     assert largest_gap(steps) < 3.0
@@ -85,7 +85,7 @@ def slowly(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
 
 def test_progress_moves_within_a_search(monkeypatch: pytest.MonkeyPatch) -> None:
     slowly(monkeypatch, 0.02)
-    with heard() as steps:
+    with receiving_steps() as steps:
         found = it.optimise(car("b"), COMFORT, it.Norm(), subject_to=[LOAD], starts=4)
     inside = [step for _, step in steps if step.what == "starts"]
     assert {step.done for step in inside} >= {0, 1, 2, 3}
@@ -153,7 +153,7 @@ def test_compiling_is_told_with_a_warning_where_nobody_listens(
 def test_own_processes_pass_on_what_they_tell_and_keep() -> None:
     rows: list[kept.Kept] = []
     items = [REPORT, KEEP, "__import__('time').sleep(1.0)"] * 2
-    with heard() as steps, kept.kept_by(rows.append), Pool(2) as pool:
+    with receiving_steps() as steps, kept.kept_by(rows.append), Pool(2) as pool:
         pool.begin(int)
         list(pool.spread(eval, items))
     assert next(step for _, step in steps if step.what == "rows").best == 1.5

@@ -1,1 +1,1 @@
-"""Running pieces of work, and what is kept of them, whatever they compute."""
+"""Execution of work in chunks, with journals of results, independent of their content."""

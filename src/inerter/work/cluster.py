@@ -1,4 +1,4 @@
-"""What is particular to executors that others have made, above all those of dask.distributed."""
+"""Support for external executors, in particular those of dask.distributed."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 INSTALL = "Install the same versions in all places."
 _LOST = "the scheduler has ended, or the connection to it was lost."
-_FRESH = 2.0  # seconds for which a number of workers is taken as it was
-_FIRST = 60.0  # seconds within which the first worker must be there
+_FRESH = 2.0  # seconds for which a number of workers is cached
+_FIRST = 60.0  # timeout of the first worker [s]
 _counted: WeakKeyDictionary[Executor, tuple[float, int]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True)
 class Worker:
-    """What a worker of a cluster is."""
+    """A worker of a cluster: its host and number of threads."""
 
     host: str
     threads: int
@@ -39,22 +39,22 @@ def is_one(executor: Executor) -> bool:
 
 
 def slots(executor: Executor) -> int:
-    """How many calls an executor makes at the same time, as far as it tells."""
+    """Number of concurrent calls of an executor, as far as known."""
     client = _client(executor)
     if client is None:
-        told = getattr(executor, "num_workers", None) or getattr(executor, "_max_workers", None)
-        return int(told or os.cpu_count() or 1)
+        workers = getattr(executor, "num_workers", None) or getattr(executor, "_max_workers", None)
+        return int(workers or os.cpu_count() or 1)
     when, count = _counted.get(executor, (-_FRESH, 0))
     if time.monotonic() - when >= _FRESH:
-        with _reached():
+        with _scheduler_errors():
             count = sum(client.nthreads().values())
         _counted[executor] = time.monotonic(), count
     return count
 
 
 @contextmanager
-def _reached() -> Iterator[None]:
-    """A scheduler that cannot be reached in this block has ended: what its client raises then are errors of any kind.
+def _scheduler_errors() -> Iterator[None]:
+    """Reraise any error of the client in this block as loss of the scheduler.
 
     Raises `WorkError`.
     """
@@ -67,7 +67,7 @@ def _reached() -> Iterator[None]:
 
 
 def deaths(error: Exception) -> int:
-    """How many processes have ended on a call that failed with this; 0 if it failed by itself."""
+    """Number of processes that ended during a call that failed with this error; 0 for an error of the call."""
     if isinstance(error, BrokenExecutor):
         return 1
     killed = getattr(sys.modules.get("distributed"), "KilledWorker", None)
@@ -77,9 +77,9 @@ def deaths(error: Exception) -> int:
 
 
 def _raised_in(error: Exception) -> str:
-    """The module that raised an error.
+    """Name of the module that raised an error.
 
-    Dask's executor takes the result of a process that ended just after it for an error, and fails to take it apart.
+    The executor of Dask treats the result of a process that ended just after it as an error, and fails to unpack it.
     """
     frame = error.__traceback__
     while frame is not None and frame.tb_next is not None:
@@ -88,11 +88,11 @@ def _raised_in(error: Exception) -> str:
 
 
 def check(executor: Executor) -> None:
-    """Raises `WorkError` if a cluster has no workers, or its processes would not give the numbers of this one."""
+    """Raise `WorkError` if a cluster has no workers, or other versions than this process."""
     client = _client(executor)
     if client is None:
         return
-    with _reached():
+    with _scheduler_errors():
         if not client.nthreads():
             _wait_for_workers(client)
     for place, answer in _answers(client):
@@ -100,47 +100,47 @@ def check(executor: Executor) -> None:
             raise WorkError(f"{place} cannot load this package ({answer}). {INSTALL}")
         version, numerics = answer
         if version != VERSION:
-            raise WorkError(f"{place} has inerter {version}, and this is {VERSION}. {INSTALL}")
+            raise WorkError(f"{place} has inerter {version}, but this process has {VERSION}. {INSTALL}")
         if numerics != origin():
             raise WorkError(
-                f"{place} has other sources of inerter {version}, or other libraries that make the numbers (numpy, "
-                f"scipy, numba). {INSTALL}"
+                f"{place} has other sources of inerter {version}, or other numerical libraries (numpy, scipy, numba). "
+                f"{INSTALL}"
             )
 
 
 def _wait_for_workers(client: Client) -> None:
-    """Raises `WorkError` if none comes."""
+    """Wait for the first worker; raises `WorkError` after a timeout."""
     try:
         client.wait_for_workers(1, timeout=_FIRST)
     except TimeoutError:
         raise WorkError(
-            f"the scheduler has no workers, and none came within {_FIRST:.0f} s. Start some, such as: "
+            f"the scheduler has no workers, and none connected within {_FIRST:.0f} s. Start some, such as: "
             f"dask worker {client.scheduler_info()['address']} --nthreads 1"
         ) from None
 
 
 def _answers(client: Client) -> Iterator[tuple[str, Any]]:
-    """What the scheduler, which unpacks work before it passes it on, and the workers say of themselves, or an error."""
+    """Versions or errors of the scheduler, which unpickles tasks too, and of the workers."""
     try:
-        answer = client.run_on_scheduler(told)
+        answer = client.run_on_scheduler(process_versions)
     except Exception as error:  # whatever kept it from loading this, if it is there
-        with _reached():
+        with _scheduler_errors():
             client.nthreads()
         answer = error
     yield "the scheduler", answer
-    with _reached():
-        answers = client.run(told, on_error="return")
+    with _scheduler_errors():
+        answers = client.run(process_versions, on_error="return")
     for address, answer in answers.items():
         yield f"the worker {address}", answer
 
 
-def told() -> tuple[str, str]:
-    """What a process says of itself: its version of this package, and what makes its numbers."""
+def process_versions() -> tuple[str, str]:
+    """Version of this package, and hash of the sources and libraries of this process."""
     return VERSION, origin()
 
 
 def on_each_node(executor: Executor, function: Callable[..., object], *args: object) -> bool:
-    """Call a function once on each machine of a cluster, and wait; False for an executor that is none.
+    """Call a function once on each machine of a cluster, and wait; False for another executor.
 
     Raises `WorkError` if it cannot be called there.
     """
@@ -152,19 +152,19 @@ def on_each_node(executor: Executor, function: Callable[..., object], *args: obj
     try:
         client.gather([client.submit(function, *args, workers=[worker], **at) for worker in first.values()])
     except Exception as error:  # workers that end, a scheduler that is gone, whatever they lack
-        raise WorkError(f"the machines of the cluster could not be made ready ({error}).") from None
+        raise WorkError(f"worker initialisation failed ({error}).") from None
     return True
 
 
 def places(executor: Executor) -> tuple[Worker, ...]:
-    """The workers of a cluster; none for another executor."""
+    """Workers of a cluster; empty for another executor."""
     client = _client(executor)
     found = _workers(client).values() if client is not None else ()
     return tuple(Worker(info["host"], info["nthreads"]) for info in found)
 
 
 def _workers(client: Client) -> dict[str, dict[str, Any]]:
-    with _reached():
+    with _scheduler_errors():
         return dict(client.scheduler_info(n_workers=-1)["workers"])
 
 

@@ -1,4 +1,4 @@
-"""Steps and kept rows of our own processes on their way to the one that waits for them."""
+"""Forwarding of progress steps and kept rows from worker processes to the main process."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 from inerter.work.kept import Kept, keep, kept_by
-from inerter.work.progress import ProgressStep, heard, listener_here
+from inerter.work.progress import ProgressStep, listener_here, receiving_steps
 
 _OFTEN = 0.25  # seconds between two steps of one process
 _SEND: list[Callable[[object], object]] = []  # of a process of ours
 
 
 def forward_to(send: Callable[[object], object]) -> None:
-    """Have all that this process tells while it works sent to the one that started it."""
+    """Send all messages of this worker process to its parent."""
     _SEND[:] = [send]
 
 
 class _Sender:
-    """Sends a step now and then."""
+    """Sender of steps at a limited rate."""
 
     def __init__(self, send: Callable[[object], object]) -> None:
         self.send, self.step, self.evaluations = send, ProgressStep(""), 0
@@ -47,16 +47,16 @@ def _send(message: object) -> None:
 
 @contextmanager
 def forwarding() -> Iterator[None]:
-    """What work in this block tells is sent, if this is a process of ours."""
+    """Forward messages of the work in this block, if this is a worker process."""
     if not _SEND:
         yield
         return
-    with heard(_Sender(_send)), kept_by(_send):
+    with receiving_steps(_Sender(_send)), kept_by(_send):
         yield
 
 
 def receive(message: object) -> None:
-    """Tell what another process has told to whoever listens here, and keep what it has kept."""
+    """Pass a message of a worker process to the listener, or keep its rows."""
     if isinstance(message, Kept):
         keep(message)
         return

@@ -1,7 +1,7 @@
-"""A journal: one line for each piece of work that is finished, safe against Ctrl-C, kill and power loss.
+"""A journal: one line for each completed task, safe against Ctrl-C, kill and power loss.
 
-Every line ends in a check sum of itself and of all lines before it, so that a line that was altered, doubled, left out
-or brought from elsewhere is told from one that was written here. The first line says what the others rest on.
+Every line ends in a checksum of itself and of all lines before it, so that altered, duplicated, missing or foreign
+lines are detected. The first line identifies the work, the version and the sources.
 """
 
 from __future__ import annotations
@@ -31,51 +31,47 @@ _AWAY = "Move it away, or choose another folder with -o."
 _WORDS = {
     "format": "another format",
     "inerter": "another version of inerter",
-    "numbers": "other sources or libraries that make the numbers",
+    "numbers": "other sources or numerical libraries",
 }
 Entry = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Journal:
-    """Where finished work is written down, and `about`: what must be the same for it to count."""
+    """A file of completed work, and `about`: the properties that must agree for reuse."""
 
     path: Path
     about: Mapping[str, str]
 
     def read(self) -> Iterator[Entry]:
-        """All entries, one by one; none if there is no journal yet. A last line that was cut short is left out.
+        """Entries, one by one; empty without a journal. A truncated last line is ignored.
 
-        Raises `StudyError` if a line is not as it was written, or the journal belongs to other work.
+        Raises `StudyError` for a modified line, or a journal of other work.
         """
         wanted = self._header()
         for number, entry in enumerate(entries_of(whole_lines(self.path)), 1):
             if entry is None:
-                what = (
-                    "this is no journal, or one of an older version"
-                    if number == 1
-                    else "this line is not the one that was written here"
-                )
-                raise StudyError(f"{self.path}, line {number}: {what}, so none of it is used. {_AWAY}")
+                what = "not a journal, or one of an older version" if number == 1 else "modified line"
+                raise StudyError(f"{self.path}, line {number}: {what}; the journal cannot be used. {_AWAY}")
             if number > 1:
                 yield entry
             elif entry != wanted:
                 raise StudyError(
-                    f"{self.path.parent}: holds the results of another study or version "
+                    f"{self.path.parent}: contains results of another study or version "
                     f"({_differences(entry, wanted)}). Start again with --force, or choose another folder with -o."
                 )
 
     @contextmanager
     def appending(self, again: bool = False) -> Iterator[Callable[..., None]]:
-        """What appends entries, a line each, and waits until all are on disk.
+        """Open the journal and yield a function that appends entries, a line each, and waits until they are on disk.
 
-        The journal begins afresh, or goes on behind its last whole line with `again`, which is for one that was read.
+        The journal is started new, or continued after its last complete line with `again`, after it was read.
         """
         end, check = _end(self.path) if again else (0, "")
         if end:
             _cut(self.path, end)
         else:
-            line, check = _written(self._header(), "")
+            line, check = _format_line(self._header(), "")
             with whole(self.path) as draft:
                 draft.write_bytes(line)
         with self.path.open("ab", buffering=0) as journal:
@@ -84,23 +80,23 @@ class Journal:
                 nonlocal check
                 lines = bytearray()
                 for entry in entries:
-                    line, check = _written(entry, check)
+                    line, check = _format_line(entry, check)
                     lines += line
-                while lines:  # a disk that is nearly full takes a part
+                while lines:  # a nearly full disk may write only part
                     del lines[: journal.write(lines)]
                 os.fsync(journal.fileno())
 
             try:
                 yield append
             except WorkError as error:
-                raise WorkError(f"{error} What was computed is kept; continue with --resume.") from error.__cause__
+                raise WorkError(f"{error} Completed results are kept; continue with --resume.") from error.__cause__
 
     def _header(self) -> Entry:
         return {"format": FORMAT, "inerter": VERSION, **self.about, "numbers": origin()}
 
 
 def is_intact(path: Path) -> bool:
-    """Whether every whole line of the file is as a journal wrote it."""
+    """Whether every complete line of the file is unmodified."""
     try:
         return None not in entries_of(whole_lines(path))
     except OSError:
@@ -108,7 +104,7 @@ def is_intact(path: Path) -> bool:
 
 
 def whole_lines(path: Path) -> Iterator[bytes]:
-    """The lines that have an end."""
+    """Complete lines of the file, without line ends."""
     with path.open("rb") if path.exists() else nullcontext(()) as lines:
         for line in lines:
             if line.endswith(b"\n"):
@@ -116,7 +112,7 @@ def whole_lines(path: Path) -> Iterator[bytes]:
 
 
 def entries_of(lines: Iterable[bytes]) -> Iterator[Entry | None]:
-    """What the lines say; None for the first that is not as it was written, which is the last."""
+    """Entries of the lines; None for the first modified one, after which reading ends."""
     check = ""
     for line in lines:
         found = _LINE.fullmatch(line)
@@ -132,7 +128,7 @@ def entries_of(lines: Iterable[bytes]) -> Iterator[Entry | None]:
 
 
 def _end(path: Path) -> tuple[int, str]:
-    """Where the last whole line of a journal that was read ends, and its check sum; (0, "") if there is none."""
+    """End position of the last complete line of a journal, and its checksum; (0, "") if there is none."""
     if not path.exists() or not path.stat().st_size:
         return 0, ""
     with path.open("rb") as stream, mmap(stream.fileno(), 0, access=ACCESS_READ) as content:
@@ -142,7 +138,7 @@ def _end(path: Path) -> tuple[int, str]:
 
 
 def _cut(path: Path, end: int) -> None:
-    """Leave out what is behind `end`. A file that has another name too stays as it is under that."""
+    """Truncate the file at `end`. Other hard links to it keep their content."""
     if path.stat().st_nlink == 1:
         os.truncate(path, end)
         return
@@ -151,7 +147,7 @@ def _cut(path: Path, end: int) -> None:
         stream.truncate(end)
 
 
-def _written(entry: Entry, before: str) -> tuple[bytes, str]:
+def _format_line(entry: Entry, before: str) -> tuple[bytes, str]:
     body = json.dumps(entry).encode()
     check = _check(body, before)
     return body[:-1] + f', "check": "{check}"}}\n'.encode(), check

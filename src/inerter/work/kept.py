@@ -1,7 +1,7 @@
-"""Results of parts of one long piece of work, kept while it goes on, so that it can go on from them.
+"""Intermediate results of one long task, kept so that it can be resumed.
 
-The parts are numbered in the order in which the work comes to them, which is always the same; each is told by what it
-begins with, so that rows of other work are not taken for its own.
+The parts are numbered in their fixed order; each is identified by a hash of its input, so that rows of other work are
+not used.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from typing import Any
 
-Row = list[Any]  # of what the part begins with a hash, then numbers
-_SELDOM = 1.0  # seconds between two writings: short work writes nothing
+Row = list[Any]  # hash of the input of the part, then numbers
+_SELDOM = 1.0  # seconds between two writes: short tasks write nothing
 
 
 @dataclass(frozen=True)
 class Kept:
-    """Rows of the work of that name, the first of which has the number `first`."""
+    """Rows of the task of that name, of which the first has the number `first`."""
 
     name: str
     first: int
     rows: list[Row]
 
     def to_json(self) -> dict[str, Any]:
-        """A plain dictionary; `Kept(**...)` undoes it."""
+        """Dictionary for JSON, the inverse of `Kept(**...)`."""
         return dict(vars(self))
 
 
@@ -42,7 +42,7 @@ class _Memory:
     written: float = field(default_factory=time.monotonic)
 
     def row(self, begin: bytes, compute: Callable[[], Sequence[float]]) -> Sequence[float]:
-        """The numbers of the next part, computed if they are not known."""
+        """Numbers of the next part, computed if unknown."""
         mark, number = hashlib.sha256(begin).hexdigest()[:16], self.number
         self.number += 1
         if number < len(self.known) and self.known[number][0] == mark:
@@ -60,7 +60,7 @@ class _Memory:
         return found
 
     def write(self) -> None:
-        """Hand over what is new."""
+        """Hand over new rows."""
         fresh, self.fresh, self.written = self.fresh, [], time.monotonic()
         if fresh:
             self.keep(Kept(self.name, self.first, fresh))
@@ -72,7 +72,7 @@ _KEEP: ContextVar[Callable[[Kept], object] | None] = ContextVar("keep", default=
 
 @contextmanager
 def kept_by(keep: Callable[[Kept], object] | None) -> Iterator[None]:
-    """What work in this block keeps is handed to a function."""
+    """Hand rows kept by the work in this block to a function."""
     before = _KEEP.set(keep)
     try:
         yield
@@ -81,7 +81,7 @@ def kept_by(keep: Callable[[Kept], object] | None) -> Iterator[None]:
 
 
 def keep(kept: Kept) -> None:
-    """Hand over what other processes have kept."""
+    """Hand over rows kept by other processes."""
     here = _KEEP.get()
     if here is not None:
         here(kept)
@@ -89,7 +89,7 @@ def keep(kept: Kept) -> None:
 
 @contextmanager
 def resuming(name: str, known: Mapping[str, Sequence[Row]]) -> Iterator[None]:
-    """The parts of the work in this block are kept under a name, and those that are known are not computed again."""
+    """Keep the parts of the work in this block under a name, and reuse known ones."""
     here = _KEEP.get()
     if here is None and name not in known:
         yield
@@ -102,13 +102,13 @@ def resuming(name: str, known: Mapping[str, Sequence[Row]]) -> Iterator[None]:
 
 
 def resumed(begin: bytes, compute: Callable[[], Sequence[float]]) -> Sequence[float]:
-    """Numbers of a part that begins with `begin`: those that were kept, or computed and kept."""
+    """Numbers of the part with input `begin`: kept ones, or computed and kept."""
     memory = _MEMORY.get()
     return compute() if memory is None else memory.row(begin, compute)
 
 
 def joined(several: Sequence[Kept]) -> list[Row]:
-    """All rows of one piece of work, as they were kept one after the other."""
+    """All rows of one task, in order."""
     rows: list[Row] = []
     for kept in several:
         if kept.first <= len(rows):

@@ -1,4 +1,4 @@
-"""What makes the numbers: this package's sources and the libraries that compute, in one place."""
+"""Fingerprint of the numerical code: sources of this package and versions of numerical libraries."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from inerter.rows import made_of_rows, plugins, sources
 
 VERSION = version("inerter")
 _COMPUTE = ("numpy", "scipy", "numba", "llvmlite")
-_TELL = {"app", "cli", "report", "figures"}  # packages that show numbers and make none, also those of a paper
+_TELL = {"app", "cli", "report", "figures"}  # packages that present numbers only, also those of a paper
 
 
 def versions() -> dict[str, str]:
-    """The versions of this package, of Python, of the libraries on which numbers depend, and of what adds rows."""
+    """Versions of this package, of Python, of the numerical libraries, and of plugins."""
     libraries = {name: version(name) for name in ("numpy", "scipy", "numba", "xarray")}
     return {"inerter": VERSION, "python": platform.python_version(), **libraries, **plugins()}
 
 
 @made_of_rows
 def origin() -> str:
-    """A hash of what makes the numbers: every source and table of the package, and of those that add rows, but those
-    that only show numbers, and the versions of the libraries that compute.
+    """Hash of the numerical code: sources and tables of package and plugins, and versions of numerical libraries.
 
-    Sources count as they are, with their comments: a change that does no harm costs a computation, one that is missed
-    costs a wrong number.
+    Packages of presentation are excluded.
+
+    Sources are hashed with their comments: a harmless change costs a computation, a missed one a wrong number.
     """
     known = {**{name: version(name) for name in _COMPUTE}, **plugins()}
     digest = hashlib.sha256("".join(f"{name} {number}\n" for name, number in known.items()).encode())
@@ -38,7 +38,7 @@ def origin() -> str:
 
 
 def _files(root: Path) -> Iterator[tuple[str, Path]]:
-    """The files below a folder, or the file, with their places in it."""
+    """Files below a folder, or the file itself, with their relative paths."""
     if root.is_file():
         yield root.name, root
     for path in sorted(root.rglob("*")):

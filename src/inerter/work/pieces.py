@@ -1,7 +1,7 @@
-"""Pieces of work: as many items as are worth handing out at once, and what comes back of them.
+"""Chunks of tasks that are submitted together, and their results.
 
-An item is plain data, and so is its result, which depends on nothing else: a piece may be worked on anywhere and in any
-order, by a function that can be named.
+An item is plain data, and so is its result, which depends on nothing else: a piece can be run anywhere and in any
+order, by an importable function.
 """
 
 from __future__ import annotations
@@ -22,65 +22,65 @@ from inerter.work.origin import origin
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-THREADS: ContextVar[int | None] = ContextVar("threads", default=None)  # that work here may use; None: as many as cores
-WORTH = 0.5  # seconds that a piece takes: handing it out takes a few milliseconds at most
+THREADS: ContextVar[int | None] = ContextVar("threads", default=None)  # allowed threads; None: the number of cores
+WORTH = 0.5  # target duration of a piece [s]: its submission takes a few milliseconds at most
 _MOST = 2000  # items of a piece
-_GROWTH = 8  # times as many items as in pieces that are known already
+_GROWTH = 8  # largest ratio of items to those of completed pieces
 _PROCESS, _NUMBERS = token_hex(8), count()
 
 
 @dataclass(frozen=True)
 class Piece(Generic[Item]):
-    """Some items, and how many processes have ended while they held them."""
+    """A chunk of items, with the number of processes that ended while running it."""
 
-    number: str  # of no other piece of any run: results are of this one, and equal calls are not taken for one
+    number: str  # unique identifier over all runs, also for equal calls
     items: tuple[Item, ...]
-    origin: str  # what is to make its numbers
+    origin: str  # required fingerprint of the numerical code
     deaths: int = 0
-    alone: bool = False  # whether nothing else is under way with it
-    faults: int = 0  # how often something else came back than its results
+    alone: bool = False  # whether it runs without any other piece
+    faults: int = 0  # number of invalid results
 
 
 @dataclass(frozen=True)
-class Worked(Generic[Result]):
-    """Results of a piece, how long they took [s], what makes the numbers, and the error that ended the work early."""
+class ChunkResult(Generic[Result]):
+    """Results of a piece, duration [s], fingerprint of the numerical code, and the error that ended it early."""
 
     results: tuple[Result, ...]
     seconds: float
     origin: str
-    piece: str = ""  # the number of the piece
+    piece: str = ""  # identifier of the piece
     error: Exception | None = None
 
 
-def worked(work: Callable[[Item], Result], piece: Piece[Item]) -> Worked[Result]:
-    """Work on all items of a piece, in the process that is to do it; on none if that would make other numbers."""
+def run_chunk(work: Callable[[Item], Result], piece: Piece[Item]) -> ChunkResult[Result]:
+    """Run all items of a piece in this process; none if the numerical code differs."""
     if piece.origin != origin():
-        return Worked((), 0.0, origin())
+        return ChunkResult((), 0.0, origin())
     begin = time.perf_counter()
-    before = THREADS.set(1)  # the other cores work on other pieces
+    before = THREADS.set(1)  # the other cores run other pieces
     results: list[Result] = []
     failed: Exception | None = None
     try:
         with forwarding():
             for item in piece.items:
                 results.append(work(item))
-    except Exception as error:  # told from errors of whoever sends it
+    except Exception as error:  # distinguished from errors of the executor
         if not isinstance(error, InerterError):
             error.add_note(traceback.format_exc())
         failed = error
     finally:
         THREADS.reset(before)
-    return Worked(tuple(results), time.perf_counter() - begin, origin(), piece.number, failed)
+    return ChunkResult(tuple(results), time.perf_counter() - begin, origin(), piece.number, failed)
 
 
-def loaded(work: Callable[..., object]) -> None:
-    """What a process is called with before it has a piece: to take `work` it loads all that it needs."""
+def import_work(work: Callable[..., object]) -> None:
+    """No-op called in a new process: unpickling `work` imports all its modules."""
 
 
 class Cutter(Generic[Item]):
-    """Cuts items into pieces that are worth handing out, taking as many items as the last ones let expect.
+    """Divide items into pieces of suitable duration, estimated from completed ones.
 
-    Towards the end, if it is known how many items are `left`, pieces become smaller: all processes end together.
+    Towards the end, if the number `left` is known, pieces become smaller, so that all processes end together.
     """
 
     def __init__(self, items: Iterator[Item], left: int | None) -> None:
@@ -91,13 +91,13 @@ class Cutter(Generic[Item]):
         self._largest = 1
 
     def learn(self, piece: Piece[Item], seconds: float) -> None:
-        """Take note of how long a piece took."""
+        """Record the duration of a piece."""
         pace = max(seconds / len(piece.items), 1e-9)
         self._pace = pace if self._pace is None else 0.5 * (self._pace + pace)
         self._largest = max(self._largest, _GROWTH * len(piece.items))
 
     def take(self, slots: int) -> Piece[Item] | None:
-        """The next piece for one of so many processes; None if there is none to hand out beside others."""
+        """The next piece for one of `slots` processes; None if there is none that may run with others."""
         if self._again and self._again[0].deaths < 2:
             return replace(self._again.popleft(), number=_number())
         size = 1 if self._pace is None else min(int(WORTH / self._pace), self._largest, _MOST)
@@ -109,18 +109,18 @@ class Cutter(Generic[Item]):
         return Piece(_number(), items, origin()) if items else None
 
     def take_alone(self) -> Piece[Item] | None:
-        """A piece that came back twice, to be worked on while nothing else is: who is to blame is certain then."""
+        """A piece on which two processes ended, to be run without others, so that the cause is certain."""
         if not self._again:
             return None
         return replace(self._again.popleft(), number=_number(), alone=True)
 
     def back(self, piece: Piece[Item], deaths: int) -> None:
-        """Have the items of a piece handed out again, each by itself, after so many processes have ended on it."""
+        """Resubmit the items of a piece separately after `deaths` processes have ended on it."""
         pieces = [Piece("", (item,), piece.origin, piece.deaths + deaths) for item in piece.items]
         self._again = deque(sorted([*self._again, *pieces], key=lambda piece: piece.deaths))
 
     def repeat(self, piece: Piece[Item]) -> None:
-        """Have a piece handed out again of which something else came back than its results."""
+        """Resubmit a piece after an invalid result."""
         self._again.appendleft(replace(piece, faults=piece.faults + 1))
 
 

@@ -1,7 +1,6 @@
-"""One way to run: pieces of work in this process, in processes of our own, or on any executor.
+"""Execution of pieces of work in this process, in worker processes, or on any executor.
 
-An executor is what `concurrent.futures` says it is. What it is called to do can be pickled: a function that can be
-named, and plain data.
+An executor is one of `concurrent.futures`. Its calls can be pickled: an importable function, and plain data.
 """
 
 from __future__ import annotations
@@ -19,25 +18,24 @@ from typing import Any
 from inerter.errors import WorkError
 from inerter.work import cluster
 from inerter.work.forwarding import receive
-from inerter.work.pieces import Cutter, Item, Piece, Result, loaded, worked
+from inerter.work.pieces import Cutter, Item, Piece, Result, import_work, run_chunk
 from inerter.work.processes import Processes, is_started
-from inerter.work.returns import Returned, check_executor, returned, submitted
+from inerter.work.returns import ExecutorResult, check_executor, check_result, submit_call
 
 KILLS = 3  # processes that an item may end
-_FAULTS = 3  # times that an executor may give something else back than the results of a piece
-_SHORT = 3.0  # seconds: to start processes takes about as long
-_TOLD = 0.5  # seconds after which the pace of the first items tells how long all will take
-_LOOK = 0.25  # seconds between two looks at what own processes tell
-_AT_ONCE = 0.1  # seconds for which results of this process are kept back, to come together
-_AHEAD = 2  # pieces for each process of ours: the one that it works on, and the next
-_AFAR = 8  # for each of another executor, where pieces and results may be on their way for as long as a piece takes
+_FAULTS = 3  # invalid results of an executor per piece
+_SHORT = 3.0  # seconds: typical start time of processes
+_TOLD = 0.5  # seconds after which the total duration is estimated from the first items
+_LOOK = 0.25  # seconds between polls of messages from worker processes
+_AT_ONCE = 0.1  # seconds for which results of this process are collected
+_AHEAD = 2  # pieces for each worker process: the running one, and the next
+_AFAR = 8  # for each of another executor, where the latency may be as long as a piece
 
 
 class Pool:
-    """Where work is done, for one list of items after another: here, in up to `jobs` processes, or by `executor`.
+    """Executor of lists of items: in this process, in up to `jobs` worker processes, or on `executor`.
 
-    Processes are started when work takes long enough, and end with this. An `executor` that is given goes on
-    afterwards.
+    Processes are started when the work takes long enough, and end with the pool. A given `executor` is not shut down.
     """
 
     def __init__(self, jobs: int = 1, executor: Executor | None = None) -> None:
@@ -52,32 +50,32 @@ class Pool:
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        if self._own is not None:  # Ctrl-C: what is under way is not waited for
+        if self._own is not None:  # Ctrl-C: do not wait for running pieces
             self._own.shutdown(wait=kind is None, cancel_futures=kind is not None)
 
     @property
     def is_cluster(self) -> bool:
-        """Whether the work is done by the workers of a cluster."""
+        """Whether the work is executed by the workers of a cluster."""
         return self._given is not None and cluster.is_one(self._given)
 
     @property
     def slots(self) -> int:
-        """How many pieces can be worked on at the same time, as far as the executor tells."""
+        """Number of concurrent pieces, as far as known of the executor."""
         return self.jobs if self._given is None else cluster.slots(self._given)
 
     @contextmanager
     def of_this_machine(self) -> Iterator[Pool]:
-        """Itself if its processes are our own, else one of own processes: for work that reads or writes files."""
+        """The pool itself if local, else a local one, for work that reads or writes files."""
         with nullcontext(self) if self._given is None else Pool(os.cpu_count() or 1) as near:
             yield near
 
     def begin(self, work: Callable[[], object]) -> None:
-        """Have one of our own processes do this first, whatever comes of it."""
+        """Run a call first in one of the worker processes, ignoring its result."""
         if self._given is None and self.jobs > 1:
             self._processes().submit(work)
 
     def on_each_node(self, function: Callable[..., object], *args: object) -> bool:
-        """Call a function once on each machine of a cluster, and wait; False if there is none."""
+        """Call a function once on each machine of a cluster, and wait; False without a cluster."""
         return self._given is not None and cluster.on_each_node(self._given, function, *args)
 
     def spread(
@@ -87,7 +85,7 @@ class Pool:
         here: Callable[[Item], Result] | None = None,
         lost: Callable[[Item], Result] | None = None,
     ) -> Iterator[Result]:
-        """Results of `work` on each of `items` as they are ready; see `batches`."""
+        """Results of `work` on each of `items` as completed; see `batches`."""
         for found in self.batches(work, items, here, lost):
             yield from found
 
@@ -98,13 +96,13 @@ class Pool:
         here: Callable[[Item], Result] | None = None,
         lost: Callable[[Item], Result] | None = None,
     ) -> Iterator[list[Result]]:
-        """Results of `work` on each of `items` as they are ready, those that come together in one list.
+        """Lists of results of `work` on each of `items` as completed.
 
-        Items are taken as they are needed. Until processes are worth their start and ready, they are worked on in this
-        one, by `here` if that is another way to the same.
+        Items are consumed as needed. Until worker processes are worthwhile and ready, items are run in this process, by
+        `here` if given, an equivalent function.
 
-        A piece of work whose process ends is handed out again. If `KILLS` processes have ended on an item, its result
-        is what `lost` says. Where calls of this are abandoned, what is not begun is not begun any more.
+        A piece whose process ends is resubmitted. If `KILLS` processes have ended on an item, its result is
+        `lost(item)`. If the iterator is abandoned, pending pieces are cancelled.
 
         Raises `WorkError` if an item ends its processes and `lost` is not given, if the executor itself has ended, or
         if its processes have other sources or libraries than this one.
@@ -112,18 +110,18 @@ class Pool:
         left = len(items) if isinstance(items, Sized) else None
         waiting = iter(items)
         if self._given is None and (self.jobs == 1 or self._own is None):
-            start = _Start(partial(self._begun, work) if self.jobs > 1 else None, left)
+            start = _Start(partial(self._start_processes, work) if self.jobs > 1 else None, left)
             for found in _at_home(partial(_persistent, here or work, lost), waiting, start):
                 left = None if left is None else left - len(found)
                 yield found
         for first in waiting:  # there is more
-            yield from self._handed_out(work, Cutter(chain([first], waiting), left), lost)
+            yield from self._submit_all(work, Cutter(chain([first], waiting), left), lost)
 
-    def _begun(self, work: Callable[[Any], object]) -> list[Future[Any]]:
-        """Processes that start and load what `work` needs."""
-        return self._processes().start(loaded, work)
+    def _start_processes(self, work: Callable[[Any], object]) -> list[Future[Any]]:
+        """Start processes that import the modules of `work`."""
+        return self._processes().start(import_work, work)
 
-    def _handed_out(
+    def _submit_all(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], lost: Callable[[Item], Result] | None
     ) -> Iterator[list[Result]]:
         under_way: dict[Future[Any], Piece[Item]] = {}
@@ -137,15 +135,15 @@ class Pool:
                 error: Exception | None = None
                 for future in done:
                     try:
-                        found = returned(future, work, under_way[future])
+                        found = check_result(future, work, under_way[future])
                     except WorkError as none:
-                        found = Returned([], error=none)
+                        found = ExecutorResult([], error=none)
                     piece = under_way.pop(future)
                     if found.results:
                         yield found.results
-                    error = error or found.error or _taken(cutter, piece, found)
+                    error = error or found.error or _record_result(cutter, piece, found)
                     if piece.alone and piece.deaths + found.deaths >= KILLS:
-                        yield [_lost(piece.items[0], lost)]
+                        yield [_result_of_lost_item(piece.items[0], lost)]
                 if error is not None:  # when all that came with it is yielded
                     raise error
         finally:
@@ -153,7 +151,7 @@ class Pool:
                 future.cancel()
 
     def _receive(self) -> None:
-        """Pass on what own processes have told."""
+        """Pass on the messages of worker processes."""
         for message in self._own.told() if self._own is not None else ():
             receive(message)
 
@@ -163,9 +161,9 @@ class Pool:
         executor = self._given or self._processes()
         slots, ahead = max(self.slots, 1), _AHEAD if self._given is None else _AFAR
         while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
-            under_way[submitted(executor, worked, work, piece)] = piece
+            under_way[submit_call(executor, run_chunk, work, piece)] = piece
         if not under_way and (piece := cutter.take_alone()):
-            under_way[submitted(executor, worked, work, piece)] = piece
+            under_way[submit_call(executor, run_chunk, work, piece)] = piece
 
     def _processes(self) -> Processes:
         if self._own is None:
@@ -175,28 +173,28 @@ class Pool:
 
 @dataclass(eq=False)
 class _Start:
-    """When processes are started, while work goes on here until the first of them is ready."""
+    """Start of worker processes, while items are run here until the first of them is ready."""
 
-    begin: Callable[[], list[Future[Any]]] | None  # None: there are to be none
+    begin: Callable[[], list[Future[Any]]] | None  # None: no worker processes
     left: int | None  # items, if it is known
-    loading: float = 0.0  # seconds that the first item took, with all that it loads
+    loading: float = 0.0  # seconds of the first item, with its imports
     starting: list[Future[Any]] = field(default_factory=list)
 
     def is_over(self, done: int, seconds: float) -> bool:
-        """Whether processes are ready, which are started if work takes as long."""
+        """Whether worker processes are ready, which are started if the work takes long enough."""
         if self.starting or self.begin is None:
             return is_started(self.starting)
         if done == 1:
             self.loading = seconds
-        worked = seconds - self.loading
-        rest = worked / (done - 1) * (self.left - done) if self.left is not None and worked > _TOLD else 0.0
+        spent = seconds - self.loading
+        rest = spent / (done - 1) * (self.left - done) if self.left is not None and spent > _TOLD else 0.0
         if seconds > _SHORT or rest > 2.0 * _SHORT:
             self.starting = self.begin()
         return False
 
 
 def _at_home(work: Callable[[Item], Result], items: Iterator[Item], start: _Start) -> Iterator[list[Result]]:
-    """Results in this process, those that come within a moment together, until others are ready."""
+    """Lists of results computed in this process, until worker processes are ready."""
     first = begun = time.monotonic()
     found: list[Result] = []
     for done, item in enumerate(items, start=1):
@@ -211,11 +209,11 @@ def _at_home(work: Callable[[Item], Result], items: Iterator[Item], start: _Star
         yield found
 
 
-def _taken(cutter: Cutter[Item], piece: Piece[Item], found: Returned[Any]) -> WorkError | None:
-    """Take note of what came back of a piece; returns the error of an executor that fails again and again."""
+def _record_result(cutter: Cutter[Item], piece: Piece[Item], found: ExecutorResult[Any]) -> WorkError | None:
+    """Record the result of a piece; returns the error of an executor that fails repeatedly."""
     rest = replace(piece, items=piece.items[len(found.results) :])
     if found.fault and piece.faults + 1 >= _FAULTS:
-        return WorkError(f"the executor has failed {_FAULTS} times on one piece of work: {found.fault}.")
+        return WorkError(f"the executor has failed {_FAULTS} times on one chunk: {found.fault}.")
     if found.fault:
         cutter.repeat(piece)
     elif not found.deaths:
@@ -225,26 +223,26 @@ def _taken(cutter: Cutter[Item], piece: Piece[Item], found: Returned[Any]) -> Wo
     return None
 
 
-def _lost(item: Item, lost: Callable[[Item], Result] | None) -> Result:
+def _result_of_lost_item(item: Item, lost: Callable[[Item], Result] | None) -> Result:
     if lost is not None:
         return lost(item)
     raise WorkError(
-        f"{KILLS} processes have ended, or had no memory left, while they worked on the same piece, {str(item)[:80]}. "
-        "Fewer processes need less memory."
+        f"{KILLS} processes have ended, possibly out of memory, while running the same item, {str(item)[:80]}. Use "
+        f"fewer processes."
     )
 
 
 def _persistent(work: Callable[[Item], Result], lost: Callable[[Item], Result] | None, item: Item) -> Result:
-    """The result of work in this process, which is done again as often as elsewhere where there is no memory left."""
+    """The result of work in this process, repeated up to `KILLS` times if out of memory."""
     for _ in range(KILLS):
         with suppress(MemoryError):
             return work(item)
-    return _lost(item, lost)
+    return _result_of_lost_item(item, lost)
 
 
 @contextmanager
 def pooled(jobs: int = 1, executor: Executor | Pool | None = None) -> Iterator[Pool]:
-    """The pool that is given, or one of so many processes, or with that executor, that ends with this."""
+    """The given pool, or a new one of `jobs` processes or of the executor, which ends with this context."""
     if isinstance(executor, Pool):
         yield executor
     else:

@@ -1,4 +1,4 @@
-"""Processes of our own, as an executor; what they tell while they work is passed on."""
+"""Worker processes as an executor, with forwarding of their messages."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from inerter.work.forwarding import forward_to
 from inerter.work.own_process import leave, look_for_garbage_seldom
 from inerter.writing import undisturbed
 
-_ASKED, _KILLED = 0.4, 10.0  # seconds that a process has to end, and to be gone where it must
-_LAST = -1000  # of what a process does when it ends
-_LOOK = 0.1  # seconds between two looks at what processes tell, where none did
+_ASKED, _KILLED = 0.4, 10.0  # timeouts [s] of a process after terminate and after kill
+_LAST = -1000  # priority of the last exit handler of a process
+_LOOK = 0.1  # seconds between polls of messages
 
 
 @dataclass(eq=False)
 class _Single:
-    """An executor of one process, and what it was given and has not done yet."""
+    """An executor of one process, and its pending calls."""
 
     executor: ProcessPoolExecutor
     under_way: set[Future[Any]] = field(default_factory=set)
@@ -41,20 +41,20 @@ class _Single:
     def submit(self, call: Callable[..., Any], *args: object) -> Future[Any]:
         future = self.executor.submit(call, *args)
         self.under_way.add(future)
-        future.add_done_callback(self._done)
+        future.add_done_callback(self._on_done)
         return future
 
-    def _done(self, future: Future[Any]) -> None:
+    def _on_done(self, future: Future[Any]) -> None:
         self.under_way.discard(future)
         if not future.cancelled() and isinstance(future.exception(), BrokenExecutor):
             self.broken = True
 
 
 class Processes(Executor):
-    """Up to `jobs` processes, started when they are needed, and ended when this process is gone, however it went.
+    """Up to `jobs` worker processes, started as needed, and ended when this process ends for any reason.
 
-    Each is an executor of its own, so that the end of one costs what it was doing, and no more; another takes its
-    place. They are spawned afresh: a fork of a threaded process may hang.
+    Each is a separate executor, so that the end of one loses only its own calls; another replaces it. They are spawned,
+    because a fork of a threaded process may hang.
     """
 
     def __init__(self, jobs: int) -> None:
@@ -67,12 +67,12 @@ class Processes(Executor):
         self._over = threading.Event()
 
     def told(self) -> Iterator[Any]:
-        """What the processes have told since this was last asked for."""
+        """Messages of the processes since the last call."""
         while self._told:
             yield self._told.popleft()
 
     def submit(self, call: Callable[..., Any], /, *args: object, **keywords: object) -> Future[Any]:
-        """Have a call made by the process that has least to do.
+        """Submit a call to the process with the fewest pending calls.
 
         Raises `WorkError` if no process can be started.
         """
@@ -80,20 +80,20 @@ class Processes(Executor):
         self._singles = [single for single in self._singles if not single.broken]
         least = min(self._singles, key=lambda single: len(single.under_way), default=None)
         if least is None or (least.under_way and len(self._singles) < self.jobs):
-            least = self._started()
+            least = self._start_process()
         try:
-            return self._watched(least, call, *args)
+            return self._submit_watched(least, call, *args)
         except BrokenExecutor:
             least.broken = True
             return self.submit(call, *args)
 
     def start(self, call: Callable[..., Any], /, *args: object) -> list[Future[Any]]:
-        """Start all processes that there may be, none waiting for another, each with a call; see `is_started`."""
-        added = [self._added() for _ in range(self.jobs - len(self._singles))]
-        return [self._watched(single, call, *args) for single in added]
+        """Start all remaining processes concurrently, each with a call; see `is_started`."""
+        added = [self._add_process() for _ in range(self.jobs - len(self._singles))]
+        return [self._submit_watched(single, call, *args) for single in added]
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End all processes: when they have done what they do, or at once, those that do not heed it by force."""
+        """End all processes: after their calls, or at once, by force if necessary."""
         for single in self._singles:
             single.executor.shutdown(wait=wait, cancel_futures=cancel_futures)
         if not wait:
@@ -101,13 +101,13 @@ class Processes(Executor):
         self._over.set()
         self._singles = []
 
-    def _started(self) -> _Single:
-        first, single = not self._processes, self._added()
+    def _start_process(self) -> _Single:
+        first, single = not self._processes, self._add_process()
         if first:  # whether any can be started
-            is_started([self._watched(single, os.getpid)], wait=True)
+            is_started([self._submit_watched(single, os.getpid)], wait=True)
         return single
 
-    def _added(self) -> _Single:
+    def _add_process(self) -> _Single:
         context = multiprocessing.get_context("spawn")
         here, there = context.Pipe(duplex=False)
         self._connections.append(here)
@@ -119,18 +119,18 @@ class Processes(Executor):
         return self._singles[-1]
 
     def _read(self) -> None:
-        """Read what processes tell, so that none of them ever waits for that."""
+        """Read messages of processes, so that no process blocks."""
         while not self._over.is_set():
             ready = wait_for_end(list(self._connections), timeout=_LOOK)
             for connection in [one for one in self._connections if one in ready]:
                 try:
                     self._told.append(connection.recv())
-                except Exception:  # the process has ended, in the midst of it perhaps
+                except Exception:  # the process has ended, possibly during a message
                     self._connections.remove(connection)
         for connection in self._connections:
             connection.close()
 
-    def _watched(self, single: _Single, call: Callable[..., Any], *args: object) -> Future[Any]:
+    def _submit_watched(self, single: _Single, call: Callable[..., Any], *args: object) -> Future[Any]:
         others = set(multiprocessing.active_children()) - self._processes
         with _deaf_to_interrupts():
             future = single.submit(call, *args)
@@ -139,23 +139,23 @@ class Processes(Executor):
 
 
 def is_started(first: Collection[Future[Any]], *, wait: bool = False) -> bool:
-    """Whether a process has done the first call that it was given, or failed in it.
+    """Whether a process has completed its first call, or failed in it.
 
-    Raises `WorkError` if all have ended before.
+    Raises `WorkError` if all have ended before that.
     """
     ready = [future for future in first if wait or future.done()]
     broken = [future for future in ready if isinstance(future.exception(), BrokenExecutor)]
     if broken and len(broken) == len(first):
         raise WorkError(
-            "no process can be started. A script that asks for several needs the line "
-            '`if __name__ == "__main__":` before its first call, because processes are started afresh and '
-            "import it; or ask for one process (jobs=1)."
+            "worker processes cannot be started. A script that uses several processes requires the line "
+            '`if __name__ == "__main__":` before its first call, because each process imports the script. Add the '
+            "line, or use one process (jobs=1)."
         )
     return len(ready) > len(broken)
 
 
 def _end(processes: Iterable[BaseProcess]) -> None:
-    """End processes, those that do not heed it by force, and wait for none of them for long."""
+    """Terminate processes, by force if necessary, with a timeout."""
     for end, patience in ((BaseProcess.terminate, _ASKED), (BaseProcess.kill, _KILLED)):
         for process in processes:
             end(process)
@@ -166,7 +166,7 @@ def _end(processes: Iterable[BaseProcess]) -> None:
 
 @contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """Processes started inside are born deaf to Ctrl-C, which is for the parent alone; there it waits for the end."""
+    """Start processes in this block with SIGINT blocked; in this process Ctrl-C is deferred to its end."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -188,7 +188,7 @@ def _begin_worker(upwards: Connection) -> None:
 
 
 def _leave() -> None:
-    if sys.exc_info()[0] is None:  # an error is told by those who end it
+    if sys.exc_info()[0] is None:  # errors are reported by multiprocessing
         leave()
 
 

@@ -1,7 +1,7 @@
-"""Progress of long work, as data: whoever computes reports steps, and whoever waits listens to them.
+"""Progress of long computations, as data: computations report steps to listeners.
 
-A listener is called at least once a second while it listens, whatever the work does meanwhile. Steps of our own
-processes are passed on to it; other executors send nothing until a piece is done.
+A listener is called at least once a second. Steps of worker processes are forwarded to it; other executors send nothing
+until a piece is completed.
 """
 
 from __future__ import annotations
@@ -16,18 +16,18 @@ from threading import Event, RLock, Thread
 from typing import Protocol
 
 LOGGER = logging.getLogger("inerter")
-_EVERY = 1.0  # seconds after which a listener is called, also where nothing new is known
-_OFTEN = 0.1  # seconds between two calls about the same thing
-_LONG = 2.0  # seconds after which work that nobody listens to is told of
+_EVERY = 1.0  # seconds after which a listener is called, also without a new step
+_OFTEN = 0.1  # least seconds between two calls for the same step
+_LONG = 2.0  # seconds after which work without a listener is logged
 
 
 @dataclass(frozen=True)
 class ProgressStep:
-    """How far long work is: `done` of `total` of what it counts, where `total` is 0 if that is not known.
+    """A progress step: `done` of `total` items; `total` is 0 if unknown.
 
-    `within` names what it is part of, such as a design, the widest first; `best` is the lowest value of an index so
-    far, in its SI unit; `evaluations` are those of the search that is under way. `share` is the part of that design
-    that is done, as far as it can be known, and `seconds` is the time since the listener began to listen.
+    `within` names the enclosing computations, such as a design, outermost first; `best` is the lowest value of an index
+    so far, in its SI unit; `evaluations` are those of the running search. `share` is the completed share of the design,
+    if known, and `seconds` is the time since the start of the listener.
     """
 
     what: str
@@ -38,7 +38,7 @@ class ProgressStep:
     within: tuple[str, ...] = ()
     share: float | None = None
     seconds: float = 0.0
-    over: bool = False  # whether what it is part of has ended
+    over: bool = False  # whether the enclosing computation has ended
 
     def __str__(self) -> str:
         """The step in one line, without the time."""
@@ -49,10 +49,10 @@ class ProgressStep:
 
 
 class Hearer(Protocol):
-    """What steps are told to."""
+    """Protocol of a receiver of steps."""
 
     def tell(self, step: ProgressStep) -> None:
-        """Take a step."""
+        """Receive a step."""
         ...
 
     def evaluated(self) -> None:
@@ -61,9 +61,9 @@ class Hearer(Protocol):
 
 
 class Listener:
-    """Calls a function with steps, from a thread of its own if there are none for a second.
+    """Call a function with steps, from a separate thread if there are none for a second.
 
-    What the function raises there is raised by the work at its next step.
+    An exception of the function there is raised by the computation at its next step.
     """
 
     def __init__(self, call: Callable[[ProgressStep], object], every: float = _EVERY) -> None:
@@ -79,7 +79,7 @@ class Listener:
         return self._last
 
     def tell(self, step: ProgressStep) -> None:
-        """Take a step, of which the function is told at once if it is about something new."""
+        """Receive a step, and pass it on at once if it is new."""
         with self._lock:
             if self._error:
                 raise self._error.pop()
@@ -105,12 +105,12 @@ class Listener:
                     continue
                 try:
                     self._pass_on()
-                except BaseException as error:  # for the thread that works
+                except BaseException as error:  # for the computing thread
                     self._error.append(error)
 
     @contextmanager
     def ticking(self) -> Iterator[None]:
-        """The function is called in this block also where no steps come."""
+        """Call the function in this block also without steps."""
         thread = Thread(target=self._tick, daemon=True)
         thread.start()
         try:
@@ -127,10 +127,10 @@ _SHARES: ContextVar[tuple[float, float]] = ContextVar("shares", default=(0.0, 1.
 
 @contextmanager
 def progress(callback: Callable[[ProgressStep], object]) -> Iterator[None]:
-    """Have a function called with each `ProgressStep` of the work in this block, and at least once a second.
+    """Call a function with each `ProgressStep` of the work in this block, and at least once a second.
 
-    It is called by the thread that works, or by one that waits meanwhile; what it raises ends the work. Without it,
-    steps go to the logger `inerter` with the level INFO, if that is switched on.
+    It is called by the computing thread, or by a waiting one; its exceptions end the work. Without it, steps are logged
+    to the logger `inerter` at level INFO, if enabled.
 
     >>> import inerter as it
     >>> car = it.QuarterCar(181.75, 25, 120e3, strut=it.Spring(120e3) | it.Damper(it.free(1e3, 1e4)))
@@ -146,7 +146,7 @@ def progress(callback: Callable[[ProgressStep], object]) -> Iterator[None]:
 
 @contextmanager
 def listening(listener: Listener) -> Iterator[None]:
-    """Steps of the work in this block are told to the listener."""
+    """Send steps of the work in this block to the listener."""
     before = _LISTENER.set(listener)
     try:
         with listener.ticking():
@@ -156,8 +156,8 @@ def listening(listener: Listener) -> Iterator[None]:
 
 
 @contextmanager
-def heard(hearer: Hearer | None) -> Iterator[None]:
-    """The same for what needs no thread, or for none."""
+def receiving_steps(hearer: Hearer | None) -> Iterator[None]:
+    """Send steps of the work in this block to a receiver without thread, or to none."""
     before = _LISTENER.set(hearer)
     try:
         yield
@@ -166,8 +166,8 @@ def heard(hearer: Hearer | None) -> Iterator[None]:
 
 
 @contextmanager
-def logged() -> Iterator[None]:
-    """Steps of the work in this block are logged, if nobody listens to them and the logger takes them."""
+def logging_steps() -> Iterator[None]:
+    """Log steps of the work in this block, if there is no listener and logging is enabled."""
     if _LISTENER.get() is not None or not LOGGER.isEnabledFor(logging.INFO):
         yield
         return
@@ -176,7 +176,7 @@ def logged() -> Iterator[None]:
 
 
 class _Log:
-    """A line of the log, once a second at most."""
+    """Log of steps, at most one line a second."""
 
     def __init__(self) -> None:
         self._last = -_EVERY
@@ -188,12 +188,12 @@ class _Log:
 
 
 def listener_here() -> Hearer | None:
-    """What steps are told to, if anybody listens."""
+    """Current receiver of steps, if any."""
     return _LISTENER.get()
 
 
 def report(what: str, done: int = 0, total: int = 0, *, best: float | None = None, share: float | None = None) -> None:
-    """Tell how far the work is, and which share of what it is part of is done, to whoever listens."""
+    """Report a step, and the completed share of the enclosing computation, to the listener."""
     listener = _LISTENER.get()
     if listener is not None:
         low, high = _SHARES.get()
@@ -202,13 +202,13 @@ def report(what: str, done: int = 0, total: int = 0, *, best: float | None = Non
 
 
 def counter(what: str, total: int) -> Callable[[float], None]:
-    """A function that reports which part of so many is done; that none is, at once."""
+    """A function that reports the completed part of `total`; zero is reported at once."""
     report(what, 0, total)
     return lambda part: report(what, round(part * total), total)
 
 
 def evaluated() -> None:
-    """Tell that a search has valued one more design."""
+    """Report one more evaluation of a search."""
     listener = _LISTENER.get()
     if listener is not None:
         listener.evaluated()
@@ -216,7 +216,7 @@ def evaluated() -> None:
 
 @contextmanager
 def within(name: str, first: float = 0.0, last: float = 1.0) -> Iterator[None]:
-    """Steps in this block are part of what has that name, from the share `first` of all of it to the share `last`."""
+    """Nest steps in this block under a name, between the shares `first` and `last` of the enclosing computation."""
     outer, (low, high) = _WITHIN.get(), _SHARES.get()
     names = _WITHIN.set((*outer, name))
     shares = _SHARES.set((low + (high - low) * first, low + (high - low) * last))
@@ -232,10 +232,10 @@ def within(name: str, first: float = 0.0, last: float = 1.0) -> Iterator[None]:
 
 @contextmanager
 def told_if_long(text: str) -> Iterator[None]:
-    """Work of the library's own, such as compiling, is told of if it takes long; inside such work it is told already.
+    """Report internal work, such as compilation, if it takes long, unless nested in such work.
 
-    A listener is told once, and goes on by itself. Where nobody listens there is a warning in the log after 2, 4, 8
-    seconds and so on, which appears on stderr where logging is not set up.
+    A listener is told once, and repeats the step. Without a listener there is a warning in the log after 2, 4, 8
+    seconds and so on, which appears on stderr where logging is not configured.
     """
     if _TOLD.get():
         yield

@@ -1,4 +1,4 @@
-"""Results that an executor gives back, checked: it is somebody else's, and so may be what it gives."""
+"""Validation of results of external executors."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from typing import Any, Generic
 from inerter.errors import InerterError, WorkError
 from inerter.work import cluster
 from inerter.work.origin import origin
-from inerter.work.pieces import Item, Piece, Result, Worked
+from inerter.work.pieces import ChunkResult, Item, Piece, Result
 
-GONE = "the executor that the work was handed to has ended, or lost its connection."
+GONE = "the executor has ended, or lost its connection."
 _EXPECTED = (
     "Expected one of concurrent.futures, such as ProcessPoolExecutor(4), or the get_executor() of a dask client."
 )
-_LONGEST = 200  # characters of an error of others
+_LONGEST = 200  # characters of an error of another library
 
 
 @dataclass(frozen=True)
-class Returned(Generic[Result]):
-    """Results of a piece; else how many processes have ended on it, or the fault for which it is to be done again.
+class ExecutorResult(Generic[Result]):
+    """Results of a piece, or the number of processes that ended on it, or the fault for which it is repeated.
 
-    `error` is what the work itself raised, after the results that there are.
+    `error` is an exception of the work itself, after the present results.
     """
 
     results: list[Result]
@@ -34,13 +34,13 @@ class Returned(Generic[Result]):
 
 
 def check_executor(executor: object) -> None:
-    """Raises `InerterError` for what is no executor."""
+    """Raise `InerterError` for an object that is not an executor."""
     if not isinstance(executor, Executor):
         raise InerterError(f"`executor`: {_brief(repr(executor))} cannot run calls. {_EXPECTED}")
 
 
-def submitted(executor: Executor, *call: Any) -> Future[Any]:
-    """The future of a call.
+def submit_call(executor: Executor, *call: Any) -> Future[Any]:
+    """Future of a submitted call.
 
     Raises `WorkError` if the executor does not take it.
     """
@@ -51,14 +51,14 @@ def submitted(executor: Executor, *call: Any) -> Future[Any]:
     except RuntimeError:  # of one that is broken, or was shut down
         raise WorkError(GONE) from None
     except Exception as error:
-        raise WorkError(f"the executor does not take work ({_words(error)}).") from error
+        raise WorkError(f"the executor does not accept work ({_words(error)}).") from error
     if not isinstance(future, Future):
         raise WorkError(f"the executor returned {_brief(repr(future))} for a call, expected a Future. {_EXPECTED}")
     return future
 
 
-def returned(future: Future[Any], work: object, piece: Piece[Item]) -> Returned[Any]:
-    """Results of a piece, or why there are none.
+def check_result(future: Future[Any], work: object, piece: Piece[Item]) -> ExecutorResult[Any]:
+    """Results of a piece, or the reason for their absence.
 
     Raises `WorkError` if the executor has ended, if its processes have other sources or libraries, or if the piece
     cannot be sent to them.
@@ -69,38 +69,38 @@ def returned(future: Future[Any], work: object, piece: Piece[Item]) -> Returned[
         raise WorkError(GONE) from None
     except ModuleNotFoundError as error:
         raise WorkError(
-            f"a process of the executor cannot load what it is to call ({error}). {cluster.INSTALL}"
+            f"a process of the executor cannot import the function to call ({error}). {cluster.INSTALL}"
         ) from None
     except Exception as error:
         deaths = cluster.deaths(error)
         if not deaths:
             _check_sent((work, piece))
-        return Returned([], deaths=deaths, fault="" if deaths else _words(error))
-    if not isinstance(found, Worked):
-        return Returned([], fault=f"{_brief(repr(found))} came back in place of results")
+        return ExecutorResult([], deaths=deaths, fault="" if deaths else _words(error))
+    if not isinstance(found, ChunkResult):
+        return ExecutorResult([], fault=f"{_brief(repr(found))} returned instead of results")
     if found.origin != origin():
         raise WorkError(
-            "a process of the executor has another version of inerter, or of the libraries that make its numbers. "
+            "a process of the executor has another version of inerter, or of the numerical libraries. "
             f"{cluster.INSTALL}"
         )
     if found.piece != piece.number:
-        return Returned([], fault="the results of another piece came back")
+        return ExecutorResult([], fault="results of another chunk returned")
     results = list(found.results)
     if isinstance(found.error, MemoryError):
-        return Returned(results, deaths=1)
+        return ExecutorResult(results, deaths=1)
     if found.error is None and len(results) != len(piece.items):
-        return Returned([], fault=f"{len(results)} results came back of {len(piece.items)}")
-    return Returned(results, found.seconds, error=found.error)
+        return ExecutorResult([], fault=f"{len(results)} results of {len(piece.items)} returned")
+    return ExecutorResult(results, found.seconds, error=found.error)
 
 
 def _check_sent(call: object) -> None:
-    """Raises `WorkError` if a call cannot be sent to another process."""
+    """Raise `WorkError` if a call cannot be sent to another process."""
     try:
         pickle.dumps(call)
     except Exception as error:
         raise WorkError(
-            f"this work cannot be handed to other processes ({error}). What is your own must be a class or function of "
-            "a module, and not made inside a function; or leave the executor out."
+            f"this work cannot be sent to other processes ({error}). Define user classes and functions at module "
+            f"level, not inside a function; or leave the executor out."
         ) from None
 
 

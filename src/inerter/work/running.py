@@ -1,7 +1,6 @@
-"""What long work runs on: said once, where it begins, and asked where it comes apart.
+"""Execution context: the pool of a long computation, set once at its start and used where it divides.
 
-A function of the library that takes long has an argument `executor`; what it calls, and what that calls, need not pass
-it on.
+A long-running function of the library has an argument `executor`; nested calls need not pass it on.
 """
 
 from __future__ import annotations
@@ -18,19 +17,19 @@ from typing import Generic
 from inerter.errors import WorkError
 from inerter.work.pieces import THREADS, Item, Result
 from inerter.work.pool import Pool, pooled
-from inerter.work.progress import logged
+from inerter.work.progress import logging_steps
 
 _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 
 
 @contextmanager
 def running_on(executor: Executor | Pool | None) -> Iterator[Pool | None]:
-    """Work inside that comes apart runs on this; on what is said already, or on threads of this process, without."""
+    """Run divisible work in this block on this executor; by default on the current one, or on threads."""
     if executor is None:
-        with logged():
+        with logging_steps():
             yield pool_here()
         return
-    with logged(), pooled(executor=executor) as pool:
+    with logging_steps(), pooled(executor=executor) as pool:
         before = _POOL.set(pool)
         try:
             yield pool
@@ -39,12 +38,12 @@ def running_on(executor: Executor | Pool | None) -> Iterator[Pool | None]:
 
 
 def pool_here() -> Pool | None:
-    """What work runs on, if that was said."""
+    """Current pool, if any."""
     return _POOL.get()
 
 
 def threads_here() -> int:
-    """How many threads may be used: one in a process that works on a piece among others, else as many as cores."""
+    """Number of allowed threads: one in a worker process, else the number of cores."""
     return THREADS.get() or os.cpu_count() or 1
 
 

@@ -41,7 +41,7 @@ from inerter.work.journal import Journal
 from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, pooled
-from inerter.work.progress import logged, within
+from inerter.work.progress import logging_steps, within
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
@@ -191,7 +191,7 @@ def _computed(
     tell(None)
     results.list_journal(journals.NAME)
     with (
-        logged(),
+        logging_steps(),
         journal.appending(results.resume) as append,
         kept_by(lambda kept: append(kept.to_json())),
     ):

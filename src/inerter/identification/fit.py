@@ -139,7 +139,7 @@ class Localisation:
     def sentence(self) -> str:
         """The strongest pattern, for use after a colon."""
         if not self.patterns:
-            return "the residual has none of the patterns tested"
+            return "the residual has no tested pattern"
         first = self.patterns[0]
         return first.sentence if float(first.numbers.get("p", 0.0)) < 1.0 else f"{first.sentence} (not significant)"
 

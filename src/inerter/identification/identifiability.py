@@ -105,13 +105,12 @@ _SENTENCES: Mapping[Verdict, Callable[[Identifiability], str]] = {
     Verdict.ANY: lambda i: f"not identifiable: the confidence interval covers all of its bounds. {_cause(i)}",
     Verdict.BELOW: _below,
     Verdict.ABOVE: lambda i: (
-        f"not identifiable; at least {_format_value(i.interval[0], i.unit)}, and larger values explain the records as "
-        f"well. {_cause(i)}"
+        f"not identifiable: only a lower bound, {_format_value(i.interval[0], i.unit)}, is known. {_cause(i)}"
     ),
     Verdict.WITHHELD: lambda i: "withheld: the fit is unreliable.",
     Verdict.CONDITIONAL: lambda i: (
-        f"withheld, for the fit is not to be relied on; {_format_value(i.interval[0], i.unit)} to "
-        f"{_format_value(i.interval[1], i.unit)} if what explains the misfit is so."
+        f"withheld: the fit is unreliable; {_format_value(i.interval[0], i.unit)} to "
+        f"{_format_value(i.interval[1], i.unit)} under the most likely causes of the misfit."
     ),
     Verdict.UNPREDICTABLE: lambda i: "not identifiable: the force of this device cannot be predicted.",
 }

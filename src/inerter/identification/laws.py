@@ -57,7 +57,7 @@ class ChainValues:
 
 
 def laws(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
-    """What a chain may do beyond its model, in motions of this largest speed [m/s], stroke [m] and force [N]."""
+    """Hypotheses on further laws of a chain, for motions of this largest speed [m/s], stroke [m] and force [N]."""
     yield from _parts(chain)
     yield _quadratic(chain, fastest, peak)
     if chain.spring is not None and peak > 0.0:

@@ -140,7 +140,7 @@ def _mean_period(record: Record, period: float) -> Harmonics:
     """The mean period of a displacement, with the harmonics that exceed its scatter."""
     part = whole_periods(record, period)
     lines = lines_of([part])
-    significant = lines.excited() | lines.significant()
+    significant = lines.is_excited() | lines.significant()
     amplitudes = np.where(significant, lines.displacement[0].mean(axis=0), 0.0)
     last = 1 + int(np.max(np.flatnonzero(amplitudes), initial=0))
     return Harmonics(

@@ -122,7 +122,7 @@ def _periodic_response(records: Sequence[Record], group: Sequence[float], estima
     period = float(np.mean(group))
     parts = [whole_periods(record, period) for record in records]
     every = lines_of(parts)
-    chosen = every.excited()
+    chosen = every.is_excited()
     if not chosen.any():
         raise RecordError(
             f"{format_sources(records)}: no harmonic of a period of {period:.6g} s exceeds the scatter of the "

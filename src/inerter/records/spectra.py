@@ -61,7 +61,7 @@ class HarmonicLines:
     force: tuple[Complex, ...]  # [N]
     least: float  # [m^2] squared amplitude that the steps of the encoder leave at a harmonic
 
-    def excited(self) -> Chosen:
+    def is_excited(self) -> Chosen:
         """Mask of the harmonics of the excitation, shape (harmonics,).
 
         A harmonic counts if it exceeds the scatter between periods (an F test), its velocity is no less than a

@@ -13,6 +13,7 @@ from inerter.errors import LinearSystemError, RecordError
 from inerter.records.periods import period_of
 from inerter.records.response import ESTIMATORS, _resolution_notes
 from inerter.records.smoothing import resolution
+from inerter.records.spectra import HarmonicLines
 
 RATE = 500.0
 OMEGA = 2.0 * np.pi
@@ -410,3 +411,15 @@ def test_a_linear_system_is_answered_as_before():
         it.frequency_response("nothing", [1.0])
     with pytest.raises(RecordError, match="apply to records"):
         it.frequency_response(system, [1.0], segment=1.0)
+
+
+@pytest.mark.parametrize(("share", "both"), [(0.2, False), (0.26, True)])
+def test_a_second_sine_counts_by_its_share_of_the_squared_velocity(share, both):
+    """95 % of it in one harmonic make a motion a sine: a second one counts from a velocity of 0.229 of the first on."""
+    omega = OMEGA * np.arange(1.0, 41.0)
+    rng = np.random.default_rng(3)
+    x = 1e-9 * (rng.normal(size=(6, 40)) + 1j * rng.normal(size=(6, 40)))
+    x[:, 1] += 1e-3
+    x[:, 19] += share * 1e-3 * omega[1] / omega[19]
+    chosen = HarmonicLines(omega, (x,), (x,), 0.0).is_excited()
+    assert np.flatnonzero(chosen).tolist() == ([1, 19] if both else [1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -14,7 +15,15 @@ from scipy.stats import binom
 
 from inerter.figures.misfit import misfit_figure
 from inerter.identification.fit import Localisation
-from inerter.identification.localising import SURE, _samples, localisation_of
+from inerter.identification.localising import (
+    SURE,
+    LocalisedSamples,
+    _band,
+    _over_time,
+    _resonance,
+    _samples,
+    localisation_of,
+)
 from inerter.identification.misfit_patterns import FRICTION, MisfitPattern
 from inerter.records.record import Record
 from inerter.report.identification_figures import residual_samples
@@ -128,6 +137,41 @@ def test_a_harmonic_of_the_motion_is_no_disturbance(frequency: float, multiple: 
     line = next(p for p in patterns if p.kind is MisfitPattern.LINE)
     assert line.numbers["multiple"] == multiple
     assert line.numbers["foreign"] == (multiple == 0)
+
+
+def test_what_grows_with_the_motion_says_so() -> None:
+    """In a chirp a misfit by damping grows with the record; in a motion that stays as it is only with time."""
+    time = np.arange(6000) / 1000.0
+    sweeping, staying = (np.cos(2.0 * np.pi * phase) for phase in (0.5 * time + 0.6 * time**2, 4.0 * time))
+    said = []
+    for shape in (sweeping, staying):
+        x = 2e-3 * shape
+        v, a = np.gradient(x, 1e-3), np.gradient(np.gradient(x, 1e-3), 1e-3)
+        noise = np.random.default_rng(1).normal(size=time.size)
+        level = 0.05 * np.abs(a) if shape is sweeping else 0.2 * (1.0 + 2.0 * time)
+        samples = LocalisedSamples(
+            time, level * noise, np.full(time.size, 0.1), {"acceleration": a, "velocity": v},
+            np.asarray(np.arange(6000) // 150),
+        )  # fmt: skip
+        (found,) = _over_time(samples, np.random.default_rng(0))
+        said.append(found)
+    assert [found.kind for found in said] == [MisfitPattern.GROWS] * 2
+    assert [found.numbers["motion"] for found in said] == [True, False]
+    assert "together with the acceleration of the motion" in said[0].sentence
+
+
+def test_a_band_in_which_the_device_resonates_is_no_place_of_a_fault() -> None:
+    frequency = np.arange(2000) / 10.0
+    ringing = np.exp(-(((frequency - 25.0) / 3.0) ** 2)) + 1e-3
+    at = _resonance(frequency, ringing, 10.0)
+    assert at == pytest.approx((25.0 - 1.036 * 1.5, 25.0 + 1.036 * 1.5), abs=0.1)  # of a Gaussian power of 1.5 Hz
+    assert _resonance(frequency, 1.0 / (frequency + 1.0), 10.0)[0] == math.inf  # as friction alone, which rings nowhere
+    excess, shares = ringing**2, []
+    for resonance in (at, (math.inf, math.inf), (80.0, 120.0)):
+        (band,) = _band(frequency, excess, float(excess.sum()), 10.0, resonance)
+        shares.append((band.numbers["resonates"], band.numbers["share"]))
+    assert [resonates for resonates, _ in shares] == [True, False, False]
+    assert shares[0][1] == pytest.approx(0.5 * shares[1][1])
 
 
 def coloured(seed: int) -> Record:

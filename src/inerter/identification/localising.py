@@ -45,6 +45,8 @@ _EDGE = 0.05  # of a record, within which no change is sought
 _NONE = 2.0  # times the noise of the sensors: a part without misfit
 _ONE_LINE = 0.9  # of the squared displacement: a motion that mostly consists of one sine ...
 _HIGHEST = 20  # ... up to whose harmonics of this order lines count as those of a nonlinear device
+_NARROW = 2.5  # highest over lowest frequency of a band, at most
+_ALIKE, _VARIES = 0.8, 0.7  # correlation of the logarithms of residual and acceleration, and what those vary by
 _CLEAR_LINE = 8.0  # amplitude over the median within an octave
 
 
@@ -191,14 +193,29 @@ def _over_time(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Fin
     line += math.log(max(float(np.mean(mean * np.exp(-line))), 1e-300))
     of_trend = _share(float(mean.mean()), math.exp(float(line.mean())))
     time = float(s.time[at])
-    numbers = {"before": math.sqrt(before), "after": math.sqrt(after), "time": time}
+    numbers = {
+        "before": math.sqrt(before), "after": math.sqrt(after), "time": time, "motion": _motion_steps(s, at)
+    }  # fmt: skip
     if of_step > 1.1 * of_trend:
         begins, ends = math.sqrt(before) < _NONE, math.sqrt(after) < _NONE
         kind = MisfitPattern.BEGINS if begins else MisfitPattern.ENDS if ends else MisfitPattern.LEVEL_STEP
         yield Finding(kind, "info", numbers={**numbers, "share": of_step, "p": p_step})
     else:
         ends_of = {"before": math.exp(0.5 * float(line[0])), "after": math.exp(0.5 * float(line[-1]))}
-        yield Finding(MisfitPattern.GROWS, "info", numbers={**ends_of, "share": of_trend, "p": p_trend})
+        size = np.log(np.maximum(np.bincount(s.block, s.motion["acceleration"] ** 2) / sizes, 1e-300))
+        varies = min(float(np.ptp(size)), float(np.ptp(log))) > _VARIES
+        alike = varies and float(np.corrcoef(log, size)[0, 1]) > _ALIKE
+        yield Finding(
+            MisfitPattern.GROWS, "info", numbers={**ends_of, "share": of_trend, "p": p_trend, "motion": alike}
+        )
+
+
+def _motion_steps(s: LocalisedSamples, at: int) -> bool:
+    """Whether the acceleration of the motion changes by a factor of 2 at a sample: another stage of a test."""
+    width = max(s.time.size // 20, 8)
+    near = s.motion["acceleration"][max(at - width, 0) : at + width]
+    before, after = (float(np.mean(part**2)) for part in np.split(near, [min(width, at)]))
+    return not 0.25 < before / max(after, 1e-300) < 4.0
 
 
 def _split(square: Matrix) -> int:
@@ -246,7 +263,10 @@ def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[
         at, of_step, change = _coefficient_split(both, own, square)
         if min(of_trend, of_step) > (1.0 - NOTICED) * constant:
             continue
-        shares = {"share": _share(square, of_step), "time": float(s.time[at]), "change": change}
+        shares = {
+            "share": _share(square, of_step), "time": float(s.time[at]), "change": change,
+            "motion": _motion_steps(s, at),
+        }  # fmt: skip
         if _share(constant, of_step) > 1.1 * _share(constant, of_trend):
             p = _p(_cusum(score), _cusum(score[order]))
             yield Finding(MisfitPattern.COEFFICIENT_STEP, "info", name, {**shares, "p": p})
@@ -408,6 +428,8 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     excess = np.asarray(np.maximum(amplitude**2 - sound**2, 0.0), dtype=float)
     excess[:2] = 0.0
     total = float(np.sum(amplitude[2:] ** 2))
+    highest = c.experiment.motion.highest
+    resonance = _resonance(frequency, amplitudes(s.motion["force"] - s.motion["force"].mean()), highest)
     peak = int(np.argmax(excess))
     main = slice(max(peak - 3, 0), peak + 4)
     beside = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
@@ -417,12 +439,13 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
         foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
         above = float(amplitude[peak]) / max(float(np.median(amplitude[beside])), 1e-300)
         chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
+        resonates = resonance[0] <= frequency[peak] <= resonance[1]
         numbers = {
-            "frequency": float(frequency[peak]), "amplitude": float(amplitude[peak]), "foreign": foreign,
-            "share": share if foreign else 0.5 * share, "p": chance, "multiple": multiple,
+            "frequency": float(frequency[peak]), "amplitude": float(amplitude[peak]), "p": chance, "multiple": multiple,
+            "share": share if foreign and not resonates else 0.5 * share, "foreign": foreign, "resonates": resonates,
         }  # fmt: skip
         yield Finding(MisfitPattern.LINE, "info", numbers=numbers)
-    yield from _band(frequency, excess, total, c.experiment.motion.highest)
+    yield from _band(frequency, excess, total, highest, resonance)
 
 
 def _multiple(peak: int, moved: Matrix) -> int:
@@ -436,12 +459,28 @@ def _multiple(peak: int, moved: Matrix) -> int:
     return multiple if 1 <= multiple <= _HIGHEST and abs(peak - multiple * centre) < 1.0 + 0.1 * multiple else 0
 
 
-def _band(frequency: Matrix, excess: Matrix, total: float, highest: float) -> Iterator[Finding]:
+def _resonance(frequency: Matrix, force: Matrix, highest: float) -> tuple[float, float]:
+    """The band [Hz] above the motion in which the force of the model is concentrated; (inf, inf) if it is in none.
+
+    A device rings there, by friction and impacts, and whatever is wrong makes it ring otherwise.
+    """
+    power = np.where(frequency > 0.8 * highest, force**2, 0.0)
+    part = np.cumsum(power)
+    low, high = (float(frequency[min(int(np.searchsorted(part, q * part[-1])), part.size - 1)]) for q in (0.15, 0.85))
+    return (low, high) if 0.0 < low < high < _NARROW * low else (math.inf, math.inf)
+
+
+def _band(
+    frequency: Matrix, excess: Matrix, total: float, highest: float, resonance: tuple[float, float]
+) -> Iterator[Finding]:
     """The middle 70 % of the excess, if little more than an octave wide and above the motion."""
     part = np.cumsum(excess)
     if part[-1] < NOTICED * total:
         return
     low, high = (float(frequency[int(np.searchsorted(part, q * part[-1]))]) for q in (0.15, 0.85))
-    if 0.8 * highest < low and high < 2.5 * low and high > low:
-        numbers = {"low": low, "high": high, "highest": highest, "share": 0.7 * float(part[-1]) / total}
+    if 0.8 * highest < low and high < _NARROW * low and high > low:
+        both = min(high, resonance[1]) - max(low, resonance[0])
+        resonates = both > 0.5 * (high - low)
+        share = 0.7 * float(part[-1]) / total * (0.5 if resonates else 1.0)
+        numbers = {"low": low, "high": high, "highest": highest, "share": share, "resonates": resonates}
         yield Finding(MisfitPattern.BAND, "info", numbers=numbers)

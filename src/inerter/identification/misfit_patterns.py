@@ -54,13 +54,21 @@ class MisfitPattern(StrEnum):
 
 def _times_text(f: Finding) -> str:
     n = f.numbers
-    return f"{n['before']:.2g} times the sensor noise before, {n['after']:.2g} times after"
+    return f"{n['before']:.2g} times the sensor noise before, {n['after']:.2g} times after{_with_motion(f)}"
+
+
+def _with_motion(f: Finding) -> str:
+    """Words on a change of the motion at the same time, which may be all that changes."""
+    return ", where the motion changes too" if f.numbers.get("motion") else ""
 
 
 def _grows_text(f: Finding) -> str:
     n = f.numbers
     way = "grows" if n["after"] > n["before"] else "decreases"
-    return f"the misfit {way} over the record, from {n['before']:.2g} to {n['after']:.2g} times the sensor noise"
+    motion = ", together with the acceleration of the motion" if n["motion"] else ""
+    return (
+        f"the misfit {way} over the record, from {n['before']:.2g} to {n['after']:.2g} times the sensor noise{motion}"
+    )
 
 
 def _size(f: Finding, key: str) -> str:
@@ -71,7 +79,8 @@ def _size(f: Finding, key: str) -> str:
 
 def _coefficient_step_text(f: Finding) -> str:
     like = COEFFICIENTS[f.about][0]
-    return f"the misfit is like {like} that changes by {_size(f, 'change')} at {f.numbers['time']:.4g} s"
+    change, time = _size(f, "change"), f"{f.numbers['time']:.4g} s"
+    return f"the misfit is like {like} that changes by {change} at {time}{_with_motion(f)}"
 
 
 def _coefficient_trend_text(f: Finding) -> str:
@@ -123,6 +132,8 @@ def _line_text(f: Finding) -> str:
     foreign = "not excited by the motion" if n["foreign"] else "excited by the motion"
     if n["multiple"] > 1:
         foreign = f"{n['multiple']} times that of the motion: a nonlinear law, not a disturbance"
+    elif n["resonates"]:
+        foreign = "where the device resonates: any fault excites that"
     size = format_quantity(n["amplitude"], "N", 3)
     return f"the misfit is a spectral line of {size} at {n['frequency']:.4g} Hz, {foreign}"
 
@@ -130,6 +141,7 @@ def _line_text(f: Finding) -> str:
 def _band_text(f: Finding) -> str:
     n = f.numbers
     where = ", above the motion" if n["low"] > n["highest"] else ""
+    where = ", where the device resonates: any fault excites that" if n["resonates"] else where
     return f"the misfit lies between {n['low']:.3g} and {n['high']:.3g} Hz{where}"
 
 

@@ -165,7 +165,7 @@ def test_wrong_requests_of_the_command_line(
         taken.listen()
         port = str(taken.getsockname()[1])
         for arguments, words in (
-            ([str(tmp_path / "nothing.toml")], "file not found"),
+            ([str(tmp_path / "nothing.toml")], "no such file"),
             (["--port", port], "cannot be taken"),
             (["--port", "99999"], "65535"),
             (["--limit", "0"], "bytes"),

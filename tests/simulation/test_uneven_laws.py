@@ -294,7 +294,7 @@ def test_a_budget_of_what_has_no_usual_size_asks_for_bounds():
     first = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - OneWay(0.0, "w"))
     other = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
     road = it.Road(roughness=5e-7, speed=25.0)
-    with pytest.raises(DesignError, match=r"'w' is 0: give bounds=\(lower, upper\)"):
+    with pytest.raises(DesignError, match=r"'w' is 0\. Give bounds=\(lower, upper\)"):
         it.budget(first, other, it.RideComfort(road), parameter="w", method=it.ExpectedValue(realisations=2))
 
 

@@ -85,7 +85,7 @@ class Road:
     roughness: float = field(
         metadata=quantity(
             "m^3/cycle",
-            "Roughness coefficient kappa = Gd(n0) n0^2 / 2, with Gd(n0) and n0 of ISO 8608.",
+            "Roughness coefficient Gd(n0) n0^2 / 2, with Gd(n0) and n0 of ISO 8608.",
             "5e-7 m^3/cycle",
         )
     )

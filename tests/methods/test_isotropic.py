@@ -12,6 +12,7 @@ from scipy.special import digamma, k1
 
 import inerter as it
 from inerter.errors import PerformanceIndexError
+from inerter.norms import excess
 
 WHEELS = ("front_left", "front_right", "rear_left", "rear_right")
 LEFT = np.array([True, False, True, False])
@@ -154,6 +155,37 @@ def test_many_norms_by_quadrature(chunk):
     for seed in range(8 + 24 * chunk, 32 + 24 * chunk):
         off, case = check(seed)
         assert abs(off) < 1e-6, case
+
+
+def long_car(distance, track):
+    strut = it.Spring(60e3) | it.Damper(3e3)
+    inertia = {"sprung_mass": 1200.0, "pitch_inertia": 1500.0, "roll_inertia": 450.0}
+    return it.FullCar(
+        **inertia, unsprung_mass_front=40.0, unsprung_mass_rear=35.0, tyre_stiffness_front=180e3,
+        tyre_stiffness_rear=180e3, distance_front=1.2, distance_rear=distance, track_front=track, track_rear=track,
+        front=strut, rear=strut,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("distance", [8.0, 60.0])
+def test_phases_that_are_not_resolved_are_in_the_bound(distance, monkeypatch):
+    """With fewer panels than the delay of a long vehicle takes, the value is off by no more than it says."""
+    road = it.Road(5e-7, 20.0, it.Coherence.isotropic(0.5))
+    index = it.RandomResponse({"roll_acceleration": 1.0}, road)
+    full = it.evaluate(long_car(distance, 0.5), index, it.Norm())
+    assert full.status.ok
+    monkeypatch.setattr(excess, "_MOST_PANELS", 3)
+    few = it.evaluate(long_car(distance, 0.5), index, it.Norm())
+    assert abs(few.value / full.value - 1.0) <= few.error_bound
+    assert few.error_bound > 1e3 * full.error_bound
+
+
+@pytest.mark.campaign
+def test_a_vehicle_of_any_length_has_a_value_or_a_reason_in_time():
+    """Of 1e8 m between the axles no panels would do; they are no more than memory holds."""
+    road = it.Road(5e-7, 25.0, it.Coherence.isotropic(1.5))
+    found = it.evaluate(long_car(8.9e7, 0.05), it.RandomResponse({"roll_acceleration": 1.0}, road), it.Norm())
+    assert found.status.ok or "density of the tracks" in found.status.message
 
 
 def free_car():

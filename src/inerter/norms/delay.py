@@ -100,8 +100,9 @@ def _exponential(X: Matrix) -> tuple[Matrix, int]:
     for k in range(1, 27):  # 2^27 / 27! is below rounding
         term = term @ X / k
         power = power + term
-    for _ in range(squarings):
-        power = power @ power
+    with np.errstate(over="ignore", invalid="ignore"):  # of motions that no delay outlasts: a caller checks the norm
+        for _ in range(squarings):
+            power = power @ power
     return power, squarings
 
 

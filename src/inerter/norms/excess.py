@@ -7,7 +7,7 @@ that is known beforehand. It need not be as accurate as a mean square, of which 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,7 @@ _LESS[1::2] = [*_GAUSS, *_GAUSS[-2::-1]]
 _APART = 2.0  # half-widths of a panel that its centre keeps from each pole: the rules then gain 1.1 digits a place
 _ANGLE = 4.0  # [rad] by which a delay turns the phase over half a panel at most
 _NEGLIGIBLE = 1e-9  # of a mean square: what a panel may have without resolving the phases of delays
+_MOST_PANELS, _AT_ONCE = 25_000, 10_000  # that resolve phases, in all and in memory; beyond, phases are in the error
 _AT_ZERO = 1e-12  # size of a pole relative to the fastest that is one at zero
 _SHORTEST, _FASTEST = 1e4, 1e4  # where to end: times the inverse of the time of an excess, or the fastest pole
 _NARROWEST = 1e-14  # width of a panel relative to its frequency
@@ -81,17 +82,16 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     power, more = _on_panels(densities, panels)
     coarse = _KRONROD @ power, _KRONROD @ more
     total = total + coarse[0].sum(axis=0)
-    wide = (np.diff(panels, axis=1)[:, 0] * late > 2.0 * _ANGLE) & np.any(
-        _KRONROD @ np.abs(more) > _NEGLIGIBLE * np.maximum(total, 1e-300), axis=1
-    )
-    if np.any(wide):
-        finer = [
-            np.column_stack([edges[:-1], edges[1:]])
-            for a, b in panels[wide]
-            for edges in [np.linspace(a, b, 2 + int((b - a) * late / (2.0 * _ANGLE)))]
-        ]
-        fine = _on_panels(densities, np.concatenate(finer))[1]
-        more = np.concatenate([more[~wide], fine])
+    share = np.max(_KRONROD @ np.abs(more) / np.maximum(total, 1e-300), axis=1)
+    turns = np.diff(panels, axis=1)[:, 0] * late / (2.0 * _ANGLE)
+    wide = np.flatnonzero((turns > 1.0) & (share > _NEGLIGIBLE))
+    if wide.size:
+        wide = wide[np.argsort(-share[wide], kind="stable")]
+        resolved = wide[np.cumsum(1.0 + turns[wide]) <= _MOST_PANELS]
+        unsure = unsure + 2.0 * np.abs(more[np.setdiff1d(wide, resolved)]).max(axis=1, initial=0.0).sum(axis=0)
+        finer = [_divided(float(panels[i, 0]), float(panels[i, 1]), 1 + int(turns[i])) for i in np.sort(resolved)]
+        fine = [_on_panels(densities, part)[1] for part in _in_parts(finer)]
+        more = np.concatenate([np.delete(more, resolved, axis=0), *fine])
     added = added + (_KRONROD @ more).sum(axis=0)
     unsure = unsure + np.abs((_KRONROD - _LESS) @ more).sum(axis=0)
     with np.errstate(divide="ignore"):
@@ -99,6 +99,18 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     there = np.array([np.abs(excesses[name](np.maximum(np.abs(moving), low))) for name in names])
     unsure = unsure + float((there * blurred).max(initial=0.0)) * total
     return added / np.pi, unsure / np.pi
+
+
+def _divided(low: float, high: float, count: int) -> Array:
+    """Panels (count, 2) of equal width."""
+    edges = np.linspace(low, high, count + 1)
+    return np.column_stack([edges[:-1], edges[1:]])
+
+
+def _in_parts(panels: Sequence[Array]) -> list[Array]:
+    """All panels in arrays that fit into memory."""
+    every = np.concatenate(panels) if panels else np.zeros((0, 2))
+    return np.array_split(every, range(_AT_ONCE, len(every), _AT_ONCE)) if len(every) else []
 
 
 def _panels(poles: NDArray[np.complex128], low: float, high: float) -> Array:

@@ -135,7 +135,8 @@ def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
 def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Values over what they would be if the speed only made the road's velocity larger."""
     values, speeds = results["at_speeds.value"].sel(where).values, results["at_speeds.speed"].values
-    return np.asarray(values / values[1] / np.sqrt(speeds / speeds[1]))
+    with np.errstate(divide="ignore", invalid="ignore"):  # of values that are zero
+        return np.asarray(values / values[1] / np.sqrt(speeds / speeds[1]))
 
 
 def _compared(better: float, baseline: str, layout: str) -> str:

@@ -1,1 +1,1 @@
-"""What a study asks of its best designs besides their values, each in one file."""
+"""Tasks on the best designs of a study, one module each: break-even values, Pareto fronts, tolerances."""

@@ -1,4 +1,4 @@
-"""Budgets: how much of an element the best designs bear before they lose to the baseline."""
+"""Break-even values of elements: the range in which each best design outperforms the baseline."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many time
 
 @dataclass(frozen=True)
 class BudgetPart(TaskPart["BudgetAnswer"]):
-    """For which values of an element is a layout better than the baseline, each with its best design for the index?"""
+    """Task part: break-even value of one element for the best design of a layout and index, against the baseline."""
 
     layout: str
     index: str
@@ -40,11 +40,11 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the task part in messages."""
         return f"budget of {self.parameter}, {self.layout} {self.index}"
 
     def answer(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
-        """The budget of the design that was found."""
+        """Break-even value of the element in the best design found."""
         present = design_value(study, designs[Case(self.layout, self.index)], self.parameter)
         may_vanish = study.elements[self.parameter].may_vanish
         design, baseline = (
@@ -65,7 +65,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         return self._answer(study, found, found.status.kind.value, said + more)
 
     def failed(self, study: Study, message: str) -> BudgetAnswer:
-        """The answer without numbers."""
+        """Answer without numbers, with status `failed`."""
         return self._answer(study, None, StatusKind.FAILED.value, message)
 
     def _answer(self, study: Study, found: Budget | None, status: str, message: str) -> BudgetAnswer:
@@ -88,7 +88,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
 
 @dataclass(frozen=True, kw_only=True)
 class BudgetAnswer(Answer):
-    """The end of that range. None where there is no such number."""
+    """Break-even value of an element [SI], with its uncertainty and all crossings; None for values not found."""
 
     sure = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # that a layout is better at every value is an answer
     index: str
@@ -103,19 +103,19 @@ class BudgetAnswer(Answer):
 
     @property
     def part(self) -> BudgetPart:
-        """What it answers."""
+        """Task part to which the answer belongs."""
         return BudgetPart(self.layout, self.index, self.parameter)
 
 
 class Budgets(Task[BudgetAnswer]):
-    """How much of an element each layout bears."""
+    """Task: break-even values of elements, for each layout but the baseline."""
 
     key = "budgets"
     title = "Budgets"
     answer = BudgetAnswer
 
     def parts(self, study: Study) -> list[BudgetPart]:
-        """In the order of elements, indices, layouts."""
+        """Task parts in the order of elements, indices, layouts; the baseline is left out."""
         used = elements_used(study)
         return [
             BudgetPart(layout, index, name)
@@ -126,7 +126,7 @@ class Budgets(Task[BudgetAnswer]):
         ]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """A sweep beside it, no baseline, elements that cannot have one."""
+        """Problems of `budgets`: given together with a sweep, no baseline, elements without a break-even value."""
         place = ("study", "budgets")
         if study.budgets and study.sweeps:
             yield at(place, fault="given together with a sweep", expected="one of the two")
@@ -147,11 +147,11 @@ class Budgets(Task[BudgetAnswer]):
                 yield from unseen_problem(study, place, name)
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
-        """The elements."""
+        """Names of the elements, by the heading of the report."""
         return {"Budgets of": list(study.budgets)}
 
     def csv(self, study: Study, answers: Sequence[BudgetAnswer]) -> Iterator[Sequence[object]]:
-        """One row a budget."""
+        """Header and one row per break-even value."""
         yield "parameter index layout method better value unit standard_error low high crossings status".split()
         for found in answers:
             low, high = found.interval or (None, None)
@@ -185,7 +185,7 @@ class Budgets(Task[BudgetAnswer]):
         return tables
 
     def sentences(self, results: TaskResults[BudgetAnswer], write: Writer) -> Iterator[str]:
-        """For which values of an element each of the best layouts is better."""
+        """Ranges of each element in which the best layouts outperform the baseline, as sentences."""
         study, data, budgets = results.study, results.data, results.answers
         best = {name for index in study.indices for name in best_layouts(data, index)} if budgets else set()
         for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
@@ -204,12 +204,12 @@ class Budgets(Task[BudgetAnswer]):
 
 
 def budget_method(study: Study) -> str:
-    """The first method of `evaluate` that sees friction, else the first."""
+    """First method of `evaluate` that models friction, else the first method."""
     return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
 def design_value(study: Study, outcome: Outcome, element: str) -> float:
-    """The value of an element in the design that was found."""
+    """Value of an element in the design found [SI]."""
     value = study.elements[element].value
     assert not isinstance(value, Tied)
     return outcome.parameters[element] if isinstance(value, Free) else value
@@ -238,7 +238,7 @@ def _sentence(found: BudgetAnswer, write: Writer) -> str:
 
 
 def _end_of_range(found: BudgetAnswer, write: Writer) -> str:
-    """The end of the range, and its other end where the design is not better all the way; empty if there is none."""
+    """Break-even value as text, or the range if the design is worse again beyond another crossing; empty if none."""
     if found.value is None:
         return ""
     end = write(found.value, found.unit, found.standard_error or 0.0)
@@ -250,7 +250,7 @@ def _end_of_range(found: BudgetAnswer, write: Writer) -> str:
 
 
 def _remark(found: BudgetAnswer, write: Writer) -> str:
-    """Why there is no end, what is wrong with it, and whether there are further crossings."""
+    """Remark on a break-even value: further crossings, doubt, or reason why there is none."""
     remarks = []
     if len(found.crossings) > 1:
         places = [write(value, found.unit, float("nan")) for value in found.crossings]
@@ -265,7 +265,7 @@ def _remark(found: BudgetAnswer, write: Writer) -> str:
 def _alike(
     data: xr.Dataset, found: Sequence[BudgetAnswer], said: Callable[[BudgetAnswer], str]
 ) -> Iterator[tuple[str, str]]:
-    """Each sentence once, with the indices of which it is said."""
+    """Distinct sentences, each with the titles of the indices to which it applies."""
     for message in dict.fromkeys(said(one).rstrip(".") for one in found):
         if message:
             yield message, listed([index_title(data, o.index) for o in found if said(o).rstrip(".") == message])

@@ -1,4 +1,4 @@
-"""Fronts: designs of each layout of which none is better than another in all indices of a trade-off."""
+"""Pareto fronts: non-dominated designs of each layout in the indices of a trade-off."""
 
 from __future__ import annotations
 
@@ -42,17 +42,17 @@ _SAME = 1e-9  # relative; a point that is as good as another in all indices does
 
 @dataclass(frozen=True)
 class FrontPart(TaskPart["FrontAnswer"]):
-    """What is the trade-off of a layout?"""
+    """Task part: Pareto front of one layout."""
 
     layout: str
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the task part in messages."""
         return f"front of {self.layout}"
 
     def answer(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
-        """The front."""
+        """Pareto front of the layout."""
         limits = [limit for several in limits_in(study) for limit in several]
         indices = [study.asked(name, self.layout) for name in study.trade_off]
         method = study.method(str(study.optimise), threads)
@@ -62,13 +62,13 @@ class FrontPart(TaskPart["FrontAnswer"]):
         return _answer(self.layout, found, str(study.optimise))
 
     def failed(self, study: Study, message: str) -> FrontAnswer:
-        """The answer without points."""
+        """Answer without points, with status `failed`."""
         return _without(self.layout, StatusKind.FAILED.value, message)
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrontAnswer(Answer):
-    """The points of a front in rising order of the first index."""
+    """Points of a Pareto front, in ascending order of the first index [SI]."""
 
     values: list[list[float]]  # of each point, by index
     parameters: list[dict[str, float]]
@@ -78,25 +78,25 @@ class FrontAnswer(Answer):
 
     @property
     def part(self) -> FrontPart:
-        """What it answers."""
+        """Task part to which the answer belongs."""
         return FrontPart(self.layout)
 
 
 class Fronts(Task[FrontAnswer]):
-    """The trade-off of each layout between two or three indices."""
+    """Task: Pareto front of each layout in two or three indices."""
 
     key = "fronts"
     title = "Trade-off"
     answer = FrontAnswer
 
     def parts(self, study: Study) -> list[FrontPart]:
-        """One for each layout that has free values."""
+        """Task parts, one for each layout with design variables; empty without `trade_off`."""
         if not study.trade_off:
             return []
         return [FrontPart(layout) for layout in study.layouts if study.design(layout).free_values()]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """The number of indices and of points, and what cannot be beside a front."""
+        """Problems of `trade_off` and `points`: numbers of indices and points, a sweep, nothing optimised."""
         place = ("study", "trade_off")
         if "points" in given and not study.trade_off:
             yield at(("study", "points"), fault="there is no front", expected="trade_off, or no points")
@@ -115,11 +115,11 @@ class Fronts(Task[FrontAnswer]):
             yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
-        """The indices."""
+        """Indices of the trade-off, by the heading of the report."""
         return {"Trade-off": [" against ".join(map(spoken, study.trade_off))] if study.trade_off else []}
 
     def csv(self, study: Study, answers: Sequence[FrontAnswer]) -> Iterator[Sequence[object]]:
-        """One row a point."""
+        """Header and one row per point; one row with the status for an empty front."""
         free = study.free_units
         names = [name for name in free if any(name in design for front in answers for design in front.parameters)]
         indices = [headed(name, study.unit(name)) for name in study.trade_off]
@@ -133,7 +133,7 @@ class Fronts(Task[FrontAnswer]):
                 yield [front.layout, "", *([""] * (len(indices) + len(names) + 2)), front.status_text]
 
     def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[FrontAnswer]) -> xr.Dataset:
-        """With the fronts: dimensions layout, front_point, criterion, and parameter."""
+        """Dataset with the fronts: dimensions layout, front_point, criterion, and parameter."""
         points = max([len(front.values) for front in answers] + [1])
         layouts, parameters = data["layout"].values.tolist(), data["parameter"].values.tolist()
         values = np.full((len(layouts), points, len(study.trade_off)), np.nan)
@@ -194,14 +194,14 @@ class Fronts(Task[FrontAnswer]):
         return [Table(trade_off_title(data), ["Design", *names, *parameters], rows)]
 
     def introduction(self) -> str:
-        """What the table has, and where the rest is."""
+        """Paragraph above the table: which designs it lists, and the file with all points."""
         return (
             "The ends and the knee of each layout's front: no design of the layout is better in all of these indices. "
             "fronts.csv has all points."
         )
 
     def sentences(self, results: TaskResults[FrontAnswer], write: Writer) -> Iterator[str]:
-        """What the trade-off of each layout is at its knee, and how much of the baseline's it betters."""
+        """Sentence on each Pareto front: indices at its knee, and number of dominated designs of the baseline."""
         data = results.data
         names, baseline = criteria(data), data.attrs["baseline"]
         found, doubts = [], []
@@ -252,7 +252,7 @@ def _text(status: Status) -> str:
 
 
 def _told_points(data: xr.Dataset, layout: str) -> list[tuple[str, int]]:
-    """The best points for each index, and the knee."""
+    """Labels and numbers of the listed points: minimum of each index, and the knee."""
     values = data["front_value"].sel(layout=layout).values
     if not np.isfinite(values).any():
         return []
@@ -287,7 +287,7 @@ def _has(data: xr.Dataset, parameter: str) -> bool:
 
 
 def _bettered(data: xr.Dataset, layout: str, baseline: str) -> str:
-    """Of how many designs of the baseline's front the layout has one that is better in all indices."""
+    """Clause on how many designs of the baseline's front `layout` strictly dominates; empty without points."""
     ours, theirs = (data["front_value"].sel(layout=name).values for name in (layout, baseline))
     ours, theirs = (values[np.isfinite(values).all(axis=1)] for values in (ours, theirs))
     if not len(ours) or not len(theirs):

@@ -1,4 +1,4 @@
-"""Tolerances: how the index of each best design scatters with its values, and which value matters most."""
+"""Tolerance analysis: distribution of the index of each best design, and sensitivity to each value."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ _HEADER = ("Mean", "Standard deviation", f"{100 * SHARE:g} % of cases below", "W
 
 @dataclass(frozen=True)
 class TolerancePart(TaskPart["ToleranceAnswer"]):
-    """What becomes of the index of the design that is best for it?"""
+    """Task part: tolerance analysis of the best design of one layout for one index."""
 
     layout: str
     index: str
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the task part in messages."""
         return f"tolerance of {self.layout} {self.index}"
 
     def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
-        """The tolerance of the design that was found."""
+        """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
         found = tolerance(
             study.design(self.layout).with_values(designs[Case(self.layout, self.index)].parameters),
@@ -63,7 +63,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
         )
 
     def failed(self, study: Study, message: str) -> ToleranceAnswer:
-        """The answer without numbers."""
+        """Answer without numbers, with status `failed`."""
         return ToleranceAnswer(
             layout=self.layout,
             index=self.index,
@@ -78,7 +78,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
 
 @dataclass(frozen=True, kw_only=True)
 class ToleranceAnswer(Answer):
-    """The distribution of an index, and which values it is due to."""
+    """Distribution of an index [SI], and first- and total-order Sobol' indices of the values."""
 
     index: str
     method: str
@@ -88,37 +88,37 @@ class ToleranceAnswer(Answer):
 
     @property
     def part(self) -> TolerancePart:
-        """What it answers."""
+        """Task part to which the answer belongs."""
         return TolerancePart(self.layout, self.index)
 
 
 class Tolerances(Task[ToleranceAnswer]):
-    """How each index scatters at its best design."""
+    """Task: distribution of each index at its best design within the tolerances."""
 
     key = "tolerances"
     title = "Tolerances"
     answer = ToleranceAnswer
 
     def parts(self, study: Study) -> list[TolerancePart]:
-        """In the order of indices, layouts; those of which something scatters."""
+        """Task parts in the order of indices, layouts; only layouts with a value that has a tolerance."""
         layouts = [layout for layout in study.layouts if study.spread(layout)]
         return [TolerancePart(layout, index) for index in study.indices for layout in layouts]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """A quantile without tolerances, a sweep beside them."""
+        """Problems of `tolerance` and `quantile`: a quantile without tolerances, tolerances together with a sweep."""
         if study.quantile is not None and not study.tolerance:
             yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
         if study.tolerance and study.sweeps:
             yield at(("study", "tolerance"), fault="given together with a sweep", expected="one of the two")
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
-        """By what part each value scatters, and the quantile that is made best."""
+        """Relative tolerance of each value, and the percentile that is minimised, by the headings of the report."""
         quantile = [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else []
         parts = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
         return {"Tolerances": parts, "Best at": quantile}
 
     def csv(self, study: Study, answers: Sequence[ToleranceAnswer]) -> Iterator[Sequence[object]]:
-        """One row a design; the effects are parts of the variance."""
+        """Header and one row per design; effects are fractions of the variance."""
         names = list(dict.fromkeys(name for one in answers for name in one.effects))
         effects = [f"{kind} effect of {name}" for name in names for kind in ("main", "total")]
         header = [f"quantile_{SHARE:g}" if name == "quantile" else name for name in _NUMBERS]
@@ -142,7 +142,7 @@ class Tolerances(Task[ToleranceAnswer]):
             yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
 
     def tables(self, results: TaskResults[ToleranceAnswer]) -> list[Table]:
-        """One table, a row for each design."""
+        """Single table with one row per design."""
         rows = []
         for one in results.answers:
             cells = [Cell(text) for text in _texts(one, printed)]
@@ -150,14 +150,14 @@ class Tolerances(Task[ToleranceAnswer]):
         return [Table("Best designs with tolerances", ["Design", *_HEADER], rows)]
 
     def introduction(self) -> str:
-        """What scatters, and what the last column is."""
+        """Paragraph above the table: distribution of the values, and meaning of the last column."""
         return (
             "Each best design with values uniformly distributed within their tolerances. "
             "Last column: share of the variance that would vanish if the value were exact (total effect)."
         )
 
     def sentences(self, results: TaskResults[ToleranceAnswer], write: Writer) -> Iterator[str]:
-        """For each index that scatters the layout with the lowest quantile, and those of which there is none."""
+        """Layout with the lowest quantile for each index, and layouts without an answer, as sentences."""
         data, answers = results.data, results.answers
         for index in dict.fromkeys(one.index for one in answers):
             own = [one for one in answers if one.index == index]
@@ -173,7 +173,7 @@ class Tolerances(Task[ToleranceAnswer]):
 
 
 def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None, write: Writer) -> str:
-    """The layout with the lowest quantile, compared with the baseline, and with the order of nominal designs."""
+    """Sentence on the layout with the lowest quantile, compared with the baseline and the best nominal layout."""
     by_quantile = sorted(known, key=lambda one: one.numbers["quantile"])
     best, nominal = by_quantile[0], min(known, key=lambda one: one.numbers["nominal"])
     _, deviation, quantile, worst = _texts(best, write)
@@ -195,7 +195,7 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
 
 
 def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
-    """Parts of the variance with the values that they are due to, the largest first."""
+    """Pairs of total-order Sobol' index and name of the value, largest first."""
     return sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
 
 
@@ -205,5 +205,5 @@ def _texts(one: ToleranceAnswer, write: Writer) -> list[str]:
 
 
 def _due(one: ToleranceAnswer) -> str:
-    """What the scatter is due to, the largest part first."""
+    """Values that contribute to the variance, largest first, each with its total-order Sobol' index [%], as text."""
     return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or "–"

@@ -1,1 +1,1 @@
-"""What this package reads and writes as files, apart from what is in them."""
+"""Files read and written by this package, one subpackage per kind, independent of the computations."""

@@ -1,1 +1,1 @@
-"""What all kinds of files share: elements, layouts and signals in TOML, what is wrong with them, and result folders."""
+"""Parts common to all kinds of files: elements, layouts and signals in TOML, problems of entries, result folders."""

@@ -1,4 +1,4 @@
-"""One codec for files: a key is declared once, and so read, written, described, and found and changed by its place.
+"""Codecs of file entries: each key is declared once for reading, writing, describing, finding and replacing its value.
 
 A `Codec` is a kind of entry. A frozen dataclass has one for each of its fields that is a key, and with them is
 a table of a file, `TableCodec(kind)`. Loading with a sentence for every problem, dumping, the JSON Schema, the numbers
@@ -39,7 +39,7 @@ class LoadContext:
     loaded: dict[str, Any] = field(default_factory=dict)  # sections that were read before, by their keys
 
     def at(self, key: str, example: str = "") -> LoadContext:
-        """The context of an entry below; without an example it has that of the table that it is in."""
+        """Context of the entry at `key`; without an example, that of the enclosing table."""
         return LoadContext(
             self.tables, self.root, (*self.place, key), example or self.example, self.problems, self.loaded
         )
@@ -50,7 +50,7 @@ class LoadContext:
         self.problems.append(replace(problem, place=(*self.place, *problem.place)))
 
     def read(self, codec: Codec, raw: Any) -> Any:
-        """The value of an entry; `INVALID`, with its problems added, where there is none."""
+        """Value of an entry; `INVALID` for an invalid one, whose problems are added."""
         try:
             return codec.load(raw, self)
         except (ValueError, InerterError) as error:
@@ -68,11 +68,11 @@ class Codec:
     """A kind of entry of a file: reads, writes and describes it, and finds and replaces the numbers in its value."""
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The value; raises ValueError, or adds problems to the context and returns `INVALID`."""
+        """Value of the entry; raises ValueError, or adds problems to the context and returns `INVALID`."""
         raise NotImplementedError
 
     def dump(self, value: Any) -> Any:
-        """The entry of a value, in SI units; None or empty for what is left out."""
+        """Entry of a value, in SI units; None or empty for a value that is left out of the file."""
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -94,7 +94,7 @@ class Codec:
 
 @dataclass(frozen=True)
 class Declaration:
-    """A key of a table: what may stand there, a sentence, and an example as a line of a file."""
+    """Key of a table: codec, sentence, example as a line of a file, and default."""
 
     codec: Codec
     sentence: str = ""
@@ -120,7 +120,7 @@ class Declaration:
 
 
 def key(codec: Codec, sentence: str = "", example: str = "", *, default: Any = REQUIRED, **more: Any) -> Any:
-    """A field of a `declared` class that is a key of a file; as `Declaration`.
+    """Field of a `declared` class that is a key of a file; arguments are those of `Declaration`.
 
     It has the name of the field unless another `name` is given, as one that is a keyword of Python needs.
     """
@@ -177,11 +177,11 @@ class TableCodec(Codec):
 
     @property
     def names(self) -> list[str]:
-        """All keys that it knows."""
+        """Names of all keys of the table."""
         return [*filter(None, self.tag[:1]), *(one.name for one in self.keys)]
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The object or the dictionary; keys that it does not know are problems."""
+        """Object or dictionary of the table; unknown keys are problems."""
         raw, count = self.before(context.table(raw)), len(context.problems)
         values: dict[str, Any] = {}
         for one in self.keys:
@@ -245,7 +245,7 @@ class TableCodec(Codec):
         }
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """The numbers of all its keys; none where there is no table."""
+        """Numbers of all keys of the table; none without a table."""
         values = {} if value is None else self.values(value)
         for one in () if value is None else self.keys:
             for keys, number in one.codec.numbers(values.get(one.attribute), one.words):
@@ -265,7 +265,7 @@ class TableCodec(Codec):
 
 
 def table_of(kind: Any, **more: Any) -> TableCodec:
-    """The table of a declared class, which becomes an object of it; as `TableCodec`."""
+    """Codec of the table of a declared class, whose value is an object of the class; as `TableCodec`."""
     return TableCodec(**{"keys": keys_in(kind), "make": kind, **more})
 
 
@@ -278,11 +278,11 @@ class Scalar(Codec):
     write: Callable[[Any], Any] = lambda value: value
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The value."""
+        """Value of the entry, as `check` returns it."""
         return self.check(raw)
 
     def dump(self, value: Any) -> Any:
-        """The entry."""
+        """Entry of a value, as `write` returns it."""
         return self.write(value)
 
     def schema(self) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from inerter.units import shown
 
 @dataclass(frozen=True)
 class TaggedCodec(Codec):
-    """One of several tables, decided by the word at the key `tag`; `word_of` is that of a value."""
+    """One of several tables, selected by the word at the key `tag`; `word_of` returns the word of a value."""
 
     tag: str
     of: Callable[[], Mapping[str, TableCodec]]
@@ -23,7 +23,7 @@ class TaggedCodec(Codec):
     usual: str  # a word, for examples
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The value of the table that its word decides."""
+        """Value of the table that the word at `tag` selects."""
         table, inside = context.table(raw), context.at(self.tag)
         if self.tag not in table:
             inside.add(EntryError(fault="missing", expected=f'{self.tag} = "{self.usual}"'))
@@ -56,7 +56,7 @@ class TaggedCodec(Codec):
         return self.table_of(value).put(value, keys, number)
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """All of them."""
+        """Tables of all words, by their key paths."""
         for table in self.of().values():
             yield from table.tables(place)
 
@@ -131,7 +131,7 @@ class RowsCodec(Codec):
         return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))
 
     def dump(self, value: Any) -> list[Any]:
-        """The tables."""
+        """List of the tables."""
         return [self.item.dump(one) for one in value]
 
     def schema(self) -> dict[str, Any]:
@@ -141,21 +141,21 @@ class RowsCodec(Codec):
 
 @dataclass(frozen=True)
 class EitherCodec(Codec):
-    """A table of one kind, or what is no table."""
+    """Codec of a table of one kind, or of an entry that is not a table."""
 
     table: TableCodec
     other: Codec
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The value of the one that it is."""
+        """Value of the entry, by the codec that applies to it."""
         return (self.table if isinstance(raw, dict) else self.other).load(raw, context)
 
     def schema(self) -> dict[str, Any]:
-        """The JSON Schema of both."""
+        """JSON Schema of the table or the other entry."""
         return any_of([self.table.schema(), self.other.schema()])
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
-        """The table."""
+        """Table of the codec and those in it, by their key paths."""
         yield from self.table.tables(place)
 
 
@@ -166,11 +166,11 @@ class ByPlaceCodec(NamesCodec):
     entries: bool = False  # whether an entry may be a table, one that holds no other
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """The entries by their places; what they may be is seen when the whole file is known."""
+        """Entries by key path; their values are checked once the whole file is read."""
         return super().load(by_place(raw, entries=self.entries), context)
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """No numbers, since they are those of other places."""
+        """Empty: the numbers belong to other key paths."""
         yield from ()
 
     def schema(self) -> dict[str, Any]:

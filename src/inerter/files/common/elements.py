@@ -68,7 +68,7 @@ class ElementCodec(Codec):
     tied: bool = False
 
     def load(self, raw: Any, context: LoadContext) -> Element | TieEntry:
-        """The element, or what it follows from."""
+        """Element of the entry, or the expression of a tied element."""
         name = context.place[-1] if NAME.fullmatch(context.place[-1]) else "unnamed"  # which is refused with the key
         if self.tied and is_tie(raw):
             return tie_entry(raw)
@@ -86,7 +86,7 @@ class ElementCodec(Codec):
         return kinds_by_unit()[found.lower.unit].of(Free(found.lower.value, found.upper.value, name), name)
 
     def dump(self, value: Element) -> str | dict[str, Any]:
-        """Its value or range alone where the unit tells the kind."""
+        """Value or range alone where the unit determines the kind of element; else a table with the kind."""
         number, unit = value.value, value.unit
         if isinstance(number, Tied):
             return {TIED: tie_text(number)}
@@ -103,7 +103,7 @@ class ElementCodec(Codec):
         return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties])
 
     def numbers(self, value: Element, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """Its value with its bounds, and what else it is made of."""
+        """Value of the element with its bounds, and its further numbers, by their keys."""
         yield from with_bounds(Number(value.unit, words, value.value, value.may_vanish))
         for field in value.more:
             yield (field.name,), Number(field.unit, field.in_words, getattr(value, field.name))
@@ -130,7 +130,7 @@ def elements_codec(*, free: bool, tied: bool = False, least: int = 1) -> NamesCo
 
 
 def with_tied_values(entries: Mapping[str, Element | TieEntry]) -> tuple[dict[str, Element], list[Problem]]:
-    """The elements, in their order, and what is wrong with those that are tied."""
+    """Elements in their order, and the problems of tied elements."""
     own = {name: entry for name, entry in entries.items() if not isinstance(entry, TieEntry)}
     found, problems = {}, []
     for name, entry in entries.items():

@@ -84,7 +84,7 @@ class QuantityCodec(Codec):
         return or_range_schema(one) if self.free else one
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """The quantity, and its bounds if it is free."""
+        """Quantity, and its bounds if it is a design variable."""
         if value is not None or not self.if_given:
             yield from with_bounds(Number(self.unit, words, value, self.least == "not negative"))
 
@@ -147,7 +147,7 @@ def positive_in(text: Any, unit: str) -> float:
 
 
 def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: bool = False) -> Declaration:
-    """The key of what a dataclass states of a field of its own; one that may be free may be a range here if `free`.
+    """Key declaration from the metadata of a dataclass field; may be a range if `free` and the field permits it.
 
     Those without a default must be given, unless all are `optional` here, and those whose default is zero may be zero.
     """
@@ -184,7 +184,7 @@ def amount(text: Any) -> Amount:
 
 
 def quantity_text(text: Any) -> str:
-    """A number with a unit, whose kind of quantity is known when the place is that it is for."""
+    """Text of a number with a unit; the kind of quantity is checked once its key path is known."""
     unit_in(text)
     return str(text)
 
@@ -223,7 +223,7 @@ TEXT = Scalar(text, lambda: TEXT_SCHEMA)
 
 
 def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
-    """One of the words that this version knows, or a key of a table; `what` says what it is, with its article."""
+    """Check that returns a word if it is among the `known` ones; `what` names it in messages, with its article."""
 
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in known:
@@ -252,7 +252,7 @@ class SomeOfFile(Codec):
     known: Callable[[Mapping[str, Any]], Collection[str]]
 
     def load(self, raw: Any, context: LoadContext) -> tuple[str, ...]:
-        """The words."""
+        """List of the words."""
         words = self.known(context.tables)
         return _check_list(raw, one_of(self.what, words), lambda: next(iter(words)))
 
@@ -266,7 +266,7 @@ class SomeOfFile(Codec):
 
 
 def some_names(example: str) -> Codec:
-    """A list of at least one name, none of them twice; whether they are known is seen later."""
+    """List of at least one name, without repetition; whether the names exist is checked later."""
     return _list_of(text, lambda: example, lambda: TEXT_SCHEMA)
 
 
@@ -275,7 +275,7 @@ def _list_of(one: Callable[[Any], str], example: Callable[[], str], schema: Call
 
 
 def list_or_none(values: Collection[Any]) -> list[Any] | None:
-    """The values as a list; None if there are none."""
+    """Values as a list; None if empty."""
     return list(values) or None
 
 
@@ -312,7 +312,7 @@ SHARE = Scalar(share, lambda: SHARE_SCHEMA)
 
 
 def expression(value: Any) -> str:
-    """The text of a network; whether it can be parsed is seen when all elements are known."""
+    """Expression of a network; its syntax is checked once all elements are known."""
     if not isinstance(value, str):
         raise EntryError(got=shown(value), expected='a network in quotes, such as "k | c - b"')
     if len(value) > _LONGEST_EXPRESSION or value.count("(") > _MOST_BRACKETS:
@@ -336,7 +336,7 @@ _TAKEN = frozenset(
 
 
 def element_name(name: Any) -> str:
-    """A name that can stand in an expression, and in results beside the names that are there already."""
+    """Name valid in a network expression and not used by results themselves; raises `EntryError` for another."""
     if not NAME.fullmatch(name):
         letters = "a letter followed by letters, digits and underscores, such as k1"
         raise EntryError(got=shown(name), fault="not a name", expected=letters)

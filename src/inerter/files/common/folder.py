@@ -1,4 +1,4 @@
-"""Result folders: new results come together beside the old ones, and take their place when they are whole.
+"""Result folders: new results are written next to the old ones, and replace them once the run has completed.
 
 Only files that this package wrote there, and that nobody has changed since, are ever replaced or removed.
 """
@@ -26,7 +26,7 @@ _SHOWN = 3  # names in a message
 
 @dataclass(frozen=True)
 class Intent:
-    """What a command is going to do with a folder; `resume` is None for work that is done in one go.
+    """Planned use of a result folder by a command; `resume` is None for work that cannot be resumed.
 
     `names` are what it will write there, folders with "/" at the end; `inputs` are the files that it reads.
     """
@@ -41,7 +41,7 @@ class Intent:
 
 @dataclass(frozen=True)
 class Results:
-    """A folder that is ours alone while we write.
+    """Result folder under the exclusive lock of this process.
 
     What is written goes to `draft`, and with `publish` to its `place`: the `folder` itself or, as long as that holds
     the results which these replace, one beside them.
@@ -55,17 +55,17 @@ class Results:
 
     @property
     def resume(self) -> bool:
-        """Whether what is there already is to be kept."""
+        """Whether existing results are kept and completed."""
         return bool(self.intent.resume)
 
     def within(self, name: str) -> Results:
-        """A folder of results in this one."""
+        """Subfolder of results in this folder."""
         parts = {part: getattr(self, part) / name for part in ("folder", "place", "draft")}
         (self.draft / name).mkdir(exist_ok=True)
         return replace(self, **parts, top=self.top or self)
 
     def list_journal(self, name: str) -> None:
-        """Say that the file of that name, which grows in the `place`, is ours."""
+        """List the file `name`, which grows in `place`, as a journal of this package."""
         top = self.top or self
         own = (self.place / name).relative_to(top.place).as_posix()
         top.place.mkdir(exist_ok=True)
@@ -73,7 +73,7 @@ class Results:
         self.place.mkdir(exist_ok=True)  # a folder that is on no list could not be gone on with
 
     def publish(self) -> None:
-        """Move everything that was drafted to its place, or nothing where a file that is not ours is in the way."""
+        """Move all drafted files to `place`; move none if a file not written by this package is in the way."""
         top = self.top or self
         files = {name: Entry(self.intent.by, (digest(top.draft / name),)) for name in names_below(top.draft)}
         _move(top.draft, top.place, files, top.intent.inputs)
@@ -120,7 +120,7 @@ def _results(intent: Intent) -> Iterator[Results]:
 
 
 def _seal(folder: Path) -> None:
-    """The journals of a folder will not grow any more."""
+    """Record the final hashes of the journals of a folder."""
     known = listing(folder) or Listing()
     grown = {name: entry for name, entry in known.files.items() if entry.journal and not entry.digests}
     known.with_files({n: replace(e, digests=(digest(folder / n),)) for n, e in grown.items()}).write(folder)
@@ -128,7 +128,7 @@ def _seal(folder: Path) -> None:
 
 @contextmanager
 def single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> Iterator[Path]:
-    """Where to write one file that is to be at `path`, in a folder that may hold anything else.
+    """Draft path of one file that is moved to `path` at the end; its folder may hold any other files.
 
     Raises as `check_single` does, and `WorkError` if the disk is full.
     """
@@ -230,14 +230,14 @@ def _enumerated(names: list[str]) -> str:
 
 
 def _is_empty(folder: Path) -> bool:
-    """Whether there is nothing in a folder, not even its beginnings, but what an earlier end has left of our own."""
+    """Whether a folder holds nothing, apart from traces of this package without results."""
     if not folder.exists():
         return True
     return {entry.name for entry in os.scandir(folder)} <= {MARK} and _is_mark(folder) and not (folder / _NEW).exists()
 
 
 def _is_mark(folder: Path) -> bool:
-    """Whether our mark is there, or nothing of that name."""
+    """Whether the folder's mark is that of this package, or absent."""
     mark = folder / MARK
     if not os.path.lexists(mark):
         return True
@@ -249,7 +249,7 @@ def _strange(mark: Path) -> list[str]:
 
 
 def _complete(folder: Path) -> None:
-    """Put new results that are whole in the place of the old ones; if that was cut short before, the rest of them."""
+    """Replace old results by complete new ones, or finish a replacement that was interrupted."""
     new = folder / _NEW
     found = listing(new)
     if found is not None and (new / _WHOLE).exists():
@@ -300,7 +300,7 @@ def _move(
 
 
 def _is_there(folder: Path, name: str, known: Listing, entry: Entry) -> bool:
-    """Whether a file is there already, just as it is to be."""
+    """Whether the file already exists with one of the expected hashes, unchanged since it was written."""
     return is_own(folder, name, known) and digest(folder / name) in entry.digests
 
 
@@ -311,7 +311,7 @@ def _may_replace(folder: Path, name: str, known: Listing, by: str, inputs: tuple
 
 
 def _is_input(path: Path, inputs: tuple[Path, ...]) -> bool:
-    """Whether it is one of the inputs, by whatever name, link or spelling."""
+    """Whether the path is one of the inputs, under any name, link or spelling."""
     return any(given.exists() and path.samefile(given) for given in inputs)
 
 
@@ -325,7 +325,7 @@ def _prune(folder: Path, names: Iterable[str]) -> None:
 
 @contextmanager
 def _locked(folder: Path, wait: float) -> Iterator[None]:
-    """Alone in a folder, which is made if there is none; what was made and not used is removed again."""
+    """Hold the lock of a folder, created if missing; unused folders created for it are removed again."""
     made = [path for path in (folder / MARK, folder, *folder.parents) if not path.exists()]
     try:
         (folder / MARK).mkdir(parents=True, exist_ok=True)

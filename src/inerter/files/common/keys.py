@@ -33,12 +33,12 @@ class Key:
 
     @property
     def other_units(self) -> tuple[str, ...]:
-        """Units in which it is often written, but its own."""
+        """Units in common use, other than the key's own."""
         return tuple(unit for unit in USUAL.get(self.unit, ()) if unit != self.unit)
 
 
 def keys_of(schema: Mapping[str, Any]) -> list[Key]:
-    """All keys below a JSON Schema of a file that it has a sentence for, sections before what they hold."""
+    """Keys in a JSON Schema of a file that have a sentence, sections before their keys."""
     return [key for key in _below(schema, "") if key.sentence]
 
 
@@ -83,7 +83,7 @@ def _below(schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]
 
 
 def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterator[Key]:
-    """A key, and those that it holds."""
+    """Key of a schema, and the keys below it."""
     said = {**next((one for one in _alternatives(schema) if "properties" not in one), {}), **schema}
     held = list(_below(schema, place, of))
     words = said.get("enum") or said.get("items", {}).get("enum") or ([said["const"]] if "const" in said else [])
@@ -102,7 +102,7 @@ def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterat
 
 
 def _alternatives(schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """What an entry may be: the schema itself, or each of several."""
+    """Schemas that an entry may satisfy: the schema itself, or each of its `anyOf`."""
     if "anyOf" not in schema:
         yield schema
     for one in schema.get("anyOf", ()):

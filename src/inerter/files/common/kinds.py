@@ -1,4 +1,4 @@
-"""Kinds of files: each is a folder beside this one that states its `KIND`, and so is found here without being named."""
+"""Kinds of files: each subpackage of `files` that states a `KIND` is found here without being named."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEFAULT = "run"  # the command of the kind that a file without any known section
 
 @dataclass(frozen=True)
 class FileKind:
-    """What files of a kind are called, the command that reads them, and sections by which they are known.
+    """Name of a kind of file, the command that reads it, and the sections that identify it.
 
     The module `checking` of its `folder` has `check_lines(path)`: sentences about a file that the command accepts. It
     raises the `StudyError` with which the command would refuse it.
@@ -32,7 +32,7 @@ class FileKind:
 
     @property
     def singular(self) -> str:
-        """What one file is called."""
+        """Name of one file of the kind."""
         return self.plural.removesuffix("s")
 
     def call(self, path: Path) -> str:
@@ -53,12 +53,12 @@ def kinds() -> tuple[FileKind, ...]:
 
 
 def kind_with(section: str) -> FileKind | None:
-    """The kind of file that is known by a section, if there is one."""
+    """Kind of file that a section identifies; None for an unknown section."""
     return next((kind for kind in kinds() if section in kind.sections), None)
 
 
 def kind_of(tables: Mapping[str, Any]) -> FileKind:
-    """The kind of file of whose sections most are in `tables`; a study file where there are none of any."""
+    """Kind of file with the largest share of its sections in `tables`; a study file if none is present."""
     return max(kinds(), key=lambda kind: (_share(kind, tables), kind.command == DEFAULT))
 
 

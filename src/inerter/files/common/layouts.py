@@ -107,7 +107,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
 
 
 def layout_problems(elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[Problem]:
-    """What is wrong with layouts: networks that cannot be, and elements that are not there."""
+    """Problems of layouts: invalid networks and unknown elements."""
     for name, layout in layouts.items():
         alike = len(set(layout.struts.values())) == 1
         for mount, expression in list(layout.struts.items())[: 1 if alike else None]:
@@ -116,7 +116,7 @@ def layout_problems(elements: Mapping[str, Element], layouts: Mapping[str, Strut
 
 
 def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:
-    """What is wrong with the network at one place: its syntax, or elements that are not there."""
+    """Problems of the network at one place: its syntax, or unknown elements."""
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
@@ -129,7 +129,7 @@ def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[
 
 
 def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[Problem]:
-    """What is wrong with the layout that a section chooses."""
+    """Problem of the layout named in a section: missing where several exist, or unknown."""
     layouts = some(known)
     if not layout:
         yield at((section, "layout"), fault="missing, but there are several layouts", expected=f"one of {layouts}")

@@ -1,4 +1,4 @@
-"""What this package wrote in a folder: a list with the hash of every file, by which its own are told from a user's."""
+"""List of the files written in a folder, with a hash of each, which distinguishes them from the user's files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ABOUT = (
 
 @dataclass(frozen=True)
 class Entry:
-    """A file that was written: by which command, and the hashes that it may have; none for a journal that grows.
+    """Listed file: the command that wrote it, and its possible hashes; none for a journal that grows.
 
     A `single` one was asked for by its name, and makes no folder of results.
     """
@@ -42,11 +42,11 @@ class Listing:
     files: Mapping[str, Entry] = field(default_factory=dict)
 
     def by(self, command: str) -> dict[str, Entry]:
-        """Those of one command."""
+        """Entries of the files written by `command`, by name."""
         return {name: entry for name, entry in self.files.items() if entry.by == command}
 
     def with_files(self, files: Mapping[str, Entry], without: Iterable[str] = ()) -> Listing:
-        """With these instead of those of the same name, and without others."""
+        """Listing with `files` added or replaced, and the names in `without` removed."""
         gone = set(without)
         return Listing({name: entry for name, entry in {**self.files, **files}.items() if name not in gone})
 
@@ -60,7 +60,7 @@ class Listing:
 
 
 def listing(folder: Path) -> Listing | None:
-    """The list of a folder; None if there is none that can be read."""
+    """Listing of a folder; None if it has none that is readable."""
     try:
         files = json.loads((folder / _NAME).read_bytes())["files"]
         found = {

@@ -30,7 +30,7 @@ def is_on_road(model: str) -> bool:
 
 
 def road_sentence(road: Road, speed: str = "") -> str:
-    """The class of a road and, if it is given, the `speed` at which it is driven."""
+    """Class of a road and, if given, the vehicle `speed`, as a sentence."""
     return f"Road: {class_words(road)}{f', at {speed}' if speed else ''}"
 
 
@@ -40,7 +40,7 @@ def class_words(road: Road) -> str:
 
 
 def road_warnings(road: Road) -> Iterator[str]:
-    """Why a road, or the speed on it, may not be what is meant."""
+    """Warnings on an implausible road, or an implausible speed on it."""
     letter = road.iso8608_class.letter
     if letter in _ROUGHEST:
         yield (
@@ -60,7 +60,7 @@ def road_warnings(road: Road) -> Iterator[str]:
 
 
 def vehicle_warnings(model: str, values: Mapping[str, Any], elements: Iterable[tuple[str, Element]]) -> Iterator[str]:
-    """Which numbers no vehicle of this model has: of the vehicle, its seat, and the elements of its struts."""
+    """Sentences on implausible numbers of a road vehicle, its seat, and the elements of its struts."""
     if not is_on_road(model):
         return
     yield from _beyond_usual(f"{model.replace('-', ' ')}", fields_of(VEHICLES[model]), values)

@@ -16,7 +16,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 @dataclass(frozen=True)
 class Problem:
-    """What is wrong with an entry of a file; `said` is a whole sentence where another one, such as an error, has it."""
+    """Problem of an entry of a file; `said` is a complete sentence, such as that of an error, in place of the parts."""
 
     place: tuple[str, ...] = ()  # the path of keys
     said: str = ""
@@ -32,7 +32,7 @@ class Problem:
 
 
 class EntryError(ValueError):
-    """An entry that is not what it should be, wherever it stands."""
+    """Invalid entry, regardless of its place in the file."""
 
     def __init__(self, *, got: str = "", fault: str = "", expected: str = "", hint: str = "") -> None:
         self.problem = Problem(got=got, fault=fault, expected=expected, hint=hint)

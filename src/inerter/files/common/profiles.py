@@ -35,7 +35,7 @@ UNITS_SCHEMA: dict[str, Any] = {
 
 
 def columns(value: Any) -> dict[str, str | int]:
-    """Which column is which, by name or by number from 0."""
+    """Column of each quantity, by name or by number from 0."""
     known = tuple(Columns.__annotations__)
     for role, name in _table(value, known, COLUMNS_EXAMPLE).items():
         is_name = isinstance(name, str) and name != ""

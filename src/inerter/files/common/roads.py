@@ -76,7 +76,7 @@ class CoherenceTable:
 
 
 def _of_one_form(values: dict[str, float]) -> dict[str, float]:
-    """The values, with those that a form has by default."""
+    """Values of the coherence with the defaults of its form; raises `EntryError` for none or for two forms at once."""
     names = list(values)
     if not names:
         raise EntryError(got="an empty table", expected=_FORMS)
@@ -140,7 +140,7 @@ class RoadSource:
 
 
 def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The table with the roughness that a class says, or a stand-in until a profile is read."""
+    """Table with the roughness of a class, or a placeholder until a profile is read."""
     names = [name for name in _ROUGH if name in table]
     if len(names) > 1:
         *others, last = names
@@ -180,7 +180,7 @@ def road_codec(*, rough: bool = True) -> TableCodec:
 
 @dataclass(frozen=True)
 class MeasuredLine:
-    """The line of waviness 2 through the spectrum of a profile, which stands for its road, and how well it does."""
+    """Line of waviness 2 fitted to the spectrum of a profile, which represents its road, and the quality of the fit."""
 
     path: Path
     digest: str  # SHA-256 of the file
@@ -199,12 +199,12 @@ class MeasuredLine:
 
     @property
     def source(self) -> str:
-        """What was measured."""
+        """Name of the measured profile, with its track if it has several."""
         return f"the {self.track} track of {self.path.name}" if self.track else self.path.name
 
     @property
     def note(self) -> str:
-        """What stands for the road, and what the profile says of itself."""
+        """Sentence on the fitted road: source, class, roughness, and the waviness and scatter of the free fit."""
         letter = Road(self.roughness, 1.0).iso8608_class.letter
         own = f"its own line, through {self.bands} bands from {self.lowest:.3g} to {self.highest:.3g} cycle/m,"
         return (
@@ -217,7 +217,7 @@ class MeasuredLine:
 
     @property
     def _correction(self) -> str:
-        """By how much the line is another one than that of the samples; empty if by little."""
+        """Sentence on the correction for sampling [%]; empty if it is small."""
         change = 100.0 * (1.0 / self.folded - 1.0)
         if abs(change) < 100.0 * _FOLDED:
             return ""
@@ -229,7 +229,7 @@ class MeasuredLine:
 
     @property
     def warnings(self) -> Iterator[str]:
-        """Why the road may be another one."""
+        """Warnings on differences between the fitted and the measured road."""
         if not _WAVINESS <= self.waviness <= _TO:
             below, above = ("smoother", "rougher") if self.waviness > 2.0 else ("rougher", "smoother")
             yield (
@@ -244,12 +244,12 @@ class MeasuredLine:
 
     @property
     def _same(self) -> float:
-        """Where both lines are the same [cycle/m]."""
+        """Spatial frequency at which both fitted lines are equal [cycle/m]."""
         return float(N0 * (0.5 * self.unevenness * N0**2 / self.roughness) ** (1.0 / (self.waviness - 2.0)))
 
 
 def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[MeasuredLine | None, list[Problem]]:
-    """What stands for the measured profile of a road, if there is one, and what is wrong with it.
+    """Line of waviness 2 fitted to the measured profile of a road, None without a profile, and its problems.
 
     The file is looked for beside that at `beside`.
     """
@@ -276,7 +276,7 @@ _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
 
 
 def remark(line: MeasuredLine | None) -> str:
-    """What a file says above the roughness that stands for a profile."""
+    """Comment lines above the roughness that was fitted to a profile; empty without one."""
     if line is None:
         return ""
     text = f"{line.note[0].upper()}{line.note[1:]}. SHA-256 of the file: {line.digest}"
@@ -305,7 +305,7 @@ def _line(
 
 
 def without_source(values: Mapping[str, Any], line: MeasuredLine | None) -> dict[str, Any]:
-    """The values of a section [road] in a resolved file: the roughness of a measured `line`, if there is one."""
+    """Values of a section [road] in a resolved file, with the roughness of a measured `line` if there is one."""
     own = {field.key: values[field.key] for field in ROAD_QUANTITIES}
     measured = {} if line is None else {"roughness": line.roughness}
     return {**own, **measured, "coherence": values["coherence"]}
@@ -333,9 +333,9 @@ def _coherence_of(values: Mapping[str, float] | None) -> Coherence | None:
 
 
 def track_problems(place: tuple[str, ...], tracks: Mapping[str, str] | None) -> Iterator[Problem]:
-    """Why tracks that differ, asked for at `place`, do not suit a vehicle of whose roads these are the `tracks`.
+    """Problems of a track coherence at `place`, for a vehicle whose roads lie on these `tracks`.
 
-    None if they are not known.
+    Empty where `tracks` is None: the vehicle cannot be built, which is reported elsewhere.
     """
     if tracks is None:
         return

@@ -55,7 +55,7 @@ def quantity_schema(*units: str, least: str = "") -> dict[str, Any]:
 
 
 def words_schema(words: Iterable[str]) -> dict[str, Any]:
-    """One of some words."""
+    """JSON Schema of a text that must be one of `words`."""
     return {"type": "string", "enum": list(words)}
 
 
@@ -65,7 +65,7 @@ def list_schema(items: dict[str, Any]) -> dict[str, Any]:
 
 
 def json_schema(table: Mapping[str, Any], title: str, description: str) -> dict[str, Any]:
-    """The JSON Schema (2020-12) of a kind of file, of which `table` is that of its whole table."""
+    """JSON Schema (2020-12) of a kind of file, of which `table` is the schema of the whole table."""
     return {"$schema": DIALECT, "title": title, **table, "description": description}
 
 

@@ -1,4 +1,4 @@
-"""The kinds of signals that a simulation file can ask for: one row each."""
+"""Kinds of signals available in simulation files, one registry entry each."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class SignalKey(NamedTuple):
     codec: Callable[[str], Codec] = positive  # given the unit: what a value may be
 
     def of(self, unit: str) -> SignalKey:
-        """The same key of a signal in `unit`."""
+        """Key of a signal in `unit`, with the placeholders of its unit and example replaced."""
         words = {"unit": unit, "square": _SQUARES[unit], "size": _SIZES[unit]}
         return self._replace(unit=self.unit.format(**words), example=self.example.format(**words))
 
@@ -53,7 +53,7 @@ def _frequency(name: str, value: str, default: Any = REQUIRED) -> SignalKey:
 
 
 def _braced(example: str) -> str:
-    """An example in which braces are no places of words."""
+    """Example with its braces doubled, so that formatting keeps them."""
     return example.replace("{", "{{").replace("}", "}}")
 
 
@@ -68,7 +68,7 @@ _WAVE = {
 
 @dataclass(frozen=True)
 class SignalKind:
-    """How one kind is made: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`.
+    """Kind of signal: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`.
 
     It returns a signal, or one for the left and one for the right track.
     """

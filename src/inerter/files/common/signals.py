@@ -1,4 +1,4 @@
-"""The section [signal] of a file: its keys for every kind of signal, and the signal that it asks for."""
+"""Section [signal] of a file: keys of every kind of signal, and the resulting signal."""
 
 from __future__ import annotations
 
@@ -27,26 +27,26 @@ class SignalRequest:
 
     @property
     def unit(self) -> str:
-        """Of the signal: m, N or N m."""
+        """Unit of the signal: m, N or N m."""
         return self.force_unit or unit_of(self.input)
 
     @property
     def units(self) -> dict[str, str]:
-        """Of the values; empty for what has none."""
+        """SI unit of each key of the signal's kind; empty if dimensionless."""
         return {name: one.of(self.unit).unit for name, one in SIGNALS[self.kind].keys.items()}
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The files that it is read from."""
+        """File of the signal's samples, if it has one."""
         return (Path(self.values["file"]),) if "file" in self.values else ()
 
     @property
     def on_tracks(self) -> bool:
-        """Whether its file is to give a signal for each track."""
+        """Whether the file of the signal must give one for each track."""
         return self.values.get("track") == BOTH
 
     def make(self) -> Signal:
-        """The signal of what has no road; raises as `tracks` does."""
+        """Signal of an input that is not a road; raises as `tracks` does."""
         return self.tracks()[""]
 
     def tracks(self, values: Mapping[str, Any] | None = None) -> dict[str, Signal]:
@@ -62,7 +62,7 @@ class SignalRequest:
 
 
 def signal_of(path: Path, inputs: Mapping[str, str], entry: dict[str, Any]) -> SignalRequest:
-    """The signal that a section [signal] asks for; its file is looked for beside that at `path`.
+    """Signal request of a section [signal]; relative file names are relative to the folder of `path`.
 
     `inputs` are what it may move, with the unit of each; it moves the first if nothing else is said.
     """
@@ -76,7 +76,7 @@ def signal_of(path: Path, inputs: Mapping[str, str], entry: dict[str, Any]) -> S
 
 @dataclass(frozen=True)
 class SignalCodec(Codec):
-    """The section [signal]: its kind decides which keys there are, and what it moves their units."""
+    """Section [signal], whose kind determines its keys, and whose input their units."""
 
     in_unit: Mapping[str, TaggedCodec]  # by the unit of what is moved
 
@@ -102,7 +102,7 @@ class SignalCodec(Codec):
 
 
 def signal_codec() -> SignalCodec:
-    """The section [signal] with the kinds that there are."""
+    """Section [signal] with all kinds of signals."""
     return SignalCodec({unit: _in_unit(unit) for unit in UNITS})
 
 

@@ -19,7 +19,7 @@ _EXAMPLE = 'sums, differences, products and quotients of elements and numbers, s
 
 
 class TieEntry(NamedTuple):
-    """What a value follows from."""
+    """Expression of a tied value, as the file has it."""
 
     expression: str
 
@@ -37,7 +37,7 @@ def is_tie(entry: Any) -> bool:
 
 
 def tie_entry(entry: dict[str, Any]) -> TieEntry:
-    """What such an entry says; raises `EntryError` for what is wrong with it."""
+    """Expression of a tied entry; raises `EntryError` for what is wrong with it."""
     others = [key for key in entry if key != TIED]
     if others:
         raise EntryError(got=shown(others[0]), fault="not a key of a tied value", expected='tied = "..." alone')
@@ -49,7 +49,7 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
 
 
 def tie_schema() -> dict[str, Any]:
-    """What a JSON Schema says of such an entry."""
+    """JSON Schema of a tied entry."""
     about = f"What the value follows from: {_EXAMPLE}."
     text = {"type": "string", "minLength": 1, "maxLength": _LONGEST, "description": about}
     text |= {"examples": ["0.8 * c_front"]}
@@ -57,7 +57,7 @@ def tie_schema() -> dict[str, Any]:
 
 
 def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) -> Element:
-    """The element of that name; `elements` are those that are not tied. Raises `EntryError` if there is none such."""
+    """Element of that name, tied to `elements`. Raises `EntryError` if there is none such."""
     found = _part(_tree(entry.expression), entry.expression, elements)
     if not isinstance(found.value, Tied):
         raise EntryError(got=shown(entry.expression), fault="it names no element", expected=_EXAMPLE)

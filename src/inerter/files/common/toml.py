@@ -22,7 +22,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 def value_of(codec: TableCodec, tables: Mapping[str, Any], path: Path) -> Any:
-    """The value of the tables of a file; `path`, where they are from, is for messages.
+    """Value of the tables of a file; `path` is used in messages only.
 
     Raises `StudyError` with a sentence for a file of another kind, or with a line for every entry that does not fit.
     """
@@ -53,7 +53,7 @@ def read_tables(path: Path, what: str) -> dict[str, Any]:
 
 
 def tables_of(data: bytes, path: Path, what: str) -> dict[str, Any]:
-    """The tables that the bytes of a TOML file say; raises `StudyError` where they are no TOML."""
+    """Tables of the bytes of a TOML file; raises `StudyError` where they are no TOML."""
     if len(data) > _LARGEST:
         fault, expected = f"larger than {_LARGEST} bytes", f"{what}, which is a page of TOML"
         raise refusal(path, [_record_problem(path, what) or Problem(fault=fault, expected=expected)])
@@ -77,7 +77,7 @@ def _unreadable(error: Exception, data: bytes, path: Path, what: str) -> Problem
 
 
 def _record_problem(path: Path, what: str) -> Problem | None:
-    """That a file is one of measurements, where its name says so."""
+    """Problem of a path whose suffix is that of a measurement file; None for another."""
     from inerter.records.readers import FORMATS  # noqa: PLC0415 - heavy
 
     if path.suffix.lower() not in FORMATS or path.suffix.lower() == ".txt":
@@ -101,7 +101,7 @@ def _mistaken(path: Path, kind: FileKind, expected: str) -> StudyError:
 
 
 def _syntax_problem(message: str, data: bytes) -> Problem:
-    """Tomllib's message with its position, which it has nowhere else, in front, and the two most frequent causes."""
+    """Problem of a TOML syntax error: position first, then its message and the two most frequent causes."""
     position = _POSITION.search(message)
     lines = data.decode("utf-8-sig").split("\n")
     line, column = position.groups() if position else (None, None)

@@ -89,7 +89,7 @@ class InertiaCodec(Codec):
         yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
 
     def put(self, value: float, keys: Sequence[str], number: float) -> float:
-        """Another one of the same sort."""
+        """Mass or moment of inertia with another number, of the same type as `value`."""
         return type(value)(number)
 
 
@@ -260,7 +260,7 @@ def _vehicle_table(model: str, free: bool) -> TableCodec:
 
 
 def units_of_inputs(vehicle: Any) -> dict[str | None, str]:
-    """The units of inputs that only this vehicle knows, from its table as it is written: of None, if none is named."""
+    """Units of the inputs that only this vehicle has, by name, from its table; under None that of the default input."""
     if not isinstance(vehicle, dict):
         return {}
     forces: dict[str | None, str] = dict(forces_of(vehicle).items())

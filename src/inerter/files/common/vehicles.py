@@ -1,4 +1,4 @@
-"""What a table [vehicle] stands for: the mounts that layouts fill, the vehicle with them, and what is wrong with it.
+"""Vehicle of a table [vehicle]: the mounts that layouts fill, the vehicle with its networks, and its problems.
 
 A vehicle in a file is a model and its values: quantities by their keys or, of a mechanism, the tables of its parts; and
 perhaps the table of a seat.
@@ -56,7 +56,7 @@ def parts_of(vehicle: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
 
 
 def mounts(model: str, values: Values) -> dict[str, MountEntry]:
-    """What layouts fill, by name; a seat last."""
+    """Mounts that layouts fill, by name; a seat last."""
     seat = {SEAT: MountEntry(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
     return {**_form(model).mounts(values), **seat}
 
@@ -72,7 +72,7 @@ def made(model: str, values: Values, networks: Networks) -> Vehicle:
 
 
 def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | None, str]]:
-    """What a reader is told of a vehicle: names, each with a value and its unit, or with None and a text."""
+    """Name, value and unit of each quantity of a vehicle, or name, None and a text, for reports."""
     yield from _form(model).words(_without_seat(values))
     if SEAT in values:
         yield "mass on the seat", values[SEAT]["mass"], "kg"
@@ -80,7 +80,7 @@ def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | Non
 
 
 def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
-    """What is wrong with a vehicle, whatever is mounted in it."""
+    """Problems of a vehicle that do not depend on its networks."""
     own = _form(model).mounts(values)
     if SEAT in values and SEAT in own:
         yield at(("vehicle", "struts", SEAT), fault="there is a seat in [vehicle.seat] too", expected="another name")
@@ -95,12 +95,12 @@ def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
 
 
 def inputs(model: str, values: Values) -> dict[str, str]:
-    """What a signal may move, with the unit of each; first what it moves if nothing else is said."""
+    """Inputs that a signal may excite, with the unit of each; the default input first."""
     return _form(model).inputs(values)
 
 
 def tracks(model: str, values: Values) -> dict[str, str] | None:
-    """The track of each of its roads, empty where there is but one; None if the vehicle cannot be."""
+    """Track of each road of the vehicle, empty for a single one; None if the vehicle cannot be built."""
     if any(vehicle_problems(model, values)):
         return None
     own = _without_seat(values)

@@ -1,4 +1,4 @@
-"""What can be known of a configuration of an identification without a record."""
+"""Check of an identification configuration without a record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `inerter identify` is asked for: how to read records, the model to fit, and the settings of the fit."""
+"""Configuration of `inerter identify`: reading of records, the model to fit, and settings of the fit."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class IdentificationRequest:
 
     @property
     def chooses(self) -> bool:
-        """Whether there is a choice between models."""
+        """Whether a model is selected from several."""
         return self.layout is None and self.name == CHOOSE
 
     def models(self) -> dict[str, Network]:
@@ -70,7 +70,7 @@ def load_identification(path: str | Path) -> IdentificationRequest:
 
 
 def identification_of(tables: Mapping[str, Any], path: Path) -> IdentificationRequest:
-    """The configuration that tables say; `path`, where they are from, is for messages."""
+    """Configuration from its tables; `path` is used in messages only."""
     found = value_of(IDENTIFICATION, tables, path)
     request = IdentificationRequest(
         title=found["title"],

@@ -1,4 +1,4 @@
-"""From files of measurements to an identified device: reading, looking over, preparing, fitting, responses."""
+"""Identification of a device from files of measurements: reading, inspection, preparation, fit, responses."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _OF_SENSORS = ("force_bandwidth", "force_noise", "displacement_noise")
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """A record as it was received and as it is used, and what is worth knowing about it."""
+    """Record as received and as used, with the findings on it."""
 
     received: Record
     used: Record
@@ -50,7 +50,7 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class Responses:
-    """Force over displacement as measured, of the model at the same amplitude, and of the linear model."""
+    """Dynamic stiffness: measured, of the model at the same amplitude, and of the linear model."""
 
     measured: Response | None
     model: Response | None = None
@@ -60,7 +60,7 @@ class Responses:
 
 @dataclass(frozen=True, eq=False)
 class Identified:
-    """A fit with all that a report of it tells."""
+    """Identification result with everything that its report contains."""
 
     title: str
     name: str  # of the model
@@ -73,13 +73,13 @@ class Identified:
     choice: tuple[Finding, ...] = ()  # of the choice between them
 
     def bounds(self, parameter: str) -> tuple[float, float] | None:
-        """Between which a parameter of the device was sought; None for one of the sensors."""
+        """Search bounds of a parameter of the device; None for a parameter of the sensors."""
         free = (e.value for e in self.model.elements())
         return next(((v.lower, v.upper) for v in free if isinstance(v, Free) and v.name == parameter), None)
 
     @property
     def explains(self) -> bool:
-        """Whether the fit is to be relied on; else values are withheld in every output."""
+        """Whether the estimates are reliable; if not, all outputs withhold the values."""
         return self.fit.status.ok
 
 
@@ -165,7 +165,7 @@ def _with_best(model: Network, fit: Fit) -> Network:
 
 
 def responses(found: Identified) -> Responses:
-    """The frequency responses of the records, their sensors put right as the fit found them, and of the model."""
+    """Frequency responses of the records, corrected by the fitted gain and delay of the sensors, and of the model."""
     values = {name: p.best for name, p in found.fit.parameters.items()}
     records = [_corrected(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
     try:

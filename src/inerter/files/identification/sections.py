@@ -93,7 +93,7 @@ _ANY_TIME = any_quantity("s")
 
 @declared
 class RecordRequest:
-    """How files are read, in the words of `read_record`, and what is done to their records then."""
+    """Arguments of `read_record` for the files, and the preparation of their records."""
 
     channels: dict[str, str | int] = field(default_factory=dict)  # by role
     units: dict[str, str] = key(
@@ -127,7 +127,7 @@ class ModelRequest:
 
 @declared
 class FitSettings:
-    """How it is fitted, as `identify` takes it."""
+    """Settings of the fit, as `identify` takes them."""
 
     seed: int = key(whole(0, 2**63 - 1), "Seed of the starting points.", "seed = 0", default=0)
     starts: int | None = key(whole(8, _MOST_STARTS), "Number of starting points.", default=None)

@@ -1,4 +1,4 @@
-"""What can be known of a rig file before the rig is run."""
+"""Check of a rig file before the rig is run."""
 
 from __future__ import annotations
 

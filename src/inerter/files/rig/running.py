@@ -1,4 +1,4 @@
-"""A virtual rig that was asked for, and running it."""
+"""Request of a virtual-rig run, and its execution."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from inerter.records.record import Record
 
 @dataclass(frozen=True)
 class RigRequest:
-    """A virtual rig with what its table does, and for how long it is measured."""
+    """Virtual rig, with the motion of its table and the duration of the measurement."""
 
     title: str
     rig: VirtualRig
@@ -28,12 +28,12 @@ class RigRequest:
         return self.rig.check(self.signal.make(), self.duration, self.start)
 
     def run(self) -> Record:
-        """What the sensors read; raises what `VirtualRig.run` raises."""
+        """Record of the sensors; raises what `VirtualRig.run` raises."""
         return self.rig.run(self.signal.make(), self.duration, self.start)
 
 
 def record_of(path: Path, request: RigRequest) -> Record:
-    """What the sensors read; raises `StudyError` naming the file for a run that cannot be."""
+    """Record of the sensors; raises `StudyError` naming the file for a run that cannot be."""
     try:
         return request.run()
     except InerterError as error:

@@ -13,7 +13,7 @@ from inerter.vehicle.rig import Rig
 
 @declared
 class RigSettings:
-    """How long is measured, and the sensors; what is left out is that of `VirtualRig`."""
+    """Duration of the measurement, and the sensors; omitted values are those of `VirtualRig`."""
 
     layout: str | None = key(TEXT, "The device that is measured, where there are several.", default=None)
     duration: float = key(positive("s"), "How long is measured.", 'duration = "5 s"')

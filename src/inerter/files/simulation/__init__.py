@@ -1,4 +1,4 @@
-"""Simulation files: one motion of a vehicle or rig, asked for in TOML, and what comes of it."""
+"""Simulation files: one motion of a vehicle or rig, requested in TOML, and its results."""
 
 from inerter.files.common.kinds import FileKind
 

@@ -1,4 +1,4 @@
-"""What can be known of a simulation file before the simulation."""
+"""Check of a simulation file before the simulation."""
 
 from __future__ import annotations
 

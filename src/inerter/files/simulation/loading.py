@@ -25,7 +25,7 @@ from inerter.writing import characters
 
 
 def load_simulation(path: str | Path) -> SimulationRequest:
-    """The simulation that the TOML file at `path` asks for.
+    """Simulation request of the TOML file at `path`.
 
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
@@ -59,7 +59,7 @@ def _resolve(path: Path, found: Mapping[str, Any], line: MeasuredLine | None) ->
 
 
 def _names(request: SimulationRequest) -> Iterator[Problem]:
-    """Names that nothing has."""
+    """Problems of the vehicle and its layouts, and of unknown names."""
     yield from vehicle_problems(request.model, request.vehicle)
     yield from layout_problems(request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
@@ -70,7 +70,7 @@ def _names(request: SimulationRequest) -> Iterator[Problem]:
 
 
 def _needs(request: SimulationRequest) -> Iterator[Problem]:
-    """What is missing for the signal, the vehicle or the integration."""
+    """Problems of missing values for the signal, the vehicle or the integration."""
     signal, kind = request.signal, SIGNALS[request.signal.kind]
     if kind.of_roads and signal.unit != "m":
         yield at(
@@ -102,7 +102,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
 
 
 def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
-    """A road that differs from left to right, where the vehicle or the signal cannot have it."""
+    """Problems of different left and right tracks that the vehicle or the signal does not support."""
     asked = {("road", "coherence"): bool(request.coherence), ("signal", "track"): request.signal.on_tracks}
     for place in (place for place, wanted in asked.items() if wanted):
         yield from track_problems(place, tracks(request.model, request.vehicle))
@@ -113,7 +113,7 @@ def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
 
 
 def _has_delays(request: SimulationRequest) -> bool:
-    """Whether the road reaches some places later than others; not where the vehicle cannot be, which is told later."""
+    """Whether road inputs act with different delays; False if the vehicle cannot be built, which is reported later."""
     try:
         return any(road.distance > 0.0 for road in request.design().mechanism().roads)
     except InerterError:
@@ -121,7 +121,7 @@ def _has_delays(request: SimulationRequest) -> bool:
 
 
 def _parts(request: SimulationRequest) -> Iterator[Problem]:
-    """The signal, or the vehicle, cannot be."""
+    """Problems of a signal or a vehicle that cannot be built."""
     try:
         request.signals()
     except InerterError as error:

@@ -1,4 +1,4 @@
-"""A simulation that was asked for, resolved and checked: SI values, one layout, one signal."""
+"""Simulation request, resolved and checked: SI values, one layout, one signal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from inerter.vehicle.vehicle import Vehicle
 
 @declared
 class SimulationRequest(SimulationSettings):
-    """All that a simulation file says, with defaults filled in. Equal requests may come from different files."""
+    """Contents of a simulation file, with defaults. Equal requests may come from different files."""
 
     title: str
     path: Path = field(compare=False)
@@ -38,17 +38,17 @@ class SimulationRequest(SimulationSettings):
 
     @property
     def speed(self) -> float | None:
-        """Of the vehicle [m/s]; None without a road."""
+        """Vehicle speed [m/s]; None without a road."""
         return self.road.get("speed")
 
     @property
     def roughness(self) -> float | None:
-        """Of a random road [m^3/cycle]."""
+        """Roughness of a random road [m^3/cycle]; None if not stated."""
         return self.road.get("roughness")
 
     @property
     def coherence(self) -> dict[str, float]:
-        """Of a random road, as the file says it."""
+        """Parameters of the coherence between the tracks, by key; empty if not stated."""
         return self.road.get("coherence") or {}
 
     @property
@@ -58,17 +58,17 @@ class SimulationRequest(SimulationSettings):
 
     @property
     def period(self) -> float | None:
-        """After what time the signal repeats [s]; None if it does not."""
+        """Period of the signal [s]; None if it is not periodic."""
         return self.make_signal().period
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The files that it is read from."""
+        """Paths of the files read: request, signal, and measured profile."""
         return (self.path, *self.signal.inputs, *(() if self.line is None else (self.line.path,)))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What stands for the road, where it was measured."""
+        """Notes on the road fitted to a measured profile, with its warnings; empty without one."""
         return () if self.line is None else (self.line.note, *self.line.warnings)
 
     def design(self) -> Vehicle:

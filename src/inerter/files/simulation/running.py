@@ -1,4 +1,4 @@
-"""Running a simulation file into a result folder, and what a reader wants to know of the motion."""
+"""Run of a simulation file into a result folder, and summary quantities of the motion."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NAMES = (TRAJECTORY, DATASET, EVENTS, RESOLVED, f"{FIGURES}/")
 
 @dataclass(frozen=True)
 class Nonlinear:
-    """A friction or gap: where it is, how often it changed its state, and what part of the time it spent in each."""
+    """Friction or gap: its place, number of changes of state, and fraction of the time in each state."""
 
     name: str
     kind: str
@@ -41,41 +41,41 @@ class Nonlinear:
 
 @dataclass(frozen=True, eq=False)
 class SimulationResult:
-    """A motion with the request that it answers."""
+    """Motion of a simulation, with its request."""
 
     request: SimulationRequest
     run: Trajectory
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """What moved."""
+        """Mechanism that was simulated."""
         return self.request.design().mechanism()
 
     @property
     def inputs(self) -> tuple[str, ...]:
-        """Outputs that are what the signal moves."""
+        """Names of the outputs that equal the excited input: all roads, or the force."""
         roads = tuple(road.name for road in self.mechanism.roads)
         return roads if self.request.signal.unit == "m" else (self.request.signal.input,)
 
     @property
     def accelerations(self) -> tuple[str, ...]:
-        """Outputs that are accelerations of bodies, not of wheels."""
+        """Names of the outputs that ride comfort is based on, with any weight."""
         return tuple(weighted.output for weighted in self.mechanism.measures.comfort)
 
     @property
     def displacements(self) -> tuple[str, ...]:
-        """The output that tells how far a force moves it, where no acceleration tells of comfort."""
+        """Name of the load-carrying output of a vehicle without comfort outputs; else empty."""
         answer = self.mechanism.measures.load_output
         return () if answer is None or self.accelerations else (answer,)
 
     @property
     def on_rig(self) -> bool:
-        """Whether it is a device whose one end is moved."""
+        """Whether the signal drives the displacement of one end of a device."""
         return self.request.signal.input == "displacement"
 
     @property
     def tyre_loads(self) -> tuple[str, ...]:
-        """Outputs that are forces of tyres."""
+        """Names of the outputs that are tyre forces."""
         return tuple(of_mount(tyre)[0] for tyre in self.mechanism.tyres)
 
     @property
@@ -85,18 +85,18 @@ class SimulationResult:
 
     @property
     def main_outputs(self) -> tuple[str, ...]:
-        """What a summary tells of."""
+        """Names of the outputs that a summary contains."""
         forces = tuple(name for strut in self.mechanism.struts for name in of_mount(strut))
         return (*self.accelerations, *self.displacements, *self.tyre_loads, *forces)
 
     def rms(self, name: str) -> float:
-        """Root of the mean square of an output; infinite where a motion has grown beyond all bounds."""
+        """Root mean square of an output; infinite if the motion has grown without bound."""
         with np.errstate(over="ignore", invalid="ignore"):
             return self.run.rms(name)
 
     @cached_property
     def nonlinear(self) -> tuple[Nonlinear, ...]:
-        """What is known of every friction and gap; none where the integrator keeps no events."""
+        """State statistics of every friction and gap; empty if the integrator records no events."""
         found = []
         length = float(self.run.time[-1] - self.run.time[0]) or 1.0
         for strut, label, element in self._placed():
@@ -112,12 +112,12 @@ class SimulationResult:
 
     @property
     def unrecorded(self) -> tuple[str, ...]:
-        """Frictions and gaps whose events the integrator did not keep."""
+        """Frictions and gaps whose events the integrator does not record."""
         known = self.run.states
         return tuple(n for _, n, element in self._placed() if element.switch is not None and n not in known)
 
     def inerters(self, strut: str) -> tuple[str, ...]:
-        """The inerters of a strut, by the names that outputs have."""
+        """Inerters of a strut, by output name."""
         return tuple(n for mount, n, element in self._placed() if mount == strut and element.linear is Linear.MASS)
 
     def _placed(self) -> Iterator[tuple[str, str, Element]]:

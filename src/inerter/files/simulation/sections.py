@@ -21,7 +21,7 @@ INITIAL = ("rest", "preload", "periodic")
 
 @declared
 class SimulationSettings:
-    """How the motion is computed, and what is kept of it."""
+    """Settings of the integration, and of the samples that are kept."""
 
     layout: str | None = key(
         TEXT, "The layout that is simulated, where there are several.", 'layout = "S1"', default=None

@@ -35,7 +35,7 @@ _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 @dataclass(frozen=True)
 class Case:
-    """One design to find and to judge. `point` numbers the swept values, zero where nothing is swept."""
+    """Design to optimise and evaluate. `point` numbers the swept values, zero without a sweep."""
 
     layout: str
     index: str
@@ -44,13 +44,13 @@ class Case:
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the case in messages: layout, index, and point of the sweeps."""
         return f"{self.layout} {self.index}{f' at point {self.point + 1}' if self.point else ''}"
 
 
 @dataclass(frozen=True)
 class Cases:
-    """All cases of a study in the order of the results, each made when it is asked for.
+    """All cases of a study in the order of the results, each constructed on access.
 
     The order is that of layouts, of indices, of the values of the first sweep, of the second.
     """
@@ -61,7 +61,7 @@ class Cases:
 
     @cached_property
     def points(self) -> int:
-        """How many points the sweeps have."""
+        """Number of points of the sweeps."""
         return prod(map(len, self.axes))
 
     def __len__(self) -> int:
@@ -73,7 +73,7 @@ class Cases:
         return Case(self.layouts[layout], self.indices[index], point, self.swept(point))
 
     def swept(self, point: int) -> tuple[float, ...]:
-        """The value of each sweep at the point of that number."""
+        """Value of each sweep at the point of that number."""
         values = []
         for axis in reversed(self.axes):
             point, place = divmod(point, len(axis))
@@ -84,7 +84,7 @@ class Cases:
         return map(self.__getitem__, range(len(self)))
 
     def number(self, case: Case) -> int:
-        """Where a case stands."""
+        """Number of a case in the order of the results, from 0."""
         return self._firsts[case.layout, case.index] + case.point
 
     @cached_property
@@ -121,7 +121,7 @@ class Outcome:
 
     @property
     def case(self) -> Case:
-        """The case that it answers."""
+        """Case to which the outcome belongs."""
         return Case(self.layout, self.index, self.point)
 
     @property
@@ -162,7 +162,7 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
 
 
 def lost_case(study: Study, case: Case) -> Outcome:
-    """What is known of a case whose processes have ended, each time that it was tried."""
+    """Outcome of a case whose worker processes ended at every attempt."""
     return _failed(study, case, ENDED)
 
 
@@ -172,7 +172,7 @@ def _failed(study: Study, case: Case, why: str) -> Outcome:
 
 
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
-    """What linear analysis leaves out of a design if the study makes use of it, and whether springs carry it."""
+    """Notes on elements that the linear methods neglect in a design, and on a missing static equilibrium."""
     measures = mechanism.measures
     blind = [method for method in study.methods if is_blind(method)]
     left_out = linear_graph(mechanism).notes if blind else ()
@@ -183,7 +183,7 @@ def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
 
 
 def _prefix(study: Study, method: str) -> str:
-    """What the method is, before its note, where there are several."""
+    """Method in words with a colon, in front of its note; empty if the study has one method."""
     return f"{brief_words_of(method)}: " if len(study.methods) > 1 else ""
 
 

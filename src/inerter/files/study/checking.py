@@ -1,4 +1,4 @@
-"""What can be known of a study before any work: whether every design can be analysed, and what to know of it."""
+"""Checks of a study before the run: whether every design can be analysed, and notes on the designs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _sound: Study | None = None  # the last one without problems: who checks before 
 
 
 def check_lines(path: Path) -> Iterator[str]:
-    """Sentences about a sound study file: what it asks, its roads, warnings and notes.
+    """Sentences about a valid study file: its size, its roads, warnings and notes.
 
     Raises `StudyError` as `load_study` and `check_study` do.
     """
@@ -118,7 +118,7 @@ def _check_design(study: Study, layout: str) -> None:
 
 
 def study_notes(study: Study) -> list[str]:
-    """What a person should know before the work: elements that nothing uses, and what linear analysis leaves out."""
+    """Notes before the run: measured road, elements that linear methods neglect, and elements not in use."""
     notes: dict[str, list[str]] = {}
     for layout in study.layouts:
         for note in design_notes(study, study.design(layout).mechanism()):

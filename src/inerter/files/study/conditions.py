@@ -22,21 +22,21 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StudyCondition:
-    """How the vehicle goes for a part of the time: other numbers at some places, by their labels, in SI units."""
+    """Operating condition with its share of the time: values that replace those at some key paths, in SI units."""
 
     numbers: dict[str, float]
     share: float = 1.0
     name: str = ""
 
     def entry(self, study: Study) -> ConditionEntry:
-        """How a file says it."""
+        """Table entry of the condition for the study file."""
         units = {label: found.unit for label in self.numbers if (found := number_at(study, place_of(label)))}
         numbers = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
         return ConditionEntry(numbers=numbers, share=self.share, name=self.name or None)
 
 
 def what_of(study: Study, place: Place) -> tuple[str, str] | None:
-    """Whether the number at a place is one of the vehicle or of the road, and its name there; None if of neither."""
+    """Section "vehicle" or "road" of the number at a place and its name there; None for any other place."""
     *inside, last = place.key.split(".")
     match place.section, inside:
         case "elements", []:
@@ -53,7 +53,7 @@ def what_of(study: Study, place: Place) -> tuple[str, str] | None:
 
 
 def following(study: Study, numbers: Mapping[str, float]) -> dict[str, Element]:
-    """The elements whose values follow from others that have these numbers, with what they then are."""
+    """Elements tied to the elements that `numbers` replaces, with their updated values."""
     changed = [(place_of(label), number) for label, number in numbers.items()]
     there = with_known_values(with_numbers(study, changed).elements)
     sources = {element_at(place) for place, _ in changed}
@@ -62,7 +62,7 @@ def following(study: Study, numbers: Mapping[str, float]) -> dict[str, Element]:
 
 
 def condition_of(study: Study, stated: StudyCondition) -> Condition:
-    """What a method takes."""
+    """Operating condition as the methods take it, with dependent values updated."""
     changed: dict[str, dict[str, Any]] = {"vehicle": {}, "road": {}}
     there = with_numbers(
         study, [(p, n) for label, n in stated.numbers.items() if (p := place_of(label)).section == "road"]

@@ -1,4 +1,4 @@
-"""What excites the vehicle of an index in a study file: the ground, a force or the road, perhaps through a filter."""
+"""Excitation of the vehicle for an index in a study file: ground, force or road, with an optional shaping filter."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _OF_FORCES = {"N^2/Hz": "force", "(N m)^2/Hz": "moment"}
 
 
 class Named(NamedTuple):
-    """A name in an entry that has to be the vehicle's: at which keys, of what ("output", "input" or "force")."""
+    """Name in an entry that must exist in the vehicle: its keys, and whether it is an "output", "input" or "force"."""
 
     keys: KeyPath
     what: str
@@ -31,7 +31,7 @@ class Named(NamedTuple):
 
 
 class Sized(NamedTuple):
-    """A size in an entry whose unit has to follow from that of the input: at which keys, its unit, and how."""
+    """Size in an entry whose unit depends on that of the input: its keys, its unit, and the units expected."""
 
     keys: KeyPath
     unit: str
@@ -40,7 +40,7 @@ class Sized(NamedTuple):
 
 @dataclass(frozen=True)
 class AmountCodec(Codec):
-    """A positive quantity in one of these units, each with what it is the unit of; `what` is all of that."""
+    """Positive quantity in one of `units`, each with the name of its quantity; `what` names all of them."""
 
     units: Mapping[str, str]
     what: str
@@ -66,12 +66,12 @@ class AmountCodec(Codec):
             yield (), Number(value.unit, words, value.value)
 
     def put(self, value: Amount, keys: Sequence[str], number: float) -> Amount:
-        """Another value in the same unit."""
+        """Amount with another value in the same unit."""
         return value._replace(value=number)
 
 
 def in_words(name: str) -> str:
-    """A name of an output or an input as it is said."""
+    """Name of an output or an input with spaces instead of underscores."""
     return name.replace("_", " ")
 
 
@@ -102,18 +102,18 @@ class StatedExcitation:
 
     @property
     def on_road(self) -> bool:
-        """Whether it is the road of the study."""
+        """Whether the excitation is the road of the study."""
         return self.ground_acceleration is None and self.force is None
 
     @property
     def source(self) -> str:
-        """What it is, in words."""
+        """Excitation in words, such as "road velocity"."""
         plain = "road velocity" if self.force is None else in_words(self.force)
         words = plain if self.ground_acceleration is None else in_words(_GROUND)
         return words if self.shaping is None else f"{words} before its filter"
 
     def made(self, road: Road | None) -> Road | Excitation | None:
-        """What an index takes, on that road if it is the road."""
+        """Excitation as an index takes it; `road` is used if neither ground nor force is stated."""
         plain: Road | Excitation | None = road
         if self.ground_acceleration is not None:
             plain = GroundAcceleration(self.ground_acceleration)
@@ -122,7 +122,7 @@ class StatedExcitation:
         return plain if self.shaping is None or plain is None else Shaped(plain, self.shaping)
 
     def told(self) -> Iterator[tuple[str, str]]:
-        """What a report says of it beside its numbers."""
+        """Rows of a report on the excitation, in addition to its numbers."""
         if self.shaping is not None:
             yield "Shaping filter", in_s(self.shaping)
 

@@ -48,7 +48,7 @@ FILTER = TableCodec(
 
 
 def in_s(value: Filter) -> str:
-    """A filter as it is read.
+    """Transfer function of a filter as text.
 
     >>> in_s(Filter([-1.0, 2.0], [1.0, 0.5, 2.5])), in_s(Filter([3.0], [1.0, 3.0]))
     ('(-s + 2) / (s^2 + 0.5 s + 2.5)', '3 / (s + 3)')

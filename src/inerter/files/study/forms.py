@@ -1,4 +1,4 @@
-"""The forms that settings of an index have in a study file beside quantities and words, such as a filter.
+"""Value types of index settings in a study file other than quantities and words, such as a filter.
 
 A form has a codec, and says what a report tells of it, which names in it have to be the vehicle's, and what becomes of
 it in Python. A new form is a row of `FORMS`.
@@ -28,7 +28,7 @@ _OF_INPUTS = {"N": "force", "N m": "moment", "m": "road", "m/s": "velocity of a 
 
 @dataclass(frozen=True)
 class Form:
-    """What is particular to a form beside its codec; functions are of a value."""
+    """Value type of a setting: its codec, and functions of a value."""
 
     codec: Codec
     told: Callable[[Any], Iterable[tuple[str, str]]] = lambda value: ()  # rows: what of the index, and what it is
@@ -47,7 +47,7 @@ def form_declaration(setting: Formed) -> Declaration:
 
 
 def form_of(setting: Formed) -> Form:
-    """The form of a setting; raises `RowError` for one that there is not."""
+    """Value type of a setting; raises `RowError` for one that there is not."""
     if setting.form not in FORMS:
         raise RowError(f"The setting {setting.key!r} has the form {setting.form!r}; forms are {', '.join(FORMS)}.")
     return FORMS[setting.form]
@@ -67,7 +67,7 @@ _OUTPUTS = NamesCodec(Scalar(_weight, lambda: _WEIGHT_SCHEMA), least=1)
 
 
 def _sum(weights: Mapping[str, float]) -> str:
-    """Outputs with their weights, as they are read."""
+    """Weighted sum of outputs as text."""
     terms = (f"{in_words(name)}{'' if weight == 1.0 else f' x {weight:g}'}" for name, weight in weights.items())
     return " + ".join(terms)
 

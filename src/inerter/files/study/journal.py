@@ -18,13 +18,13 @@ NAME = "journal.jsonl"
 
 
 def journal_of(study: Study, path: Path) -> Journal:
-    """The journal at `path`, which counts for this study alone."""
+    """Journal at `path`, valid for this study only."""
     text = json.dumps(study.resolved(), sort_keys=True)
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
 def outcomes(journal: Journal) -> Iterator[Outcome | Answer | Kept]:
-    """What is finished, and searches of what is not, one by one.
+    """Finished outcomes and answers, and the state of unfinished searches, one at a time.
 
     Raises `StudyError` for an entry that is none of a study.
     """

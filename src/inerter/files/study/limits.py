@@ -42,7 +42,7 @@ class StudyLimit:
 
     @property
     def words(self) -> str:
-        """What is limited, and on which side."""
+        """Quantity of the limit and its sense, as text."""
         return f"{self.of} {self.sense.replace('_', ' ')}"
 
     @property
@@ -51,7 +51,7 @@ class StudyLimit:
         return f"{self.words} {format_quantity(self.value, self.unit, digits=12)}"
 
     def entry(self) -> str | float:
-        """How a file says its value."""
+        """Value of the limit for the study file: a number if dimensionless, else text with the unit."""
         return self.value if are_alike(self.unit, PURE) else f"{self.value!r} {self.unit}"
 
 
@@ -92,7 +92,7 @@ class LimitsCodec(ByPlaceCodec):
         return found
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """The values."""
+        """Values of all limits, by index and side."""
         for limit in value:
             yield (limit.of, limit.sense), Number(limit.unit, limit.words, limit.value)
 
@@ -144,7 +144,7 @@ def _is_ratio(text: str | float) -> bool:
 
 
 def _unit(study: Study, of: str) -> str:
-    """The unit of what is limited; raises `EntryError` if there is no such thing."""
+    """Unit of the limited quantity; raises `EntryError` if there is no such thing."""
     if of.partition(".")[0] == _STIFFNESS:
         mounts = list(next(iter(study.layouts.values())).struts)
         if of.partition(".")[2] not in mounts:
@@ -159,7 +159,7 @@ def _unit(study: Study, of: str) -> str:
 
 
 def quantity_limited(study: Study, of: str) -> Asked:
-    """What a limit is put on."""
+    """Quantity to which a limit applies: static stiffness of a mount, or an index."""
     section, _, mount = of.partition(".")
     return static_stiffness(mount) if section == _STIFFNESS else study.index(of)
 
@@ -173,7 +173,7 @@ def limits_in(study: Study) -> list[list[Limit]]:
 
 
 def each_of(study: Study, limit: StudyLimit) -> str:
-    """Of what a limit holds by itself where its index is a sum over several, such as "each tyre"; else empty."""
+    """Parts to each of which a limit applies where its index is a sum, such as "each tyre"; else empty."""
     vehicle = study.design(next(iter(study.layouts)))
     for index in study.in_each(quantity_limited(study, limit.of)):
         several = for_each(index, vehicle)
@@ -193,9 +193,9 @@ def part_words(vehicle: Vehicle, output: str) -> str:
 
 
 def kept(study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]) -> list[tuple[float, bool, float, str]]:
-    """Of each limit: the value that comes closest, whether it holds the optimum back, the per cent that 1 % gives, and
-    of which tyre or strut the value is where the limit holds for each.
+    """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], and its part.
 
+    The part is the tyre or strut of that value where the limit applies to each of several; else empty.
     `held` are all limited quantities of an optimum of `vehicle`, in the order of `limits_in`.
     """
     found, rest = [], list(held)
@@ -210,7 +210,7 @@ def kept(study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]) -> 
 
 
 def questions_limited(study: Study, vehicle: Vehicle) -> list[Any]:
-    """The questions that limits ask of a vehicle."""
+    """Index definitions of all limited quantities for a vehicle."""
     return [
         index.question(case.mechanism())
         for several in limits_in(study)

@@ -43,7 +43,7 @@ def load_study(path: str | Path) -> Study:
 
 
 def study_of(tables: Mapping[str, Any], path: Path) -> Study:
-    """The study that the tables of a file say; `path`, where they are from or may go to, is for messages and the title.
+    """Study from the tables of a file; `path` is used in messages and for the title.
 
     Raises `StudyError` as `load_study` does.
     """
@@ -115,7 +115,7 @@ def _road_problems(study: Study) -> Iterator[Problem]:
 
 
 def _index_problems(study: Study, limits: Iterable[str]) -> Iterator[Problem]:
-    """What indices lack that cannot be without it: settings, a road."""
+    """Problems of indices without a required setting or road."""
     limited = [name for name in limits if study.knows(name)]
     asked = list(dict.fromkeys([*study.indices, *study.trade_off, *limited]))
     yield from bare_index_problems(asked)

@@ -1,4 +1,4 @@
-"""What is wrong with how a study file asks for its numbers: settings and elements that a method cannot do with."""
+"""Problems of settings and elements in a study file that a method does not support or does not use."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from inerter.units import shown
 
 
 def method_problems(study: Study) -> Iterator[Problem]:
-    """One line for each; a setting that is swept counts as given."""
+    """Problems of the methods of a study; a swept setting counts as given."""
     yield from _unseen_numbers(study)
     study = study.at([sweep.values[0] for sweep in study.sweeps])
     yield from _road_problems(study)
@@ -53,7 +53,7 @@ def _road_problems(study: Study) -> Iterator[Problem]:
 
 
 def _index_problems(study: Study) -> Iterator[Problem]:
-    """Settings of indices that nothing asks for."""
+    """Problems of index settings that no index in `indices` uses."""
     amplitudes = {field.key for symbol in INDICES if isinstance(field := amplitude_of(symbol), Field)}
     for key in study.settings:
         field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
@@ -71,7 +71,7 @@ def _index_problems(study: Study) -> Iterator[Problem]:
 
 
 def _own_problems(study: Study) -> Iterator[Problem]:
-    """Settings of methods that nothing asks for, and those that are missing."""
+    """Problems of method settings that no method in use has, and of missing ones."""
     for name, given in study.method_settings.items():
         if name not in study.methods:
             yield at(
@@ -90,7 +90,7 @@ def _keys(symbol: str) -> set[str]:
 
 
 def _force_problems(study: Study) -> Iterator[Problem]:
-    """Amplitudes that are missing."""
+    """Problems of missing amplitudes."""
     concerned = [method for method in study.methods if needs_amplitude(method)]
     nonlinear = _layouts_with(study, lambda part: part.switch is not None)
     for symbol in study.indices if concerned and nonlinear else ():
@@ -119,7 +119,7 @@ def _gap_problems(study: Study) -> Iterator[Problem]:
 
 
 def _is_refused(part: Element) -> bool:
-    """Whether statistical linearisation has no answer for what switches."""
+    """Whether statistical linearisation does not support an element that switches."""
     return part.acts and not part.is_damped
 
 
@@ -133,7 +133,7 @@ def _unseen_numbers(study: Study) -> Iterator[Problem]:
 
 
 def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[Problem]:
-    """An element whose value is asked about, but which no method of `evaluate` sees."""
+    """Problem of an element that is analysed but that every method of `evaluate` neglects."""
     element = study.elements.get(name)
     if element is not None and element.switch is not None and all(map(is_blind, study.evaluate)):
         yield at(
@@ -144,12 +144,12 @@ def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[
 
 
 def simulating_method() -> str:
-    """The first method that sees friction and gaps alike."""
+    """First method that models both friction and gaps."""
     return next(name for name in METHODS if not is_blind(name) and not refuses_gaps(name))
 
 
 def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:
-    """The layouts with an element of which simulation takes such a part."""
+    """Layouts with an element of which a simulation includes such a part."""
     having = {n for n, element in study.elements.items() if any(map(wanted, switching_parts(element)))}
     concerned = {layout for n, layouts in elements_used(study).items() if n in having for layout in layouts}
     return [layout for layout in study.layouts if layout in concerned]

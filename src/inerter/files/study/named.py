@@ -1,4 +1,4 @@
-"""What is wrong with names that settings of indices have, and with units that follow from what they name."""
+"""Problems of names in index settings that the vehicle lacks, and of units that depend on them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 
 
 def name_problems(study: Study) -> Iterator[Problem]:
-    """One line for each name that no layout has, and for each unit that is another than its input has."""
+    """Problems of names that no layout has, and of units that differ from that of their input."""
     for name, own in study.own_indices.items():
         formed = own.formed
         named = [((key, *one.keys), one) for key, form, value in formed for one in form.named(value)]
@@ -34,7 +34,7 @@ def name_problems(study: Study) -> Iterator[Problem]:
 
 
 def _asked(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
-    """What an index asks of each layout; nothing where that cannot be told, which is reported with the layout."""
+    """Mechanism and index definition for each layout; empty if one cannot be built, which is reported elsewhere."""
     try:
         mechanisms = [study.design(layout).mechanism() for layout in study.layouts]
         return [(mechanism, study.index(name).question(mechanism)) for mechanism in mechanisms]
@@ -43,7 +43,7 @@ def _asked(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
 
 
 def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question: Question) -> Problem | None:
-    """What is wrong with a name where the index is asked of a mechanism."""
+    """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
     driven = question.drive.driven(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     told: Sequence[str]
@@ -66,7 +66,7 @@ def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question:
 
 
 def _of_size(place: Sequence[str], size: Sized, mechanism: Mechanism, question: Question) -> Iterator[Problem]:
-    """Why the unit of a size is none of the input that it is of."""
+    """Problem of a size whose unit does not match that of its input."""
     (arrival, *_) = _inputs(mechanism, question) or ("",)
     unit = input_unit(mechanism, arrival)
     if unit and not are_alike(size.unit, size.expected(unit)):
@@ -75,7 +75,7 @@ def _of_size(place: Sequence[str], size: Sized, mechanism: Mechanism, question: 
 
 
 def _inputs(mechanism: Mechanism, question: Question) -> list[str]:
-    """The inputs that are reached, as they are asked for."""
+    """Sources of the input paths of the index; empty if an input is unknown, which is reported elsewhere."""
     try:
         return [arrival.source for arrival in question.arrivals(mechanism)]
     except InerterError:  # no such input, which is told with its name

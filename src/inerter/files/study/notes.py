@@ -1,4 +1,4 @@
-"""What methods left out of the designs of a study, told once however many cases say it."""
+"""Notes of methods on the designs of a study, each once for all cases with the same wording."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _Words = tuple[str | None, ...]  # of a note, with None for its numbers
 
 
 def road_notes(study: Study) -> list[str]:
-    """What stands for the road, where it was measured."""
+    """Note on the road fitted to a measured profile; empty without one."""
     return [] if study.line is None else [study.line.note]
 
 
 @dataclass
 class _Alike:
-    """Notes that differ in their numbers alone: where the first stands, the ends of each number, and the layouts."""
+    """Notes that differ in their numbers only: first occurrence, range of each number, and the layouts."""
 
     first: tuple[int, int]
     low: list[Part]
@@ -36,12 +36,12 @@ class _Alike:
 
 @dataclass
 class Notes:
-    """The notes of all outcomes that were added, in any order; what is kept grows with their words only."""
+    """Notes of all outcomes added, in any order; memory grows with the number of distinct wordings only."""
 
     _alike: dict[_Words, _Alike] = field(default_factory=dict)
 
     def add(self, number: int, case: Case, outcome: Outcome) -> None:
-        """Take note of what is said of the case of that number."""
+        """Add the notes of the outcome of the case of that number."""
         for i, note in enumerate(outcome.notes):
             words = tuple(part if isinstance(part, str) else None for part in note)
             alike = self._alike.get(words)
@@ -60,7 +60,7 @@ class Notes:
 
 
 def _ranged(alike: _Alike) -> str:
-    """One note for several that differ in their numbers."""
+    """Note with the range of each number that differs."""
     texts = []
     for ends in zip(alike.low, alike.high, strict=True):
         low, high = (text_of((end,)) for end in ends)

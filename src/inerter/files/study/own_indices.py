@@ -1,4 +1,4 @@
-"""Indices that a study file describes itself, in `[indices.NAME]`: a kind, with settings of its own."""
+"""User-defined indices of a study file, in `[indices.NAME]`: a kind, with its settings."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ class OwnIndex:
 
     @property
     def formed(self) -> list[tuple[str, Form, Any]]:
-        """The settings that have forms of their own, by their keys, each with its form."""
+        """Key, value type and value of each setting that has a value type other than a quantity."""
         given = [one for one in index_forms(self.symbol) if one.key in self.settings]
         return [(one.key, form_of(one), self.settings[one.key]) for one in given]
 
     @property
     def needs_road(self) -> bool:
-        """Whether it is asked on a road: nothing else excites it."""
+        """Whether the index is excited by the road of the study."""
         excitation = excitation_of(self.symbol)
         if excitation is None:
             return False
@@ -44,16 +44,16 @@ class OwnIndex:
 
     @property
     def excited_by(self) -> str:
-        """What it says that excites the vehicle, in words; empty where it says nothing of it."""
+        """Excitation stated for the index, in words; empty if none is stated."""
         return next((words for _, form, value in self.formed if (words := form.source(value))), "")
 
     def made(self, road: Road | None) -> dict[str, Any]:
-        """Its settings as the index takes them, on that road if it is on one."""
+        """Settings of the index by key, converted for its constructor; `road` is used where a setting is on a road."""
         return {**self.settings, **{key: form.made(value, road) for key, form, value in self.formed}}
 
 
 def indices_of(tables: Mapping[str, Any]) -> list[str]:
-    """The names of all indices that a file can ask for: those that there are, and its own."""
+    """Names of all indices that a file can use: those of the registry, and its user-defined ones."""
     own = tables.get("indices")
     return [*index_names(), *(own if isinstance(own, dict) else ())]
 
@@ -93,7 +93,7 @@ def _index_table(name: str, symbol: str) -> TableCodec:
 
 
 def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:
-    """Indices that are asked for by their symbols or words though they cannot do without settings."""
+    """Problems of indices used by their symbols or words although they have required settings."""
     for name in dict.fromkeys(name for name in asked if name in index_names()):
         needed = needed_settings(index_names()[name])
         if needed:
@@ -104,7 +104,7 @@ def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:
 
 
 def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex], limited: Sequence[str]) -> Iterator[Problem]:
-    """Indices that the file describes and makes no use of, and those that it asks for twice."""
+    """Problems of user-defined indices not in use, and of indices listed twice."""
     for name in own:
         if name not in asked and name not in limited:
             yield at(("indices", name), fault="not used", expected=f"{shown(name)} in indices, or no section")

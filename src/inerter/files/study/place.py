@@ -16,7 +16,7 @@ class Place:
 
     @property
     def label(self) -> str:
-        """What it is called in results and in files: an element by its name alone."""
+        """Name of the place in results and files; an element without its section."""
         return self.key if self.section == ELEMENTS and "." not in self.key else f"{self.section}.{self.key}"
 
 
@@ -31,7 +31,7 @@ def place_of(text: str) -> Place:
 
 
 def element_at(place: Place) -> str:
-    """The name of the element that a place is about; empty if it is about none."""
+    """Name of the element at a place; empty if the place is not in an element."""
     return place.key.partition(".")[0] if place.section == ELEMENTS else ""
 
 
@@ -47,5 +47,5 @@ class Sweep:
 
     @property
     def label(self) -> str:
-        """What it is called in results."""
+        """Name of the swept place in results."""
         return self.place.label

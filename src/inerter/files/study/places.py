@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def number_at(study: Study, place: Place) -> Number | None:
-    """The number at a place; None if it is no place of this study."""
+    """Number at a place; None if the study has no number there."""
     return _numbers_in(study, place.section).get(place)
 
 
@@ -56,7 +56,7 @@ def _codec(section: str) -> Codec | None:
 
 
 def sections_of(study: Study) -> dict[str, Any]:
-    """The sections of the file that says a study, each as its codec has it; None for one that is left out."""
+    """Sections of the study file as its codec takes them; None for a section that is left out."""
     return {
         "title": study.title,
         "layouts": study.layouts,

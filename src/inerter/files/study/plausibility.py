@@ -30,7 +30,7 @@ def roads_sentence(study: Study) -> str:
 
 
 def input_warnings(study: Study) -> list[str]:
-    """Why roads, speeds or vehicles of the study may not be what is meant."""
+    """Warnings on implausible roads, speeds or vehicles of the study."""
     if study.road is None or not is_on_road(study.model):
         return []
     found: dict[str, None] = {}
@@ -47,7 +47,7 @@ def _roads(study: Study) -> Iterator[Road]:
 
 
 def _variants(study: Study) -> Iterator[Study]:
-    """The study at the ends of its sweeps, in each of its conditions; what cannot be is left out."""
+    """Studies at the ends of the sweeps in each condition, without invalid combinations."""
     for swept in product(*({min(sweep.values), max(sweep.values)} for sweep in study.sweeps)):
         for condition in [one.numbers for one in study.conditions] or [{}]:
             try:

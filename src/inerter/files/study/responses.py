@@ -66,7 +66,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
 
 
 def _per(unit: str, per: str) -> str:
-    """A unit over that of what excites, if that has one of its own."""
+    """Unit of a gain: `unit` over `per`; `unit` alone if `per` is empty."""
     top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
     return f"{top or 1}/{bottom}" if per else unit
 
@@ -79,14 +79,14 @@ def _source_unit(mechanism: Mechanism, question: Question) -> str:
 
 
 def _words(study: Study, index: str) -> str:
-    """What the frequency response of an index is, in words; from what excites it, if the file says so."""
+    """Frequency response of an index in words, with the excitation if the file states it."""
     own = study.own_indices.get(index)
     source = own.excited_by if own else ""
     return f"gain from {source}" if source else study.index(index).response
 
 
 def _weighted(output: Weighted, own: str, unit: str) -> str:
-    """An output, of the unit `own`, as it enters an index of that `unit`: times a lever, or over what it is part of."""
+    """Label of an output of unit `own` in an index of that `unit`: times a weight, or over a reference quantity."""
     if output.weight == 1.0:
         return output.output
     if own and not unit:

@@ -53,11 +53,11 @@ class Gathered:
         self._arrays = {str(name): by_case(self._data, str(name)) for name in self._data.data_vars}
 
     def pending(self) -> Pending:
-        """The cases that have no outcome yet."""
+        """Cases without an outcome so far."""
         return Pending(self)
 
     def enter(self, outcome: Outcome) -> None:
-        """Put an outcome in its place."""
+        """Store an outcome in the arrays of the dataset."""
         case = outcome.case
         number, arrays, kind = self.cases.number(case), self._arrays, outcome.kind
         if not self.done[number]:
@@ -152,7 +152,7 @@ class Gathered:
                 self._arrays["improvement_error"][number, m] = _ratio_error(one, other)
 
     def _estimate(self, number: int, m: int) -> Estimate | None:
-        """What is kept of the estimate of a case's own index; None if it has no value or no scatter."""
+        """Estimate of a case's own index with its samples; None without a finite value or samples."""
         value, error = (float(self._arrays[name][number, m]) for name in ("value", "standard_error"))
         if (number, m) not in self._samples or not isfinite(value):
             return None
@@ -174,7 +174,7 @@ class Pending:
 
 
 def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
-    """All outcomes, labelled: dimensions layout, index, the swept places if there are any, method, parameter.
+    """Dataset of all outcomes: dimensions layout, index, swept places, method, parameter.
 
     Improvements are per cent below the baseline's own optimum of the same index, method and swept value. Where a method
     other than the norm is used, there are standard errors and numbers of realisations too.
@@ -246,7 +246,7 @@ def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
 
 
 def _count(study: Study, layout: str) -> int:
-    """How many elements the struts of a layout have."""
+    """Number of elements in the struts of a layout."""
     return sum(len(list(strut.network.elements())) for strut in study.design(layout).mechanism().struts)
 
 

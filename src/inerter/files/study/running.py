@@ -53,7 +53,7 @@ Progress = Callable[[int, int, Outcome | Answer | None, int], None]
 
 @dataclass(frozen=True, eq=False)
 class StudyResult:
-    """Where the results are, and what they are."""
+    """Result folder of a study, with its dataset and the answers to its tasks."""
 
     folder: Path
     study: Study
@@ -64,12 +64,12 @@ class StudyResult:
 
     @property
     def failures(self) -> list[str]:
-        """One line for every design whose status is not ok."""
+        """Lines, one for every design or answer whose status is not ok."""
         return list(self.failing())
 
     @property
     def not_ok(self) -> int:
-        """How many lines `failures` has."""
+        """Number of lines in `failures`."""
         designs = int(np.count_nonzero(self.data.status.values != StatusKind.OK.value))
         return designs + sum(not answer.ok for answer in self.answers)
 
@@ -142,7 +142,7 @@ def csv_of(key: str) -> str:
 
 
 def result_names() -> tuple[str, ...]:
-    """What a folder of results may hold."""
+    """Names of files and folders that a result folder may hold."""
     tables = map(csv_of, TASKS)
     return (journals.NAME, RESOLVED, SUMMARY, DATASET, *tables, VERSIONS, f"{FIGURES}/", REPORT)
 
@@ -157,7 +157,7 @@ def csv_text(rows: Iterable[Sequence[object]]) -> str:
 
 
 def _origins(study: Study) -> dict[str, Any]:
-    """What the numbers come of, beside the study: versions, the seed, and the SHA-256 of what was measured."""
+    """Provenance of the results: versions, seed, and SHA-256 of a measured profile."""
     measured = {} if study.line is None else {"inputs": {study.line.path.name: study.line.digest}}
     return {**versions(), "seed": study.seed, **measured}
 
@@ -211,7 +211,7 @@ def _computed(
 
 
 def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
-    """Enter the cases of a journal; returns what else it has, and the searches of what has not ended."""
+    """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
     done: _Done = {}
     searches: dict[str, list[Kept]] = {}
     for one in journals.outcomes(journal):
@@ -227,7 +227,7 @@ def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
 
 
 def _outcomes(study: Study, pending: Pending, pool: Pool, known: _Known) -> Iterator[list[Outcome]]:
-    """Outcomes as they are done, those that come together in one list."""
+    """Lists of outcomes, in the order in which they are completed."""
     run = partial(_run_case, portable(study), known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_case, portable(study)))
 
@@ -240,7 +240,7 @@ def _run_case(study: Study, known: _Known, case: Case, threads: int = 1) -> Outc
 def _answers(
     study: Study, found: Gathered, pending: list[_AnyPart], pool: Pool, known: _Known
 ) -> Iterator[list[Answer]]:
-    """Answers as they are done, those that come together in one list."""
+    """Lists of answers, in the order in which they are completed."""
     run = partial(_resumed_answer, portable(study), found.designs, known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, study))
 
@@ -252,7 +252,7 @@ def _resumed_answer(study: Study, designs: Designs, known: _Known, part: _AnyPar
 
 
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:
-    """Compile what the work calls, where it is done, before several processes would do so at once."""
+    """Compile the kernels that the work needs, where it runs, before several processes would do so at once."""
     if pool.is_cluster and compiling is not None:
         compiling("those that machines of the cluster lack", 1, 1)
     prepare_on(pool, kernels(study), compiling)

@@ -1,4 +1,4 @@
-"""By what part of itself each number of a study scatters, by its place in the file."""
+"""Relative tolerance of each number of a study, by its key path."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PLACE = ("study", "tolerance")
 
 
 def tolerance_of(study: Study, entries: Mapping[str, float]) -> tuple[dict[str, float], list[Problem]]:
-    """By what part of itself each number scatters, by its label, and what is wrong with that."""
+    """Relative tolerance of each number, by its label, and the problems of the entries."""
     spread, problems = {}, []
     for label, part in entries.items():
         try:

@@ -1,4 +1,4 @@
-"""The JSON Schema of study files, with which editors complete and check them as they are typed."""
+"""JSON Schema of study files, for completion and checks in editors."""
 
 from __future__ import annotations
 

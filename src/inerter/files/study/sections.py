@@ -239,7 +239,7 @@ class Settings:
 
 
 def _of_a_trade_off(table: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The indices of a trade-off are asked for by themselves too."""
+    """Section [study] whose `indices` default to those of `trade_off`."""
     alone = "trade_off" in table and "indices" not in table
     return {**table, "indices": table["trade_off"]} if alone else table
 
@@ -258,7 +258,7 @@ def _settings(**values: Any) -> dict[str, Any]:
 
 
 def _settings_in(study: Any) -> dict[str, Any]:
-    """The section [study] of a study, by attributes; what has no effect, or is not said of a task, is left out."""
+    """Section [study] of a study, by attribute, without settings that have no effect or their default."""
     silent = {"over": not study.conditions, "points": not study.trade_off}
     own = {one.attribute: getattr(study, one.attribute) for one in keys_in(Settings)}
     tasks = {
@@ -337,7 +337,7 @@ def study_codec() -> TableCodec:
 
 
 def _methods() -> TableCodec:
-    """The section [methods], with a table for each method that has settings of its own."""
+    """Section [methods], with a table for each method that has settings."""
     with_settings = {name: fields_of(kind) for name, kind in METHODS.items() if fields_of(kind)}
     tables = {
         name: TableCodec(tuple(declaration_of(field, optional=True) for field in fields), without_none)

@@ -25,13 +25,13 @@ BESIDE = (0.8, 1.0, 1.2)  # of the speed of the study
 
 
 def asks_at_one_speed(study: Study) -> bool:
-    """Whether it is about one speed on its road: no sweep and no condition has another."""
+    """Whether the study has a road at one speed, which no sweep or condition changes, and no quantile."""
     varied = {sweep.label for sweep in study.sweeps}.union(*(condition.numbers for condition in study.conditions))
     return study.road is not None and SPEED not in varied and study.quantile is None
 
 
 def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> tuple[dict[str, list[float]], str]:
-    """Values of a design at the speeds `BESIDE` that of the study, by their method, and what makes them doubtful.
+    """Values of a design at `BESIDE` times the speed of the study, by method, and a message on doubtful ones.
 
     Both are empty where there is no need.
 
@@ -51,7 +51,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 
 
 def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
-    """The value at that part of the speed of the study, and what makes it doubtful, or why there is none."""
+    """Value at `factor` times the speed of the study (nan if none), and a message if it is doubtful or missing."""
     layout, index, method = asked
     assert study.road is not None
     speed = factor * study.road.speed
@@ -70,7 +70,7 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
 
 
 def quick_method(study: Study, vehicle: Vehicle) -> str:
-    """The method of the values at other speeds: the first that judges, unless it averages random roads."""
+    """Method for values at other speeds: the first of `evaluate`, or one that does not average random roads."""
     first = study.evaluate[0]
     return without_roads(first, has_play=averages(first) and has_play(piecewise(vehicle)))
 
@@ -80,7 +80,7 @@ def _rubs(vehicle: Vehicle) -> bool:
 
 
 def _is_late(vehicle: Vehicle, asked: Asked) -> bool:
-    """Whether what is random arrives late somewhere, or through a filter that depends on the speed."""
+    """Whether random inputs act with different delays, or through a filter that depends on the speed."""
     for one, index in asked_of(vehicle, asked):
         mechanism = one.mechanism()
         question = index.question(mechanism)

@@ -1,4 +1,4 @@
-"""A study file to start from, for any vehicle that files know: made of the rows, with a sentence beside every key."""
+"""Template study file for any vehicle, generated from the registries, with a remark above every key."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
 
 
 class _Quarter(QuarterCar):
-    """What a mechanism begins as."""
+    """Quarter car from which the template of a mechanism is generated."""
 
     key = MECHANISM
 
@@ -124,7 +124,7 @@ def _elements(kind: type[VehicleModel]) -> Iterator[str]:
 
 
 def _mounts(kind: type[VehicleModel]) -> Iterator[str]:
-    """How to give each mount a network of its own."""
+    """Remark on a separate network for each mount; none for a single mount."""
     mounts = needed_mounts_of(kind)
     if len(mounts) > 1:
         table = ", ".join(f'{mount} = "k | c"' for mount in mounts)
@@ -132,7 +132,7 @@ def _mounts(kind: type[VehicleModel]) -> Iterator[str]:
 
 
 def _settings(kind: type[VehicleModel]) -> Iterator[str]:
-    """What is asked, and below it what else can be."""
+    """Section [study] of the template, with the further keys as remarks."""
     possible = [symbol for symbol in INDICES if _answers(kind, symbol)]
     asked = possible[:_MOST_ASKED]
     titles = ", ".join(f"{symbol} {INDICES[symbol].title}" for symbol in asked)
@@ -151,14 +151,14 @@ def _settings(kind: type[VehicleModel]) -> Iterator[str]:
 
 
 def _made(kind: type[VehicleModel]) -> VehicleModel:
-    """Such a vehicle, of any size."""
+    """Vehicle of a model with unit values."""
     network: Network = Spring(1.0) | Damper(1.0)
     values: dict[str, Any] = {field.name: 1.0 for field in fields_of(kind)}
     return kind(**values, **dict.fromkeys(needed_mounts_of(kind), network))
 
 
 def _answers(kind: type[VehicleModel], symbol: str) -> bool:
-    """Whether the vehicle can be asked for the index, without any setting of it."""
+    """Whether the index is defined for the vehicle without any setting."""
     row: Any = INDICES[symbol]
     bare = {f.name for f in dataclasses.fields(row) if f.default is f.default_factory is dataclasses.MISSING}
     if bare - {"road"}:

@@ -1,4 +1,4 @@
-"""Designs whose largest gain is that under a steady force: no damper or inerter can make it smaller."""
+"""Designs whose peak gain equals the static gain, which no damper or inerter can reduce."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from inerter.systems.descriptor import close
 
 
 def at_static_limit(study: Study, results: xr.Dataset) -> frozenset[tuple[str, str]]:
-    """Indices and layouts, of a study without a sweep, whose value by exact norms is the gain at frequency zero."""
+    """Pairs of index and layout, of a study without a sweep, whose exact value equals the gain at frequency zero."""
     method = study.evaluate[0]
     if not is_blind(method):
         return frozenset()
@@ -33,7 +33,7 @@ def at_static_limit(study: Study, results: xr.Dataset) -> frozenset[tuple[str, s
 
 
 def _static_gain(study: Study, layout: str, index: str, design: xr.Dataset) -> float:
-    """The gain at frequency zero of an index that is a largest gain; nan for another, infinite where motions drift."""
+    """Gain at frequency zero of a peak-gain index; nan for another index, infinite with rigid-body drift."""
     numbers = zip(design["parameter"].values.tolist(), design["parameter_value"].values.tolist(), strict=True)
     try:
         vehicle = study.design(layout)

@@ -1,4 +1,4 @@
-"""A study, resolved and checked: SI values, networks by name, and what is asked of them."""
+"""Study, resolved and checked: SI values, networks by name, indices, methods and tasks."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from inerter.vehicle.vehicle import Vehicle
 
 @declared
 class Study(Settings):
-    """All that a study file says, with defaults filled in. Equal studies may come from different files."""
+    """Contents of a study file, with defaults. Equal studies may come from different files."""
 
     title: str
     path: Path = field(compare=False)
@@ -58,43 +58,43 @@ class Study(Settings):
 
     @property
     def methods(self) -> tuple[str, ...]:
-        """All methods that it uses."""
+        """Names of all methods in use, that of the optimisation first."""
         return tuple(dict.fromkeys([*([self.optimise] if self.optimise else []), *self.evaluate]))
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The files that it is read from."""
+        """Paths of the files read: the study file, and a measured profile."""
         return (self.path,) if self.line is None else (self.path, self.line.path)
 
     def knows(self, name: str) -> bool:
-        """Whether there is an index that the study can call so."""
+        """Whether the study or the registry has an index of that name."""
         return name in self.own_indices or name in index_names()
 
     def symbol(self, name: str) -> str:
-        """The symbol of the index that the study calls so."""
+        """Symbol of the index of that name."""
         own = self.own_indices.get(name)
         return own.symbol if own else index_names()[name]
 
     def index(self, name: str) -> Index:
-        """The index that the study calls so, as it asks it."""
+        """Index of that name with the settings of the study."""
         own = self.own_indices.get(name)
         given = {**self.settings_of(name), **own.made(self.road)} if own else self.settings_of(name)
         return make_index(self.symbol(name), self.road, given)
 
     def needs_road(self, name: str) -> bool:
-        """Whether that index is asked on the road of the study."""
+        """Whether the index of that name is evaluated on the road of the study."""
         own = self.own_indices.get(name)
         return own.needs_road if own else excitation_of(self.symbol(name)) is not None
 
     def asked(self, name: str, layout: str) -> Asked:
-        """What is asked of a layout for that index: it over the conditions, at its quantile if there is one."""
+        """Objective of a layout for an index: over the conditions, and at the quantile, if the study has them."""
         index = self.over_conditions(name)
         if self.quantile is None or not (spread := self.spread(layout)):
             return index
         return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), self.quantile, seed=self.seed)
 
     def spread(self, layout: str) -> dict[str, float]:
-        """By what part of themselves values of a layout scatter, by their names."""
+        """Relative tolerance of each value of a layout that has one, by name."""
         if not self.tolerance:
             return {}
         names, found = scattering(self, layout), {}
@@ -106,7 +106,7 @@ class Study(Settings):
         return found
 
     def over_conditions(self, name: str) -> Asked:
-        """That index over the conditions of the study, if there are any."""
+        """Index of that name, combined over the conditions of the study if it has any."""
         index = self.index(name)
         if not self.conditions:
             return index
@@ -114,23 +114,24 @@ class Study(Settings):
         return use.mean(index) if self.over == OVER[0] else use.worst(index)
 
     def in_each(self, index: Asked) -> list[Asked]:
-        """An index in each of the conditions by itself; as it is if there are none."""
+        """List of an index in each condition separately; of the index alone without conditions."""
         return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]
 
     def unit(self, name: str) -> str:
-        """The unit of that index, which may depend on what is asked of the vehicle."""
+        """SI unit of the index of that name; may depend on the vehicle."""
         index = self.index(name)
         return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
 
     def settings_of(self, name: str) -> dict[str, Any]:
-        """The settings of that index by their keys: its own, else those of the study."""
+        """Settings of the index of that name by key; user-defined values override those of the study."""
         own, keys = self.own_indices.get(name), {field.key for field in fields_of(INDICES[self.symbol(name)])}
         shared = {key: value for key, value in self.settings.items() if key in keys}
         return {**shared, **own.settings} if own else shared
 
     def method(self, name: str, threads: int = 1) -> Method:
-        """The method of that name as the study asks it; one that simulates shares its roads over `threads`, which
-        changes no digit.
+        """Method of that name with the settings of the study.
+
+        A method that simulates shares its roads over `threads`, which changes no digit.
         """
         known = ("conventions", "seed", "realisations", "relative_error")
         shared = {**{key: getattr(self, key) for key in known}, "jobs": threads}
@@ -175,7 +176,7 @@ class Study(Settings):
         return elements | {f.key: f.unit for f in own if isinstance(self.vehicle[f.key], Free)}
 
     def with_values(self, values: Mapping[str, float]) -> Study:
-        """The study with these numbers in the place of free values, by their names."""
+        """Study with the design variables replaced by these values [SI], by name."""
         sections = ((name, "elements" if name in self.elements else "vehicle") for name in values)
         return with_numbers(self, [(Place(section, name), values[name]) for name, section in sections])
 
@@ -188,7 +189,7 @@ class Study(Settings):
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:
-    """The elements in layouts, each with the layouts that it is in."""
+    """Elements in layouts, each with the layouts that contain it or an element tied to it."""
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
         named = [name for text in struts.struts.values() for name in _names(text)]
@@ -198,12 +199,12 @@ def elements_used(study: Study) -> dict[str, list[str]]:
 
 
 def scattering(study: Study, layout: str) -> set[str]:
-    """The elements of a layout that can scatter: the parts that it is made of."""
+    """Names of the elements in the networks of a layout, which can have tolerances."""
     return {name for text in study.layouts[layout].struts.values() for name in _names(text)}
 
 
 def _followed(study: Study, name: str) -> tuple[str, ...]:
-    """What an element follows from, if it is tied."""
+    """Names of the elements on which a tied element depends; empty if it is not tied."""
     value = study.elements[name].value if name in study.elements else None
     return value.names if isinstance(value, Tied) else ()
 

@@ -19,7 +19,7 @@ _AT_ONCE = 10_000  # designs that are made plain numbers together
 
 
 def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
-    """Each design and method: what it is, its value, how much better than the baseline, and its parameters."""
+    """Write each design and method: labels, value, improvement over the baseline, and parameters."""
     with lines_of_text(path) as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(_header(study, data))
@@ -47,7 +47,7 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
 
 
 def _on_parts(data: xr.Dataset) -> list[int]:
-    """The numbers of the limits that hold for each tyre or strut by itself."""
+    """Numbers of the limits that apply to each tyre or strut separately."""
     return [i for i, each in enumerate(data["limit.each"].values.tolist()) if each] if "limit.each" in data else []
 
 
@@ -92,5 +92,5 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
 
 
 def _number(value: Any) -> str:
-    """The shortest text that reads back as the same number; empty for a number that there is not."""
+    """Shortest text that is read back as the same number; empty for a missing number."""
     return "" if value != value else repr(value)

@@ -28,7 +28,7 @@ _PLACE, _CONDITIONS = ("study", "sweep"), "conditions"
 
 
 def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, ...], list[Problem]]:
-    """The sweeps that a file asks of the study, and what is wrong with them."""
+    """Sweeps of the study from the entries of the file, and the problems of the entries."""
     if not 1 <= len(entries) <= _MOST:
         got = f"{len(entries)} swept elements ({', '.join(map(shown, entries)) or 'none'})"
         return (), [at(_PLACE, got=got, expected="exactly one, or two for a map")]
@@ -51,7 +51,7 @@ def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, 
 
 
 def number_of(study: Study, place: Place) -> Number:
-    """The number that is to take other values; raises `EntryError` where there is none that can."""
+    """Number at a swept place; raises `EntryError` where there is none that can."""
     number, element = number_at(study, place), element_at(place)
     if number is None:
         raise unknown_place(study, place)
@@ -69,7 +69,7 @@ def number_of(study: Study, place: Place) -> Number:
 
 
 def unknown_place(study: Study, place: Place) -> EntryError:
-    """That nothing stands at a place, and what may be meant."""
+    """Error for a place without a number, with the nearest known place as a hint."""
     if element_at(place) == place.key:
         missing = f"{shown(place.key)} is not in [elements], where there are {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))
@@ -103,7 +103,7 @@ def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
 
 
 def value_of(number: Number, text: str) -> float:
-    """What a text stands for at the place of a number; raises `UnitError`, or `EntryError` if it is not possible."""
+    """Value [SI] of a text for the number at a place; raises `UnitError`, or `EntryError` if it is not possible."""
     value = parse_quantity(text, number.unit)
     if value < 0.0 or (value == 0.0 and not number.may_vanish):
         raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {number.unit}")
@@ -150,7 +150,7 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
 
 
 def _not_followed(study: Study, where: tuple[str, ...], number: Mapping[str, float]) -> Iterator[Problem]:
-    """That what follows from a number of a condition follows from free values too."""
+    """Problems of elements that depend both on a number of a condition and on design variables."""
     for name, element in following(study, number).items():
         if isinstance(element.value, Tied):
             fault = f"{name} depends on it and on a design variable"

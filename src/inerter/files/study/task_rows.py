@@ -1,4 +1,4 @@
-"""The table of tasks: by key, what is asked of the best designs of a study besides their values."""
+"""Registry of tasks: analyses of the best designs of a study, by key."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from inerter.rows import Rows
 
 @dataclass(frozen=True)
 class TaskRow:
-    """A task: where it is, as module:class, imported when a study asks for it, and the keys that [study] has for it.
+    """Task: its class as module:class, imported when a study uses the task, and the keys of [study] that belong to it.
 
     `keys` is a declared class; what a file says of it is `study.tasks[key]`.
     """

@@ -1,4 +1,4 @@
-"""Tasks: what a study asks of its best designs besides their values, in parts that are answered one by one.
+"""Tasks: analyses of the best designs of a study, in parts that are computed one by one.
 
 All of a task is in one file: the keys that ask for it, its parts, how one is answered, what is known of one that
 failed, and how answers are written as CSV, on a terminal, on a page. The journal, processes, executors, progress,
@@ -44,16 +44,16 @@ class Answer(ABC):
     @property
     @abstractmethod
     def part(self) -> TaskPart[Any]:
-        """What it answers."""
+        """Task part to which the answer belongs."""
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the task part in messages."""
         return self.part.name
 
     @property
     def ok(self) -> bool:
-        """Whether the question is answered."""
+        """Whether the status is one that answers the question."""
         return self.status in self.sure
 
     @property
@@ -63,7 +63,7 @@ class Answer(ABC):
 
     @property
     def doubt(self) -> str:
-        """Why the answer is not certain; empty if it is."""
+        """Reason why the answer is uncertain; empty if it is not."""
         return "" if self.ok else self.status_text
 
 
@@ -78,19 +78,19 @@ class TaskPart(ABC, Generic[AnswerT]):
     @property
     @abstractmethod
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the task part in messages."""
 
     @abstractmethod
     def answer(self, study: Study, designs: Designs, threads: int) -> AnswerT:
-        """The answer, from the best designs. What it raises of `FAILURES` becomes that of `failed`."""
+        """Answer for the best designs. What it raises of `FAILURES` becomes that of `failed`."""
 
     @abstractmethod
     def failed(self, study: Study, message: str) -> AnswerT:
-        """The answer without numbers, for this reason."""
+        """Answer without numbers, with `message` as the reason."""
 
 
 class Task(ABC, Generic[AnswerT]):
-    """A kind of question about the best designs of a study."""
+    """Kind of analysis of the best designs of a study."""
 
     key: ClassVar[str]  # of its answers in the journal and in --json, and of their file
     title: ClassVar[str]  # of its section in a report
@@ -98,22 +98,22 @@ class Task(ABC, Generic[AnswerT]):
 
     @abstractmethod
     def parts(self, study: Study) -> Sequence[TaskPart[AnswerT]]:
-        """Its parts in the order of the results; none if it is not asked for."""
+        """Task parts in the order of the results; none if the study does not request the task."""
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """What is wrong with how a study asks for it; `given` are the keys that its section [study] has."""
+        """Problems of the keys of the task; `given` are the keys that the section [study] has."""
         yield from ()
 
     @abstractmethod
     def description(self, study: Study) -> Mapping[str, list[str]]:
-        """What is asked, as a report lists it: items by their heading."""
+        """Items of the report's problem statement, by heading."""
 
     @abstractmethod
     def csv(self, study: Study, answers: Sequence[AnswerT]) -> Iterator[Sequence[object]]:
-        """Rows of its file, the header first."""
+        """Rows of the CSV file of the task, the header first."""
 
     def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[AnswerT]) -> xr.Dataset:
-        """The dataset of the study with those answers that belong in it; there are some."""
+        """Dataset of the study with the answers that belong in it; called with at least one answer."""
         return data
 
     @abstractmethod
@@ -125,17 +125,17 @@ class Task(ABC, Generic[AnswerT]):
         """All answers for a page."""
 
     def introduction(self) -> str:
-        """What stands before these tables."""
+        """Paragraph above the tables of the task; empty by default."""
         return ""
 
     @abstractmethod
     def sentences(self, results: TaskResults[AnswerT], write: Writer) -> Iterator[str]:
-        """What follows, for who decides; what is not certain says so first."""
+        """Conclusions as sentences; an uncertain one states the uncertainty first."""
 
 
 @dataclass(frozen=True, eq=False)
 class TaskResults(Generic[AnswerT]):
-    """The answers to one task, with the study and the dataset of its designs."""
+    """Answers to one task, with the study and the dataset of its designs."""
 
     study: Study
     data: xr.Dataset
@@ -144,7 +144,7 @@ class TaskResults(Generic[AnswerT]):
 
 @made_of_rows
 def tasks() -> tuple[Task[Any], ...]:
-    """All tasks, in the order in which they are done and told."""
+    """All tasks, in the order in which they are computed and reported."""
     return tuple(_task(row.home) for row in TASKS.values())
 
 
@@ -169,12 +169,12 @@ def answer_part(study: Study, designs: Designs, part: TaskPart[AnswerT], threads
 
 
 def lost_part(study: Study, part: TaskPart[AnswerT]) -> AnswerT:
-    """What is known of a part whose processes have ended, each time that it was tried."""
+    """Answer of a task part whose worker processes ended at every attempt."""
     return part.failed(study, ENDED)
 
 
 def by_task(answers: Iterable[Answer]) -> dict[Task[Any], list[Any]]:
-    """The answers by their tasks, of which only those that have some."""
+    """Answers by task; only tasks that have some."""
     every = list(answers)
     found = {task: [one for one in every if isinstance(one, task.answer)] for task in tasks()}
     return {task: own for task, own in found.items() if own}
@@ -186,13 +186,13 @@ def to_json(answer: Answer) -> dict[str, Any]:
 
 
 def journal_entry(answer: Answer) -> dict[str, Any]:
-    """The same with the key of its task, for a journal; `answer_of` undoes it."""
+    """Dictionary of an answer with the key of its task, for a journal; `answer_of` is the inverse."""
     (task,) = (one for one in tasks() if isinstance(answer, one.answer))
     return {"task": task.key, **to_json(answer)}
 
 
 def answer_of(entry: Mapping[str, Any]) -> Answer:
-    """The answer of an entry that `journal_entry` made.
+    """Answer of an entry made by `journal_entry`.
 
     Raises `TypeError` for an entry that is none.
     """

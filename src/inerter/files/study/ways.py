@@ -1,4 +1,4 @@
-"""The methods of a study in words of the trade: with friction, without."""
+"""Methods of a study in the terms of the field: with friction, without."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SEEN = {Sees.NEITHER: (), Sees.FRICTION: (Guard.FORCE,), Sees.BOTH: tuple(Guard
 
 
 def ways(study: Study) -> dict[str, str]:
-    """Words for each method that judges the designs, such as "with friction"; empty where there is nothing to tell.
+    """Words for each method of `evaluate`, such as "with friction"; empty without nonlinear elements.
 
     Two methods that see the same are told apart by what they are.
     """
@@ -25,7 +25,7 @@ def ways(study: Study) -> dict[str, str]:
 
 
 def _losses(study: Study) -> dict[str, Guard]:
-    """What there is in the layouts that a linear analysis does not see, and what it switches by: force first."""
+    """Nonlinear effects of the layouts that linear analysis neglects, with the kind of guard of each: force first."""
     used = [study.elements[name] for name in elements_used(study) if name in study.elements]
     parts = [part for element in used for part in switching_parts(element)]
     found = {part.effect or part.key: part.switch.guard for part in parts if part.switch is not None}

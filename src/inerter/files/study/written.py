@@ -1,4 +1,4 @@
-"""Quantities as the author of a study file wrote them: a person looks for the numbers that the file has."""
+"""Quantities as written in the study file, for output in the same units and digits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from inerter.units import parse_quantity
 
 
 def texts_of(tables: Mapping[str, Any]) -> tuple[str, ...]:
-    """The texts of a file that may be quantities: those that stand for themselves, and not among others in a list."""
+    """Texts of a file that may be quantities: single entries, not those in a list."""
     return tuple(dict.fromkeys(_texts(tables)))
 
 
@@ -30,7 +30,7 @@ def _texts(tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def as_written(study: Study, value: float, unit: str) -> str | None:
-    """How the file writes this quantity, which is its value to the last bit; None if it does not."""
+    """Text of a quantity in the study file whose value is identical; None if the file has none."""
     return _values(study.texts, unit).get(value)
 
 
@@ -66,7 +66,7 @@ def _rewritten(study: Study, entry: Any) -> Any:
 
 
 def _quantity(study: Study, text: str) -> str | None:
-    """How the file writes a number and its SI unit; None for a text that is none, such as a title."""
+    """Text in the study file of a number with its SI unit; None for a text that is not a quantity."""
     number, _, unit = text.partition(" ")
     try:
         return as_written(study, float(number), unit) if parse_quantity(text, unit) == float(number) else None

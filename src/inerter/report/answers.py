@@ -1,4 +1,4 @@
-"""What a study answers, in sentences for who decides: the first of a page, the last on a terminal."""
+"""Conclusions of a study in sentences, printed first on a page and last on a terminal."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def answers(
     found: Sequence[Answer] = (),
     write: Writer = with_unit,
 ) -> list[str]:
-    """Warnings, a sentence for each index, and what the answers `found` to the tasks of the study come to."""
+    """Warnings, a sentence for each index, the conclusions of the tasks, and the limits, in this order."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     at_speeds = speed_sentences(results, write)
     return [
@@ -48,7 +48,7 @@ def answers(
 
 
 def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str]:
-    """What the limits are, and which layouts have no design that keeps them."""
+    """Sentence on the constraints, and on layouts without a feasible design."""
     swept = {sweep.words for sweep in study.sweeps}
     limits = [
         f"{limit_words(study, one)} {'what is swept' if one.words in swept else _number(one.value, one.unit, write)}"
@@ -67,7 +67,7 @@ def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str
 
 
 def _missed_at(results: xr.Dataset, layout: str) -> str | None:
-    """At how many swept values no design of the layout keeps the limits; None if there is one everywhere."""
+    """Clause on the swept values at which a layout has no feasible design; empty if at all, None if at none."""
     missed = infeasible(results).sel(layout=layout).all("index").values
     if not missed.any():
         return None
@@ -76,7 +76,7 @@ def _missed_at(results: xr.Dataset, layout: str) -> str | None:
 
 
 def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
-    """The design that misses the limits least, and what it has instead; nothing over a sweep."""
+    """Clause on the design closest to feasibility and its values; empty over a sweep."""
     if study.sweeps:
         return ""
     values = results["limit_value"].stack(design=("layout", "index")).transpose("design", "limit")

@@ -1,4 +1,4 @@
-"""What several methods say of the same designs, side by side."""
+"""Comparison of the methods of a study on the same designs, side by side."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ _LONGEST_METHOD = 18  # longer words are cut in two
 
 
 class _Entry(NamedTuple):
-    """What a method says of a layout: two short texts, the second below the first."""
+    """Cell of a layout and a method: two short texts, the second below the first."""
 
     first: str
     second: str = ""
@@ -66,7 +66,7 @@ def method_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
 
 
 def method_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, every layout by every method; none if there is but one method."""
+    """Tables of every layout by every method, one per index; empty with a single method."""
     if len(methods(results)) < 2:
         return []
     return [_table(results, index) for index in indices(results)]
@@ -99,7 +99,7 @@ def _unit(results: xr.Dataset, index: str) -> Scale:
 
 
 def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
-    """Value and improvement; over a sweep the largest improvement, or the least value, and where it is."""
+    """Cell with value and improvement; over a sweep, the largest improvement or the least value with its place."""
     row, baseline = results.sel(layout=layout, index=index), results.attrs["baseline"]
     if not swept_places(results):
         value, error, bound = float(row["value"]) * unit.factor, error_of(row) * unit.factor, bound_of(row)
@@ -128,14 +128,14 @@ def _typeset(text: str) -> str:
 
 
 def _two_lines(words: str) -> tuple[str, str]:
-    """Long words in two parts as even as they can be, cut at a space or after a hyphen."""
+    """Text split into two lines of similar length, at a space or after a hyphen."""
     cuts = [found.end() for found in re.finditer(r"[ -](?=.)", words)] if len(words) > _LONGEST_METHOD else []
     cut = min(cuts, key=lambda place: abs(2 * place - len(words)), default=len(words))
     return words[:cut].rstrip(), words[cut:]
 
 
 def _fitting(columns: list[list[_Entry]], width: int) -> int:
-    """How many columns fit beside the first, which holds the labels; one at least."""
+    """Number of columns that fit next to that of the labels, at least one."""
     count = len(columns) - 1
     while count > 1 and max(map(len, _lines(columns[: count + 1]))) > width:
         count -= 1

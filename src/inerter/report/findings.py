@@ -51,7 +51,7 @@ _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 @dataclass(frozen=True)
 class Wording:
-    """How findings are told: `write` turns a number, its unit and its errors into text.
+    """Formatting of findings: `write` turns a number, its unit and its uncertainties into text.
 
     `static` are indices and layouts whose largest gain is that under a steady force.
     """
@@ -64,13 +64,13 @@ PLAIN = Wording()
 
 
 def headlines(results: xr.Dataset, wording: Wording = PLAIN) -> list[str]:
-    """One sentence for each index: which layout is best, how good it is, and how much better than the baseline."""
+    """Sentences, one per index: best layout, its value, and its improvement over the baseline."""
     told = _of_sweep if swept_places(results) else _of_designs
     return [f"{doubt_of(results, index)}{told(results, index, wording)}" for index in indices(results)]
 
 
 def doubt_of(results: xr.Dataset, index: str) -> str:
-    """That values which the answer compares are not certain, why, and what can decide; empty if all are.
+    """Sentence on uncertain values that the answer compares, with cause and deciding method; empty if all are certain.
 
     A value that is not there is compared with nothing.
     """
@@ -107,7 +107,7 @@ def best_layouts(results: xr.Dataset, index: str) -> list[str]:
 
 
 def _margins(row: xr.Dataset, best: int) -> list[float]:
-    """How much larger than that of the `best` each value may be by chance, with 95 % confidence; zero without errors.
+    """Margin of each value over the `best` within the 95 % confidence interval; zero without uncertainties.
 
     Where there is a baseline, errors are those of differences from it on the same roads.
     """
@@ -126,7 +126,7 @@ def _margins(row: xr.Dataset, best: int) -> list[float]:
 
 
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
-    """Of layouts that are equally good the one with the fewest elements comes first, then as in the file."""
+    """Layouts sorted by number of elements, otherwise in the given order."""
     if "elements" not in results.coords:
         return names
     return sorted(names, key=lambda name: int(results["elements"].sel(layout=name)))
@@ -154,7 +154,7 @@ def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
 
 
 def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = with_unit, *, named: bool = False) -> str:
-    """Swept values with their units, as a sentence has them if they are `named`."""
+    """Swept values with their units, and with their names if `named`, as text."""
     texts = []
     for name, value in place.items():
         text = swept_text(results, name, value, write)
@@ -187,12 +187,12 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
 
 
 def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
-    """Each index, and where each layout is better than the baseline: crossings over one place, a share over two."""
+    """Pairs of index and sentence on where each layout outperforms the baseline: crossings, or shares of a map."""
     return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _shares(results)
 
 
 def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
-    """Each index, and at how many points of a map each layout is better than the baseline."""
+    """Pairs of index and sentence on the number of points of a map at which each layout outperforms the baseline."""
     sentences = []
     for index in indices(results):
         for name in compared(results):
@@ -209,7 +209,7 @@ def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
-    """Each index, and where each layout crosses the baseline over a sweep. For a study with one swept place."""
+    """Pairs of index and sentence on where each layout crosses the baseline, for a study with one sweep."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     words = results[element].attrs["long_name"]
     several = len(methods(results)) > 1
@@ -230,7 +230,7 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
 
 
 def _places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer) -> str:
-    """Swept values with their errors; of many the first, and how many there are."""
+    """Swept values with their errors as text; of many, the first and the number of others."""
     more, element = len(found) - _MOST_PLACES, str(swept_element(results))
     texts = [swept_text(results, element, at, write, error) for at, error in found[:_MOST_PLACES]]
     return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
@@ -256,13 +256,13 @@ def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
 
 
 def _called(results: xr.Dataset, index: str) -> str:
-    """What an index is, and which of the file's own it is where that does not say it."""
+    """Title of an index, with its name if it is user-defined."""
     title = index_title(results, index)
     return title if index in INDICES else titled(title, index)
 
 
 def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
-    """By one method: the best layouts, the value, and how it compares with the baseline."""
+    """Clause on the best layouts by one method: their value, and its comparison with the baseline."""
     names, baseline = best_layouts(results, index), results.attrs["baseline"]
     if not names:
         return _none(results, index)
@@ -281,7 +281,7 @@ def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
 
 
 def _still(results: xr.Dataset, index: str, name: str) -> str:
-    """The same layout by another method."""
+    """Layout by another method, with its improvement over the baseline."""
     design = results.sel(layout=name, index=index)
     if name == results.attrs["baseline"] or not np.isfinite(float(design["improvement"])):
         return name
@@ -323,13 +323,13 @@ def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
 
 
 def _without(results: xr.Dataset, index: str, layout: str) -> str:
-    """That a layout has no value, and why."""
+    """Clause on a layout without a value: infeasible, or not finite."""
     missed = bool(infeasible(results.sel(layout=layout, index=index)))
     return f"no {layout} keeps the limits" if missed else f"{layout} has no finite value"
 
 
 def _none(results: xr.Dataset, index: str) -> str:
-    """Why there is no best layout."""
+    """Clause on the reason why no layout is best."""
     missed = bool(infeasible(results.sel(index=index)).all())
     return "no layout keeps the limits" if missed else "no layout has a finite value"
 

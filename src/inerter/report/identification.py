@@ -46,7 +46,7 @@ _MOST_FIGURES = 5  # of one record, and two of all
 
 @dataclass(frozen=True)
 class ParameterRow:
-    """A parameter in the table: what it is, its value and interval, and where it was sought."""
+    """Row of the table of parameters: description, value, confidence interval, and search bounds."""
 
     name: str
     value: str
@@ -58,7 +58,7 @@ class ParameterRow:
 
 @dataclass(frozen=True)
 class RecordText:
-    """A record in words: what was done to it, and what was found, by severity."""
+    """Texts on a record: its processing, and its findings by severity."""
 
     source: str
     about: str
@@ -189,7 +189,7 @@ def _computation(found: Identified) -> str:
 
 
 def _signed(value: float) -> str:
-    """A correlation; one that rounds to nothing has no sign, and where there is none nothing is shown."""
+    """Correlation with its sign, without one if it rounds to zero; empty if not available."""
     if isnan(value):
         return ""
     text = f"{value:+.2f}"

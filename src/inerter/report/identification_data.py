@@ -1,4 +1,4 @@
-"""What an identification found, as data for JSON and as a table of residuals, in SI units."""
+"""Identification result as data for JSON and as a table of residuals, in SI units."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def response_data(found: Responses) -> dict[str, Any]:
 
 
 def write_residuals(found: Identified, path: Path) -> None:
-    """A row for every sample of every record: what was measured, what the model answers, and what it was used for."""
+    """Write one row per sample of every record: measured and predicted force, and use of the sample."""
     with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
         file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")
         for number, c in enumerate(found.fit.comparisons):

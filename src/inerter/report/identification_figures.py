@@ -131,7 +131,7 @@ def _checked(c: RecordFit) -> str:
 
 
 def _autocorrelation(white: Matrix) -> tuple[Matrix, Matrix, float]:
-    """Lags in samples, the autocorrelation there, and what that of white noise stays within."""
+    """Lags [samples], the autocorrelation of the residuals at them, and the bound for white noise."""
     x = np.clip(white - np.median(white), -4.0, 4.0)
     count = min(_LAGS, x.size // 4)
     square = max(float(x @ x), 1e-300)

@@ -1,4 +1,4 @@
-"""What an identification found, as text for a terminal of 80 columns."""
+"""Identification result as text for a terminal of 80 columns."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def _warning(found: Identified) -> Iterator[str]:
 
 
 def unreliable(found: Identified) -> str:
-    """Why a fit is not to be relied on; empty if it is.
+    """Reason why the estimates of a fit are unreliable; empty if they are reliable.
 
     Where no hypothesis explains the misfit, what the records were warned of before is the first thing to look at.
     """
@@ -75,7 +75,7 @@ def unreliable(found: Identified) -> str:
 
 
 def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
-    """What may be wrong: a sentence, how much of the misfit it explains, the values with it, and what to do."""
+    """Possible causes of the residual: sentence, share explained [%], estimates with the cause, and remedy."""
     likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
     for e in likely[:MOST_EXPLANATIONS]:
         units = {name: p.unit for name, p in found.fit.parameters.items()}
@@ -88,7 +88,7 @@ def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
 
 
 def misfit(found: Identified) -> str:
-    """What a fit leaves by the measure of the sensors' errors."""
+    """Sentence on the normalised residual: r.m.s. residual over sensor noise, of fitted and validation data."""
     m = found.fit.misfit
     parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
     return f"Residual over the expected sensor noise: {' and '.join(parts)} (r.m.s., whitened)."
@@ -101,7 +101,7 @@ def about(reading: Reading) -> str:
 
 
 def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator[str]:
-    """What was done to a record, in sentences."""
+    """Sentences on the processing of a record."""
     yield from reading.used.notes
     yield from comparison.record.notes[len(reading.used.notes) :]
     motion = comparison.experiment.motion
@@ -141,7 +141,7 @@ def _candidates(found: Identified) -> Iterator[str]:
 
 
 def behind(candidate: Candidate) -> str:
-    """How much worse a model predicts than the best one, with the standard error of that."""
+    """Text on the validation loss of a model above that of the best one, with its standard error."""
     if candidate.behind == 0.0:
         return "best"
     known = measured(candidate.behind, candidate.error)
@@ -164,7 +164,7 @@ def _estimates(found: Identified) -> Iterator[str]:
 
 
 def remarks(found: Identified) -> Iterator[str]:
-    """What has to be known about the estimates."""
+    """Sentences on limitations of the estimates."""
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
 
@@ -188,7 +188,7 @@ def _goodness(found: Identified) -> Iterator[str]:
 
 
 def share(explained: float) -> str:
-    """A part of the variance in per cent, with two digits of what is missing to all of it.
+    """Share of the variance [%] as text, with two digits of its difference from 100 %.
 
     >>> share(0.99998)
     '99.9980 %'
@@ -199,7 +199,7 @@ def share(explained: float) -> str:
 
 
 def whiteness(comparison: RecordFit) -> str:
-    """What the test of the residuals says."""
+    """Sentence on the whiteness test of the residuals."""
     p = comparison.whiteness
     size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"
     if p >= INDEPENDENT:

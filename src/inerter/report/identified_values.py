@@ -1,4 +1,4 @@
-"""Identified values in words and numbers: with as many digits as their intervals bear."""
+"""Identified values as text, with as many digits as their confidence intervals justify."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_DIGITS = 6  # of values that are to be read back
 
 
 class Known(Enum):
-    """What is known of a parameter."""
+    """Kind of result available for a parameter."""
 
     VALUE = auto()
     BOUNDS = auto()  # at most: it is not identifiable
@@ -26,14 +26,14 @@ _WORDS = {Known.BOUNDS: "not identifiable", Known.NOTHING: "withheld"}
 
 
 def known(found: Identified, name: str) -> Known:
-    """Whether there is a value to show."""
+    """Kind of result available for a parameter: a value, bounds only, or nothing."""
     if not found.explains:
         return Known.NOTHING
     return Known.BOUNDS if isnan(found.fit.parameters[name].value) else Known.VALUE
 
 
 def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
-    """The value of a parameter, or that it is not identifiable, and its 95 % interval, empty if there is none."""
+    """Value of a parameter and its 95 % confidence interval as texts; words for a missing value."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
     what = known(found, name)
@@ -81,7 +81,7 @@ def _sources(found: Identified) -> str:
 
 
 def _rows(found: Identified) -> tuple[dict[str, tuple[str, str]], str]:
-    """What stands behind each name, and the expression."""
+    """Value and remark for each element name, and the expression of the network."""
     rows: dict[str, tuple[str, str]] = {}
     order = []
     for free, best in zip(found.model.elements(), found.device.elements(), strict=True):

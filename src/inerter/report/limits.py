@@ -1,4 +1,4 @@
-"""What limits a study keeps, and what they cost, as lines for a terminal and tables for a page."""
+"""Constraints of a study and their sensitivities, as lines for a terminal and tables for a page."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MOST_RANGES = 3  # of swept values, in a remark
 
 
 def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
-    """A line for each limit and layout; nothing where there are no limits."""
+    """Lines, one for each limit and layout; empty without limits."""
     if "limit" not in results.dims:
         return
     for limit in results["limit"].values.tolist():
@@ -48,7 +48,7 @@ def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
 
 
 def limit_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, what is limited in each layout's best design; none where there are no limits.
+    """Tables of the limited quantities of each layout's best design, one per index; empty without limits.
 
     Over a sweep, where each limit holds the best designs back, and where no design keeps all of them.
     """
@@ -73,7 +73,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
 
 
 def _spoken(results: xr.Dataset, limit: str) -> str:
-    """A limit as it is said: its first word is a name of the file, and of what it holds by itself follows that."""
+    """Limit in words, with the part to which it applies if to each separately."""
     name, space, value = limit.partition(" ")
     return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{typeset(value)}"
 
@@ -84,7 +84,7 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
 
 
 def _told(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
-    """What is limited in a design, and whether its limit holds it back and what that costs; over a sweep, where."""
+    """Value of a limited quantity, and a text on an active limit and its sensitivity; over a sweep, where active."""
     if swept_places(entry):
         where, which = _where(entry, entry["limit_active"].values & ~_missed(entry), write)
         return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
@@ -103,7 +103,7 @@ def _missed(entry: xr.Dataset) -> NDArray[np.bool_]:
 
 
 def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_unit) -> tuple[str, str]:
-    """At how many swept values, or points of a map, and the ranges of those values; empty texts for none."""
+    """Number of swept values, or points of a map, and the ranges of those values, as text; empty if none."""
     if not wanted.any():
         return "", ""
     count, size = int(wanted.sum()), wanted.size

@@ -1,4 +1,4 @@
-"""What can be done about a fault of a record, in the words of the command line."""
+"""Remedies for faults of a record, as options of the command line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _CONFIG = "of a --config"
 
 
 def as_options(text: Iterable[object]) -> str:
-    """The parts of a sentence, such as the `args` of a `RecordError`, with options in the place of Python's calls.
+    """Text of the parts of a sentence, such as the `args` of a `RecordError`, with remedies as command-line options.
 
     >>> as_options(("Name the unit, ", Remedy(Action.UNIT, ("force", "N")), "."))
     'Name the unit, --unit "force=N".'

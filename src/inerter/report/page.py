@@ -49,7 +49,7 @@ _REFERENCE = re.compile(r'(\bid="|href="#|url\(#)')
 
 @dataclass(frozen=True)
 class PageFigure:
-    """A drawing to stand in the page, and its caption."""
+    """Drawing of the page, with its caption."""
 
     drawing: Markup
     caption: str
@@ -121,7 +121,7 @@ def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]
 
 
 def _remarks(results: xr.Dataset) -> list[str]:
-    """What goes below the tables of a sweep: where layouts are better than the baseline, where other designs are."""
+    """Remarks below the tables of a sweep: where layouts outperform the baseline, and where to find omitted designs."""
     told = over_the_sweep(results, printed) if results.attrs["baseline"] else []
     return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
 
@@ -140,7 +140,7 @@ def _ends(sweep: Sweep) -> Sweep:
 
 
 def environment(*packages: str) -> Environment:
-    """Where the templates of pages are, in folders of this and other packages, and the filters that they use.
+    """Template environment of the pages: folders of this and other packages, and the filters.
 
     What is filled in is escaped.
     """
@@ -162,7 +162,7 @@ def environment(*packages: str) -> Environment:
 
 
 def printed_sentence(sentence: str) -> str:
-    """A sentence with a minus where there is one, and per cent on the line of their number."""
+    """Sentence with proper minus signs, and per cent signs on the line of their numbers."""
     text = sentence.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}").replace(" %", f"{_SPACE}%")
     return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
 
@@ -175,7 +175,7 @@ def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:
 
 
 def breakable(name: str) -> Markup:
-    """A name that may go on in the next line after each of its separators."""
+    """Name with optional line breaks after its separators."""
     return Markup("<wbr>").join(re.split(r"(?<=[-_.+])(?=.)", name))
 
 

@@ -1,4 +1,4 @@
-"""Results that no vehicle would stand, in warnings."""
+"""Warnings on results that are implausible for a vehicle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from inerter.vehicle.registry import VEHICLES
 
 
 def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
-    """Which values no vehicle would stand: accelerations beyond that of gravity, tyres that leave the road."""
+    """Warnings on implausible values: accelerations beyond that of gravity, tyre loads beyond the static load."""
     if study.road is None or study.model not in VEHICLES:
         return
     for name in study.indices:
@@ -37,7 +37,7 @@ def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
 
 
 def _static_load(study: Study) -> float:
-    """The sum of the static loads of all tyres [N]; 0 where it is not known."""
+    """Sum of the static loads of all tyres [N]; 0 if unknown."""
     try:
         design = study.design(next(iter(study.layouts)))
         free = {name: free.lower for name, free in design.free_values().items()}

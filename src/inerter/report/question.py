@@ -1,4 +1,4 @@
-"""What a study asks, in words and tables: the vehicle, its elements and layouts, and how the answer is computed."""
+"""Problem statement of a study: vehicle, elements, layouts, and the computation, in words and tables."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _ALSO = {  # the same value in the unit in which it is usually told
 
 
 def _road_class(roughness: float) -> str:
-    """Where a road lies among the classes of ISO 8608."""
+    """Class of a road in ISO 8608, as text."""
     found = Road(roughness, speed=1.0).iso8608_class
     mean = isclose(roughness, found.roughness, rel_tol=1e-9)
     return f"{'mean of' if mean else 'in'} class {found.letter} of ISO 8608"
@@ -46,7 +46,7 @@ def _road_class(roughness: float) -> str:
 
 @dataclass(frozen=True)
 class LayoutText:
-    """A layout: its name, whether it is the baseline, and the expression of each of its struts."""
+    """Layout in words: name, whether it is the baseline, and the expression of each strut."""
 
     name: str
     baseline: bool
@@ -80,7 +80,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 
 
 def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
-    """What an index of the file's own is about and what excites it, by the forms of its settings."""
+    """Rows on the settings of a user-defined index that have value types other than quantities."""
     known = places(study)
     for key, form, value in study.own_indices[name].formed if name in study.own_indices else ():
         for words, text in form.told(value):
@@ -91,7 +91,7 @@ def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
 
 
 def _roughness(study: Study) -> str:
-    """As the file writes it, or where it was found in a profile with the digits that such a line bears."""
+    """Roughness as the file has it, or as fitted to a profile, with the digits that the fit justifies."""
     swept = any(sweep.label == "road.roughness" for sweep in study.sweeps)
     if study.line is None or study.road is None or swept:
         return _told(study, "road.roughness")
@@ -112,7 +112,7 @@ def element_rows(study: Study) -> list[tuple[str, str, str]]:
 
 
 def further_rows(study: Study) -> list[tuple[str, str]]:
-    """What is asked beyond the least value of each index: limits, and what tasks describe."""
+    """Rows on constraints and tasks."""
     given = {"Limits": [f"{limit_words(study, one)} {_given(study, one.value, one.unit)}" for one in study.limits]}
     for task in tasks():
         given |= task.description(study)
@@ -120,17 +120,17 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
 
 
 def spoken(words: str) -> str:
-    """Words of a file as they are said: static-stiffness.strut is the static stiffness of strut."""
+    """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
     return words.replace("-", " ").replace(".", " of ")
 
 
 def of_each(name: str, each: str) -> str:
-    """What is limited, as it is said; with of what it is by itself, so that it is not taken for the index of all."""
+    """Limited quantity in words, with the part to which the limit applies if to each separately."""
     return f"{spoken(name)}, {each}," if each else spoken(name)
 
 
 def limit_words(study: Study, limit: StudyLimit) -> str:
-    """What is limited, and on which side, as it is said."""
+    """Limited quantity and sense of the limit, in words."""
     return f"{of_each(limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
 
 
@@ -146,7 +146,7 @@ def condition_rows(study: Study) -> list[tuple[str, str, str]]:
 
 
 def layout_rows(study: Study) -> list[LayoutText]:
-    """The layouts with the expressions of their struts; one without a mount where all struts are alike."""
+    """Layouts with the expressions of their struts; without mounts if all struts are equal."""
     rows = []
     for name, layout in study.layouts.items():
         texts = set(layout.struts.values())
@@ -161,7 +161,7 @@ def indices_asked(results: xr.Dataset) -> str:
 
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
-    """How the numbers were computed, in sentences."""
+    """Sentences on the computation of the numbers."""
     told = ways(study) if len(study.evaluate) > 1 else {}
     for name in study.evaluate:
         yield f"Values{f' {told[name]} (in files: {name})' if told else ''} are {words_of(name)}."
@@ -193,7 +193,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
 
 
 def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
-    """How many random roads there were, what ± means, and how large the force of J5 was."""
+    """Sentences on the number of random roads, the meaning of ±, and amplitudes of sinusoidal forces."""
     counts = results["realisations"].values if "realisations" in results else np.zeros(0)
     if counts.any():
         least, most = int(counts[counts > 0].min()), int(counts.max())
@@ -212,7 +212,7 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
 
 
 def _told(study: Study, place: str) -> str:
-    """The number at a place: its value, its bounds if it is free, or the ends of what it takes in a sweep."""
+    """Number at a place as text: its value, its bounds if free, or the ends of its sweep."""
     number = places(study)[place]
     for sweep in study.sweeps:
         if sweep.label == place:
@@ -227,7 +227,7 @@ def _told(study: Study, place: str) -> str:
 
 
 def _given(study: Study, value: float, unit: str) -> str:
-    """A value as the study file writes it, else with all digits that it gives it, on the line of its unit."""
+    """Value as the study file has it, else with 12 digits, without a line break before its unit."""
     return _with_also(as_written(study, value, unit) or format_quantity(value, unit, digits=12), value, unit)
 
 

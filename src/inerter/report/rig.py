@@ -1,4 +1,4 @@
-"""What a virtual rig measured, in a few lines of at most 80 columns."""
+"""Measurement of a virtual rig, in a few lines of at most 80 columns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a simulation found, as text for a terminal of 80 columns and as data for JSON."""
+"""Simulation result as text for a terminal of 80 columns and as data for JSON."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def simulation_text(result: SimulationResult, window: Window | None) -> str:
 
 
 def simulation_data(result: SimulationResult) -> dict[str, Any]:
-    """The same in SI units, for JSON."""
+    """Request, r.m.s. values, peaks, tyre loads, events, energy and status in SI units, for JSON."""
     run, request = result.run, result.request
     energy, repetition = run.energy, run.repetition
     data = {
@@ -134,7 +134,7 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
 
 
 def _elsewhere(found: tuple[LiftOff, ...], window: Window, whole: Window) -> Iterator[str]:
-    """Where in the run the first tyre lifts off, if none does in the window of the figure."""
+    """Sentence on the window of the first lift-off, if none lies in the window of the figure."""
     if not any(one.end > window[0] and one.begin < window[1] for one in found):
         half, at = 0.5 * (window[1] - window[0]), found[0].begin
         around = f"{max(whole[0], at - half):.4g}:{min(whole[1], at + half):.4g}"

@@ -1,4 +1,4 @@
-"""What the best designs become at other speeds than that of the study, in sentences and as data."""
+"""Performance of the best designs at speeds other than that of the study, as sentences and data."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ _TUNED = 0.1  # by which a value may exceed what it would be if the speed only m
 
 @dataclass(frozen=True)
 class SpeedSentences:
-    """Sentences on designs that lose much at another speed, and on the others."""
+    """Sentences on designs with a large loss or doubtful values at other speeds, and on the others."""
 
     doubts: list[str]
     others: list[str]
 
 
 def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, float | str | None]]:
-    """One design at each of the other speeds: its value, and its improvement over the baseline's design there [%]."""
+    """Value of one design at each of the other speeds, and its improvement over the baseline's design there [%]."""
     where = {name: names[name] for name in ("layout", "index", *swept_places(results))}
     own, doubts = results["at_speeds.value"].sel(where), _messages(results, where)
     if not np.isfinite(own).all() and not _reason(results, where):
@@ -56,7 +56,7 @@ def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, f
 
 
 def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSentences:
-    """For each index what its best design becomes at other speeds, what is lost there first."""
+    """Sentences on the best design of each index at other speeds, separated by whether they are doubts."""
     found = SpeedSentences([], [])
     for index in indices(results) if "at_speeds.value" in results else ():
         where = _best(results, index)
@@ -83,7 +83,7 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
 
 
 def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
-    """Whether much is lost, and a sentence."""
+    """Whether the design is doubtful at other speeds, and a sentence on its values there."""
     index, layout, baseline = where["index"], where["layout"], results.attrs["baseline"]
     values, better = results["at_speeds.value"].sel(where).values, _improvements(results, where)
     unit, beyond = index_unit(results, index), _beyond_speed(results, where)
@@ -115,12 +115,12 @@ def _of(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
 
 
 def _reason(results: xr.Dataset, where: Mapping[str, Any]) -> str:
-    """Why a design has no finite values at other speeds; empty where they were not asked for."""
+    """Reason why a design has no finite values at other speeds; empty if they were not requested."""
     return str(results["at_speeds.message"].sel(where).item()).rstrip(".")
 
 
 def _messages(results: xr.Dataset, where: Mapping[str, Any]) -> list[str]:
-    """What makes the values of a design, and of the baseline's that they are compared with, doubtful."""
+    """Messages on doubtful values at other speeds, of a design and of the baseline."""
     every = dict.fromkeys([where["layout"], results.attrs["baseline"] or where["layout"]])
     found = [str(results["at_speeds.message"].sel({**where, "layout": layout}).item()) for layout in every]
     return list(dict.fromkeys(message.rstrip(".") for message in found if message))
@@ -153,7 +153,7 @@ def _at(results: xr.Dataset, place: int, write: Writer) -> str:
 
 
 def _improvements(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """How much better than the baseline's own design at each speed [%]; nan without one."""
+    """Improvement over the baseline's own design at each speed [%]; nan without a baseline."""
     baseline, own = results.attrs["baseline"], results["at_speeds.value"].sel(where).values
     if not baseline:
         return np.full(own.shape, np.nan)

@@ -21,7 +21,7 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 
 
 def as_text(result: StudyResult) -> Iterator[str]:
-    """All results as JSON, in pieces: a list of a million designs is never held."""
+    """All results as JSON, in pieces, so that a list of a million designs is never in memory."""
     further = {task.key: list(map(to_json, own)) for task, own in by_task(result.answers).items()}
     whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
@@ -34,7 +34,7 @@ def as_text(result: StudyResult) -> Iterator[str]:
 
 
 def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
-    """What there is to say of each design and method."""
+    """Data of each design and method, for JSON."""
     data = result.data
     errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
     errors = ["error_bound", *errors] if "error_bound" in data else errors
@@ -62,7 +62,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
 
 
 def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """What is limited in one design, each with the tyre or strut that it is about where it holds for each."""
+    """Value, activity and sensitivity of each limit of one design, with the tyre or strut concerned."""
     entry = data[["limit_value", "limit_active", "limit_cost", "limit.part"]].sel(
         {name: value for name, value in names.items() if name in data["limit_value"].dims}
     )
@@ -80,7 +80,7 @@ def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:
 
 
 def _decimals(arrays: Mapping[str, Any], place: tuple[int, ...]) -> int | None:
-    """Decimal places that the value of one design and method bears."""
+    """Decimal places that the uncertainty of the value of one design and method justifies; None if it is not finite."""
     error, bound = (
         arrays[name][place].item() if name in arrays else np.nan for name in ("standard_error", "error_bound")
     )

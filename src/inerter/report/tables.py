@@ -47,24 +47,24 @@ _MOST_FAILURES = 20
 
 
 def tables_of(results: xr.Dataset) -> list[Table]:
-    """The tables of a study: of its designs, or over the values of the place, or of the two, that it sweeps."""
+    """Tables of a study: of its designs, or over one or two swept places."""
     return (design_tables, sweep_tables, map_tables)[len(swept_places(results))](results)
 
 
 def design_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, the best design of every layout."""
+    """Tables of the best design of every layout, one per index."""
     results = one_method(results)
     return [_design_table(results, index) for index in indices(results)]
 
 
 def trade_off_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, the values of all indices at the designs that are best for it."""
+    """Tables of all indices at the best designs, one per index; empty with a single index."""
     results = one_method(results)
     return [_trade_off_table(results, index) for index in indices(results)] if len(indices(results)) > 1 else []
 
 
 def sweep_tables(results: xr.Dataset) -> list[Table]:
-    """For each index, value and improvement of every layout at some of the swept values."""
+    """Tables of value and improvement of every layout at some of the swept values, one per index and method."""
     if len(methods(results)) < 2:
         return [_sweep_table(one_method(results), index) for index in indices(results)]
     return [
@@ -75,7 +75,7 @@ def sweep_tables(results: xr.Dataset) -> list[Table]:
 
 
 def map_tables(results: xr.Dataset) -> list[Table]:
-    """For each index and layout, the improvement over the baseline at some pairs of the swept values, or the value."""
+    """Tables of the improvement, or the value, at some pairs of swept values, one per index and layout."""
     results = one_method(results)
     names = compared(results) or layouts(results)
     return [_map_table(results, index, name) for index in indices(results) for name in names]
@@ -195,12 +195,12 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
 
 
 def _spread(size: int, most: int) -> list[int]:
-    """At most so many places of a list, evenly spread, with its ends."""
+    """Evenly spaced positions in a list of `size` items, at most `most`, including both ends."""
     return sorted({*np.linspace(0, size - 1, min(size, most)).round().astype(int).tolist()})
 
 
 def where_all_are(results: xr.Dataset) -> list[str]:
-    """A sentence on the designs that tables leave out, if they are a great many."""
+    """Sentence on the designs that the tables omit; empty unless they are many."""
     sizes = [results.sizes[place] for place in swept_places(results)]
     words = " and ".join(swept_words(results))
     if len(sizes) == 2:
@@ -241,7 +241,7 @@ def _number(design: xr.Dataset, unit: Scale) -> str:
 
 
 def _failures(data: xr.Dataset) -> list[str]:
-    """Where a status is not ok: layout, swept values and sentence; a long list is cut and says so."""
+    """Lines on designs whose status is not ok: layout, swept values and status; at most `_MOST_FAILURES`."""
     bad = []
     for name in layouts(data):
         status = data["status"].sel(layout=name)

@@ -41,7 +41,7 @@ _LONGEST_NAME = 20  # a longer name of a layout has a line of its own
 
 @dataclass(frozen=True)
 class _TextRow:
-    """A layout, what stands in the columns after it, what stands in the last one, and its status."""
+    """Row of a layout: cells, items of the last column, and status."""
 
     name: str
     cells: list[str]
@@ -50,7 +50,7 @@ class _TextRow:
 
 
 def wrapped(text: str, **indents: str) -> list[str]:
-    """The lines of a text for a terminal; a number, its standard error and its unit stay on one."""
+    """Lines of a text for a terminal, without breaks between a number, its standard error and its unit."""
     joined = _MEASURED.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
     return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
 
@@ -115,7 +115,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
 
 
 def _compared(results: xr.Dataset, index: str) -> Iterator[str]:
-    """Where layouts are better than the baseline over a sweep."""
+    """Lines on where layouts outperform the baseline over a sweep."""
     if swept_places(results) and compared(results):
         for _, sentence in over_the_sweep(results.sel(index=[index])):
             yield from wrapped(sentence, initial_indent="  ", subsequent_indent="    ")
@@ -127,7 +127,7 @@ def _heading(results: xr.Dataset, index: str) -> str:
 
 
 def _parameters(design: xr.Dataset) -> list[str]:
-    """The parameters of one design, each with its unit and the bound that it is at."""
+    """Parameters of one design as texts, each with its unit, and with its active bound or flat range."""
     found = []
     for parameter in design["parameter"].values.tolist():
         entry = design.sel(parameter=parameter)
@@ -141,7 +141,7 @@ def _parameters(design: xr.Dataset) -> list[str]:
 
 
 def _first_failure(results: xr.Dataset, layout: str, index: str) -> str:
-    """The first status over the sweep that is not ok, and how many there are."""
+    """First status over the sweep that is not ok, with the number of such statuses; "ok" if there is none."""
     every = results["status"].sel(layout=layout, index=index).values.ravel().tolist()
     bad = [text for text in every if text != "ok"]
     return f"{bad[0]} ({len(bad)} of {len(every)} values are not ok)" if bad else "ok"

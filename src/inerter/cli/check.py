@@ -1,4 +1,4 @@
-"""What `inerter check` does, in calls of the library: only what it needs is loaded."""
+"""Implementation of `inerter check`, separate so that only the modules it needs are imported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cluster on which a command works, if it is told to."""
+"""Dask cluster of a command, if its options name a scheduler."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ANSWER = "10s"  # within which a scheduler must
 
 @contextmanager
 def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None]:
-    """An executor on the cluster that is asked for, whose workers are told; None if none is.
+    """Executor on the cluster of the options, with its worker count reported on stderr; None without a scheduler.
 
     Raises `StudyError` for options that do not go together, and `WorkError` if the cluster cannot be used.
     """
@@ -42,7 +42,7 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
 
 @contextmanager
 def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
-    """An executor on the cluster of a scheduler that is already there, by its address or the file that it wrote.
+    """Executor on a running cluster, by the address or the file of its scheduler.
 
     `tls` are fields of dask's `Security`.
 

@@ -1,4 +1,4 @@
-"""What each command does, in calls of the library."""
+"""Implementation of the commands `run`, `papers` and `reproduce`."""
 
 from __future__ import annotations
 
@@ -92,13 +92,13 @@ def run(
 
 
 def _pace(study: Study) -> Pace:
-    """How much work the designs of a study are: those that are not searched are all alike."""
+    """Estimator of the remaining time of a study, initially weighted by the design variables of each layout."""
     free = {name: len(study.design(name).free_values()) if study.optimise else 1 for name in study.layouts}
     return Pace(free, study.indices, cases(study).points)
 
 
 def papers() -> int:
-    """Say which papers there are, and what of each can be reproduced; returns the exit code."""
+    """Print the available papers with their parts; returns the exit code."""
     print("\n\n".join(_told(paper) for paper in PAPERS.values()))
     return 0
 
@@ -135,7 +135,7 @@ def reproduce(
 
 
 def _kept(command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool) -> str:
-    """What is kept of work that is interrupted, with the whole command that goes on with it."""
+    """Clause on results kept at an interruption, with the complete command that continues the work."""
     options = (*(() if jobs is None else ("-j", str(jobs))), *cluster.words, *(("--json",) if as_json else ()))
     again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
     return f"; what was computed is kept. Continue with: {again}"
@@ -148,7 +148,7 @@ def _processes(jobs: int | None) -> int:
 
 
 def _judge(result: StudyResult) -> int:
-    """Say what is not an ordinary number; the work has failed if a case has no number at all."""
+    """Report designs whose status is not ok on stderr; returns 1 if a case has no number at all, else 0."""
     for line in islice(result.failing(), _MOST):
         _say(line)
     if result.not_ok > _MOST:

@@ -1,4 +1,4 @@
-"""What `inerter schema` and `inerter explain` do, in calls of the library: only what it needs is loaded."""
+"""Implementation of `inerter schema` and `inerter explain`, separate so that only needed modules are imported."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def explain(wanted: str | None) -> int:
 
 
 def _words() -> dict[str, Mapping[str, Any]]:
-    """What keys may be called, by what it is: the keys of rows, and indices by their names too."""
+    """Registry entries by name for each kind of word that a key may have, indices also by their other names."""
     return {**_ROWS, "index": {name: INDICES[symbol] for name, symbol in index_names().items()}}
 
 
@@ -68,7 +68,7 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
 
 
 def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
-    """A key, and those that it holds if it is a section."""
+    """Lines on a key, and on the keys that it holds if it is a section."""
     where = f"{key.place}, of a {key.of}" if key.of else key.place
     yield from _wrapped(f"{where}: {key.sentence}", "")
     if key.unit:
@@ -91,7 +91,7 @@ def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
 
 
 def _row(what: str, name: str, row: Any) -> Iterator[str]:
-    """A word that a key may be."""
+    """Lines on a registry entry that is a possible value of a key."""
     sentence = " ".join((getdoc(row) or "").partition("\n\n")[0].split())
     yield from _wrapped(f"{name}, {with_article(what)}: {sentence}", "")
 
@@ -111,7 +111,7 @@ def _table(keys: Sequence[Key]) -> Iterator[str]:
 
 
 def _by_model(keys: Sequence[Key]) -> str:
-    """The sentences of a key that several models have, each with its own."""
+    """Sentences of a key that several models have, each with its model."""
     return " ".join(f"{key.of}: {key.sentence}" for key in keys)
 
 

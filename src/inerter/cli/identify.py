@@ -1,4 +1,4 @@
-"""What `inerter identify` does, in calls of the library."""
+"""Implementation of `inerter identify`."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def _request(
     options: Mapping[str, Any],
     settings: Mapping[str, int | str | None],
 ) -> IdentificationRequest:
-    """The configuration with what the command line says in place of what the file says."""
+    """Configuration in which command-line options take precedence over the file."""
     if not paths:
         raise StudyError("Give a file of measurements, such as: inerter identify bench.csv --model ball-screw")
     request = IdentificationRequest() if config is None else load_identification(config)

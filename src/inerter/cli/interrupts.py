@@ -45,7 +45,7 @@ def interruptible(kept: Callable[[], str] = lambda: "") -> Iterator[None]:
 
 
 def heed() -> None:
-    """From here on Ctrl-C raises KeyboardInterrupt, and ends the process if that has not ended it soon."""
+    """Install the handler by which Ctrl-C raises KeyboardInterrupt, and soon ends the process if it still runs."""
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as it is for work in the background
         signal.signal(signal.SIGINT, _interrupt)
         sys.unraisablehook = _unraisable
@@ -71,7 +71,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 
 def _end_soon() -> None:
-    """End the process from a thread of its own: some library may have swallowed the exception, or wait without end."""
+    """End the process after a delay, from a separate thread: a library may swallow the exception or wait forever."""
     time.sleep(_PATIENCE)
     from multiprocessing import active_children
 

@@ -344,7 +344,7 @@ def call(arguments: list[str]) -> int:
 
 
 def _command(arguments: list[str]) -> tuple[str, ...]:
-    """The command among some arguments; empty where there is none."""
+    """Command among some arguments; empty without one."""
     return app.parse_commands(arguments)[0]
 
 

@@ -1,4 +1,4 @@
-"""What `inerter new` does, in calls of the library: only what it needs is loaded."""
+"""Implementation of `inerter new`, separate so that only the modules it needs are imported."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _STDOUT = Path("-")
 
 
 def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
-    """Write a study file to start from, of the first vehicle that there is if none is named; returns the exit code.
+    """Write a template study file, of the first available vehicle by default; returns the exit code.
 
     Raises `StudyError` for an unknown vehicle, or where a file is there already that `force` may not replace: it
     replaces what this command has written, as it was written.

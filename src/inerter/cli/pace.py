@@ -1,4 +1,4 @@
-"""How long the designs of a study will still take, from those that are done and the parts of those that are not."""
+"""Remaining time of the designs of a study, estimated from finished designs and from steps of running ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Kind = tuple[str, str]  # of designs that are alike: layout and index
 
 @dataclass
 class Pace:
-    """The time that designs take: of each layout as many times as long as of each index.
+    """Model of the time that designs take: a product of one factor by layout and one by index.
 
     `free` has the number of free values of each layout, by which one is judged of which nothing is done; `each` is how
     many designs there are of each layout and index. Of the time left a range is told, since those that are left may be
@@ -37,14 +37,14 @@ class Pace:
     last: float = 0.0
 
     def begin(self, kept: int) -> None:
-        """So many designs, the first ones, were done before."""
+        """Start the clock, with the first `kept` designs done in an earlier run."""
         self.begun = self.last = time.monotonic()
         for kind in ((layout, index) for layout in self.free for index in self.indices):
             self.left_of[kind] = self.each - min(kept, self.each)
             kept = max(kept - self.each, 0)
 
     def finish(self, layout: str, index: str, count: int) -> None:
-        """So many more designs are done, the last of which is of that kind."""
+        """Record `count` further designs as done, the last of which is of that layout and index."""
         now, kind = time.monotonic(), (layout, index)
         if kind in self.left_of:
             took = self.took.setdefault(kind, [0.0, 0.0])
@@ -65,7 +65,7 @@ class Pace:
             self.parts[name] = step, since
 
     def words(self) -> str:
-        """The time left in words; empty where there is nothing to tell it by."""
+        """Remaining time in words; empty if it cannot be estimated."""
         span = self.range()
         if span is None:
             return ""
@@ -73,7 +73,7 @@ class Pace:
         return f", about {low} left" if low == high else f", {low} to {high} left"
 
     def range(self) -> tuple[float, float] | None:
-        """The least and the most time left [s]; None where there is nothing to tell it by."""
+        """Least and largest remaining time [s]; None if it cannot be estimated."""
         now = time.monotonic()
         known = {kind: seconds / count for kind, (seconds, count) in self.took.items()}
         shares = {name: step.share or 0.0 for name, (step, _) in self.parts.items()}

@@ -33,7 +33,7 @@ from inerter.work.progress import Listener, ProgressStep, listening
 
 
 class Shown(NamedTuple):
-    """What shows how far a study is."""
+    """Callbacks that display the progress of a study."""
 
     cases: Report  # how many cases are done, and which one was last
     kernels: Told  # which kernel is compiled before that
@@ -41,7 +41,7 @@ class Shown(NamedTuple):
 
 @dataclass
 class _Study:
-    """How far a study is, in words."""
+    """State of progress of a study, and its description in words."""
 
     what: str
     items: str
@@ -68,7 +68,7 @@ class _Study:
         self.compiling = f"compiling kernels {number} of {total}: {title}"
 
     def words(self, step: ProgressStep) -> str:
-        """All that is known, in a line."""
+        """State of progress, in one line."""
         if self.begun is None:
             return f"{self.what}: {self.compiling or step}"
         part = self.part()
@@ -182,7 +182,7 @@ class _Pieces:
             self.printer.say(f"{self.what}: {piece} done")
 
     def words(self, step: ProgressStep) -> str:
-        """The piece under way, how far it is, and what it does."""
+        """State of the running task: name, progress, and step."""
         under_way = [f"{piece}, {done} of {total}" for piece, (done, total) in self.counts.items() if done < total]
         return ": ".join((self.what, *under_way[-1:], str(step)))
 
@@ -211,7 +211,7 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
 
 
 def _hands(executor: Executor | None) -> str:
-    """How many pieces a cluster works on at the same time, which may change."""
+    """Clause on the number of threads of a cluster, which may change; empty without one."""
     count = 0 if executor is None else slots(executor)
     return "" if executor is None else f", {count} thread{'' if count == 1 else 's'} at work"
 

@@ -18,7 +18,7 @@ _open = 0  # displays of progress, of which the innermost alone is seen: it know
 
 
 class Pulse:
-    """Prints what work is under way whenever nothing was printed for as long as a reader bears.
+    """Printer of the work under way after each period of silence.
 
     In a log that is two seconds in the first ten minutes, ten in the first hour and a minute afterwards.
     """
@@ -77,13 +77,13 @@ def pulse(
 
 @contextmanager
 def alive() -> Iterator[None]:
-    """The same for a command that says nothing else."""
+    """Pulse of a command that prints nothing else about its progress."""
     with pulse(lambda step: f"inerter: {step}"):
         yield
 
 
 def duration(seconds: float) -> str:
-    """A time for people, in the largest unit of which there are two."""
+    """Duration for readers, in the largest unit of which it has at least two."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * size:
             return f"{seconds / size:.0f} {unit}"

@@ -1,4 +1,4 @@
-"""How files of measurements are read and devices sought in them, as options of the command line."""
+"""Command-line options on reading files of measurements and on the search of an identification."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """What is said of the channels, the samples and the sensors; None where nothing is."""
+    """Options on channels, samples and sensors; None where not given."""
 
     displacement: Annotated[str | None, Parameter(help="The channel of the displacement: name, or number from 0.")] = (
         None
@@ -52,7 +52,7 @@ AS_THEY_ARE = ReadingOptions()
 
 @dataclass(frozen=True)
 class SearchOptions:
-    """What is said of the search and of the scales of the sensors; None where nothing is."""
+    """Options on the search and on the scales of the sensors; None where not given."""
 
     seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None
     starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None

@@ -1,4 +1,4 @@
-"""What `inerter rig` does, in calls of the library."""
+"""Implementation of `inerter rig`."""
 
 from __future__ import annotations
 

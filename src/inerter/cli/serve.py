@@ -1,4 +1,4 @@
-"""What `inerter serve` does, in calls of the library."""
+"""Implementation of `inerter serve`."""
 
 from __future__ import annotations
 

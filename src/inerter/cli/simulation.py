@@ -1,4 +1,4 @@
-"""What `inerter simulate` does, in calls of the library."""
+"""Implementation of `inerter simulate`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from inerter.report.simulation import simulation_data, simulation_text
 
 
 def simulate(file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool) -> int:
-    """Simulate what a file asks for into a folder; returns the exit code."""
+    """Run a simulation file into a folder; returns the exit code."""
     request = load_simulation(file)
     wanted = None if window is None else _window(window, request)
     folder = output or Path(f"{file.stem}-results")
@@ -40,7 +40,7 @@ def simulate(file: Path, output: Path | None, window: str | None, *, force: bool
 
 
 def _shown(result: SimulationResult, wanted: Window | None) -> Window | None:
-    """What the figure shows; None for a motion that stopped at once."""
+    """Time window of the figure; None for a motion of fewer than two samples."""
     if result.run.time.size < 2:
         return None
     return wanted if wanted and wanted[0] < result.run.time[-2] else readable_window(result)

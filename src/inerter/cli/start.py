@@ -1,4 +1,4 @@
-"""Where the command begins and ends: it heeds Ctrl-C and has its streams before anything else is loaded."""
+"""Entry point of the command: handles Ctrl-C and replaces the standard streams before other modules are imported."""
 
 from __future__ import annotations
 

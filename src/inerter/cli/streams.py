@@ -51,6 +51,6 @@ def endure() -> None:
 
 
 def problem() -> OSError | None:
-    """Why standard output could not be written, if anybody wanted to read it."""
+    """Reason why standard output could not be written, although a reader was connected."""
     found = _raw["stdout"].problem if "stdout" in _raw else None
     return None if isinstance(found, BrokenPipeError) else found

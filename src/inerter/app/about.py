@@ -1,4 +1,4 @@
-"""What there is to choose from, told from the tables of rows."""
+"""Available vehicles, indices, methods and examples, taken from the registries."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ _SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
 
 
 def first() -> None:
-    """Answer once what is asked most, so that nothing is left to be loaded."""
+    """Answer the most frequent requests once, so that their modules are loaded and kernels compiled."""
     model, kind = next(iter(VEHICLES.items()))
     elements: dict[str, Any] = {element.symbol: element.example for element in (Spring, Damper)}
     study: dict[str, dict[str, Any]] = {
@@ -121,7 +121,7 @@ def mechanism(study: Study, body: Body) -> Answer:
 
 
 def tree_of(network: Network) -> Answer:
-    """A network as data: what joins its parts, and of each element what it is and its value."""
+    """Network as data: connections, and name, kind, unit and value of each element."""
     if isinstance(network, Element):
         return {
             "kind": "element",
@@ -137,7 +137,7 @@ def tree_of(network: Network) -> Answer:
 def optimum(
     study: Study, body: Body, tell: Callable[[int, int, str], None] = lambda count, total, case: None
 ) -> Answer:
-    """The best design of each layout for each index that is asked for, as a study finds and judges it.
+    """Best design of each layout for each requested index, found and evaluated as in a study.
 
     With it, in the sentences of its report, what the best become at other speeds, first what makes them doubtful.
     """
@@ -167,7 +167,7 @@ def optimum(
 
 
 def _at_speeds(study: Study, found: Mapping[Case, Outcome]) -> SpeedSentences:
-    """What the best of these designs become at other speeds, in sentences; none where speed only scales them."""
+    """Sentences on the best of these designs at other speeds; empty where speed only scales the values."""
     if not any(outcome.speeds for outcome in found.values()):
         return SpeedSentences([], [])
     layouts = {case.layout: study.layouts[case.layout] for case in found}
@@ -178,7 +178,7 @@ def _at_speeds(study: Study, found: Mapping[Case, Outcome]) -> SpeedSentences:
 
 
 def _told(study: Study, outcome: Outcome) -> Answer:
-    """An outcome, with its values as texts that read back as the same."""
+    """Outcome of a design for an answer, with its values as texts that are read back exactly."""
     return {
         **outcome.to_json(),
         "notes": ["".join(map(str, note)) for note in outcome.notes],
@@ -187,7 +187,7 @@ def _told(study: Study, outcome: Outcome) -> Answer:
 
 
 def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
-    """Values of elements as texts that read back as the same."""
+    """Texts of element values that are read back exactly."""
     return {name: f"{value!r} {study.free_units[name]}" for name, value in values.items()}
 
 
@@ -222,7 +222,7 @@ def budget(study: Study, body: Body) -> Answer:
 
 
 def scatter(study: Study, body: Body) -> Answer:
-    """What an index becomes when values of a design scatter, and which of them matters most."""
+    """Tolerance analysis of a design: distribution of an index, and first- and total-order Sobol' indices."""
     design, name = one_design(study, body), needed(body, "index")
     index = study.over_conditions(name)
     method = body.get("method") or DEFAULT
@@ -255,7 +255,7 @@ def scatter(study: Study, body: Body) -> Answer:
 
 
 def needed(body: Body, key: str) -> Any:
-    """What a request cannot do without; raises `StudyError` where it is left out."""
+    """Value of a required key of a request; raises `StudyError` where it is left out."""
     if not body.get(key):
         raise StudyError(f"The request needs `{key}`.")
     return body[key]
@@ -266,7 +266,7 @@ def motion(study: Study, body: Body) -> Answer:
 
 
 def one_design(study: Study, body: Body) -> Design:
-    """The one design that a request is about: its `design`, or its `layout` at the `values` of that."""
+    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
     given = body.get("design")
     if given:
         return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")

@@ -1,4 +1,4 @@
-"""What is called in processes of the server: functions by their names, so that the server need not load them."""
+"""Functions called in worker processes of the server, by name, so that the server need not import their modules."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from inerter.app.wire import encoded, refusal_of
 
 
 def load(*homes: str) -> None:
-    """Load modules, and have what is called first be as quick as what is called later."""
+    """Import modules in a worker process, so that its first call is as fast as later ones."""
     for home in homes:
         first = getattr(import_module(home), "first", None)
         if first is not None:
@@ -19,18 +19,18 @@ def load(*homes: str) -> None:
 
 
 def call(home: str, *args: Any) -> tuple[int, Any]:
-    """What a function gives: bytes as they are, other data as text of JSON; or the status and body of a refusal."""
+    """Status and body of a call of the function named `home`: bytes, other data as JSON text, or a refusal."""
     return called(lambda: resolve_name(home)(*args))
 
 
 def panel(home: str, key: str, body: dict[str, Any]) -> tuple[int, Any]:
-    """The same of a panel, whose answer has the sequence of its request."""
+    """Status and body of the answer of a panel, with the sequence number of its request."""
     sequence = body.get("sequence", 0)
     return called(lambda: {"sequence": sequence, **resolve_name(home)(key, body)})
 
 
 def called(function: Callable[[], Any]) -> tuple[int, Any]:
-    """The same of a function that is there."""
+    """Status and body of a call of `function`: bytes, other data as JSON text, or a refusal."""
     try:
         found = function()
     except Exception as error:

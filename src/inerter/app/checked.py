@@ -1,4 +1,4 @@
-"""What is to be known of a study before any work, as `inerter check` tells it."""
+"""Check of a study document before the computation, with the notes of `inerter check`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from inerter.units import format_quantity
 
 
 def checked(document: object) -> dict[str, Any]:
-    """What `inerter check` says of a document, and of what its layouts are made."""
+    """Problems and notes of a document, the networks of its layouts, and its numbers that can be swept."""
     try:
         study = study_from(document)
         check_study(study)
@@ -26,7 +26,7 @@ def checked(document: object) -> dict[str, Any]:
 
 
 def _places(study: Study) -> list[dict[str, Any]]:
-    """The numbers that can be swept, of those that the study has."""
+    """Numbers of the study that can be swept."""
     found = []
     for label, number in places(study).items():
         try:

@@ -1,4 +1,4 @@
-"""Designs beside each other: the indices of each, what they differ by, and which may be the best."""
+"""Comparison of designs: indices of each, differences, and those that may be the best."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _VEHICLE, _DIGITS = "vehicle", 5
 
 @dataclass(frozen=True)
 class _Judged:
-    """A design with its value of one index by one method."""
+    """Design with its estimate of one index by one method."""
 
     design: Design
     index: str
@@ -41,12 +41,12 @@ class _Judged:
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether there may be another value than the one that is told; that of an unstable design is infinite."""
+        """Whether the value is nan, or finite with a status that is not ok."""
         value, status = self.estimate.value, self.estimate.status
         return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
 
     def beside(self, other: _Judged) -> Comparison | None:
-        """What it differs by from another one on the same roads.
+        """Comparison with another design on the same roads.
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
         """
@@ -63,7 +63,7 @@ class _Judged:
 
 
 def indices(study: Study, body: Body) -> Answer:
-    """The indices of all designs beside the baseline, and which limits they keep."""
+    """Indices of all designs, compared with the baseline, and the state of their limits."""
     designs = designs_of(study, body)
     baseline = baseline_of(study, body, designs)
     asked = _asked(study, body)
@@ -82,12 +82,12 @@ def indices(study: Study, body: Body) -> Answer:
 
 
 def side_by_side(study: Study, body: Body) -> Answer:
-    """Two to four designs beside the first of them, each of which may be one of another study."""
+    """Comparison of two to four designs with the first of them; each may belong to another study."""
     return compared(study, body, lambda done, total, told: None)
 
 
 def compared(study: Study, body: Body, tell: Tell) -> Answer:
-    """The same, told design by design.
+    """Comparison of two to four designs with the first of them, with a progress report before each.
 
     What is asked of all, on which road and by which methods, is what `study` says.
     """
@@ -118,7 +118,7 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
 
 
 def _of_studies(study: Study, body: Body) -> list[Design]:
-    """The designs of a request; one that has a study of its own is a design of that, of which is asked what is here."""
+    """Designs of a request; one with a study of its own is evaluated with the indices of `study`."""
     given = body.get("designs") or []
     if not any(one.get("study") for one in given):
         return designs_of(study, body)
@@ -129,7 +129,7 @@ def _of_studies(study: Study, body: Body) -> list[Design]:
 
 
 def _put(study: Study, document: object) -> Study:
-    """What a study asks, put to the vehicle, the elements and the layouts of another one."""
+    """Study with the vehicle, elements and layouts of another document, and the indices and methods of `study`."""
     if not document:
         return study
     own = study_from(document)
@@ -137,7 +137,7 @@ def _put(study: Study, document: object) -> Study:
 
 
 def _numbers(design: Design) -> dict[str, str]:
-    """What a design is made of: the numbers of its elements and of its vehicle, by what they are."""
+    """Numbers of a design's elements and vehicle as texts with units, by their description."""
     used = {name for name, layouts in elements_used(design.fixed).items() if design.layout in layouts}
     found = {}
     for label, number in places(design.fixed).items():
@@ -148,7 +148,7 @@ def _numbers(design: Design) -> dict[str, str]:
 
 
 def _asked(study: Study, body: Body) -> list[tuple[str, str]]:
-    """Each index that is asked for, by each method."""
+    """Pairs of each requested index and each requested method."""
     indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
     return [(index, method) for index in indices for method in methods]
 
@@ -158,7 +158,7 @@ def _judged(design: Design, index: str, method: str) -> _Judged:
 
 
 def _best(found: Sequence[_Judged]) -> list[int]:
-    """Numbers of the designs of which none is known to be better than another one of all.
+    """Numbers of the designs that do not differ significantly from the best one.
 
     None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
     """
@@ -173,7 +173,7 @@ def _best(found: Sequence[_Judged]) -> list[int]:
 
 
 def _told(one: _Judged, baseline: _Judged | None) -> Answer:
-    """A value, and by how much it is better than the baseline's: null where there is no number."""
+    """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
     study, estimate = one.design.study, one.estimate
     two = None if baseline is None else one.beside(baseline)
     better, error = (None, None) if two is None else _improvement(two)
@@ -198,7 +198,7 @@ def _told(one: _Judged, baseline: _Judged | None) -> Answer:
 
 
 def _improvement(two: Comparison) -> tuple[float, float | None]:
-    """By how many per cent the first is better, and the standard error of that where there is scatter.
+    """Improvement of the first design over the second [%], and its standard error; None without random roads.
 
     Without scatter it is rounded as results of a study are.
     """

@@ -1,4 +1,4 @@
-"""What the interface offers, as data: the requests that there are, of which routes and their description are made."""
+"""Requests of the interface as data, from which routes and their description are generated."""
 
 from __future__ import annotations
 

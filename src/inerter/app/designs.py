@@ -32,20 +32,20 @@ class Design:
 
     @cached_property
     def mechanism(self) -> Mechanism:
-        """What analysis takes."""
+        """Mechanism of the design's vehicle."""
         return self.vehicle.mechanism()
 
     @cached_property
     def fixed(self) -> Study:
-        """Its study with these values in the place of what was free."""
+        """Study with the design variables replaced by the values of the design."""
         return self.study.with_values(self.values)
 
     def asked(self, index: str) -> Asked:
-        """What is asked of it for an index of its study."""
+        """Objective of the design's layout for an index of its study."""
         return self.study.asked(index, self.layout)
 
     def told(self) -> dict[str, Any]:
-        """What an answer says of it."""
+        """Name, layout, values with units, and design variables at default values, for an answer."""
         units = self.study.free_units
         values = {
             name: {"value": value, "unit": units[name], "text": f"{value!r} {units[name]}"}
@@ -55,7 +55,7 @@ class Design:
 
 
 def design_of(study: Study, layout: str, values: Values, name: str = "") -> Design:
-    """A layout at these values; what is left out is the geometric mean of its bounds.
+    """Design of a layout at these values; an omitted design variable takes the geometric mean of its bounds.
 
     Raises `StudyError` for an unknown layout, `DesignError` for a value of no element, or one that is not positive;
     `UnitError` for a text that is no quantity of the element.
@@ -90,8 +90,9 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
 
 
 def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]) -> Design | None:
-    """What designs are compared with: the `baseline` of a request, else that of the study among the designs, or at the
-    `values` that the request has for it.
+    """Baseline of a request: its `baseline`, else the study's among `designs`, else the study's at the given `values`.
+
+    None if neither the request nor the study has a baseline.
     """
     given = body.get("baseline")
     if given:

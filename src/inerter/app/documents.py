@@ -34,7 +34,7 @@ def read(text: str, name: str = "") -> dict[str, Any]:
 
 
 def problems(document: object) -> list[dict[str, Any]]:
-    """What keeps a document from being a study: each problem with its place."""
+    """Problems of a document that prevent its use as a study, each with its place."""
     try:
         study_from(document)
     except InerterError as error:
@@ -43,7 +43,7 @@ def problems(document: object) -> list[dict[str, Any]]:
 
 
 def study_from(document: object) -> Study:
-    """The study that a document is; raises `StudyError` with a problem for every entry that does not fit."""
+    """Study of a document; raises `StudyError` with a problem for every entry that does not fit."""
     if not isinstance(document, dict):
         raise refusal(PATH, [Problem(fault="not a study document", expected="the tables of a study file")])
     try:
@@ -58,7 +58,7 @@ def _study(document: str, stamp: _Stamp) -> Study:
 
 
 def _stamp(document: Document) -> _Stamp:
-    """What tells whether the profile of a document's road has changed; none if it has none.
+    """Modification time [ns] and size [byte] of the measured road profile of a document; None without one.
 
     A page may read what stands beside the place where its server was started, and nothing else of the machine.
     """
@@ -75,7 +75,7 @@ def _stamp(document: Document) -> _Stamp:
 
 
 def problems_of(error: InerterError) -> list[dict[str, Any]]:
-    """An error as problems: those that it holds, or itself."""
+    """Problems of an error: those of a file error, or the error itself as one."""
     found: Iterable[Problem] = error.problems if isinstance(error, FileError) else [Problem(said=str(error))]
     return [
         {

@@ -1,4 +1,4 @@
-"""A study document with its designs fixed: what `inerter run` then judges are those very designs."""
+"""Study document with fixed designs, so that `inerter run` evaluates exactly these designs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SEARCH = ("optimise", "budgets", "sweep", "subject_to", "trade_off", "points")
 
 
 def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
-    """The document with the layouts of these designs alone, their free values fixed to the last digit.
+    """Document with the layouts of these designs only, their design variables fixed to the last digit.
 
     An element that has several values becomes several elements, each with the name of its layout.
 
@@ -62,7 +62,7 @@ def _keys(designs: Sequence[Design]) -> list[str]:
 
 
 def _renamed(study: Study, designs: Sequence[Design]) -> tuple[dict[tuple[str, str], str], dict[str, str]]:
-    """By layout and element the name that the element gets, and what the elements of these names are."""
+    """New names of elements by layout and old name, and the value of each new element as text."""
     keys = _keys(designs)
     names: dict[tuple[str, str], str] = {}
     elements: dict[str, str] = {}

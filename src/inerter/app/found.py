@@ -1,4 +1,4 @@
-"""What is found in a measured record."""
+"""Inspection of a measured record."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SHOWN = 2000  # samples of a channel
 
 
 def found_in(path: str) -> dict[str, Any]:
-    """What is in a record, and what is worth knowing about it.
+    """Channels of a record, thinned for display, with its notes and findings.
 
     Raises `RecordError` for a file that cannot be used.
     """

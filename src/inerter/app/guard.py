@@ -1,4 +1,4 @@
-"""Who may ask: this machine, under its own name, with the token; and how large a request may be."""
+"""Access control: requests from this machine, under its own name, with the token, and of limited size."""
 
 from __future__ import annotations
 

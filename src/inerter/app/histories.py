@@ -49,7 +49,7 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
 
 
 def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
-    """The simulation of a design over a random road of the study, as a simulation file asks for it.
+    """Simulation request of a design over a random road of the study.
 
     Raises `StudyError` for a time that is too long to be looked at, and where there is no road.
     """
@@ -105,7 +105,7 @@ def _moved(mechanism: Mechanism) -> dict[str, str]:
 
 
 def _shaded(run: Trajectory) -> list[dict[str, Any]]:
-    """When each element that switches was in which of its states."""
+    """Time intervals of each element that switches in each of its states."""
     states: dict[str, set[str]] = {element: {state} for element, state in run.states.items()}
     for event in run.events[:_MOST_EVENTS]:
         states[event.element] |= {event.after}

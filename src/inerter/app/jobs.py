@@ -1,4 +1,4 @@
-"""The queue of long work: one piece after another in a process of its own, each in a folder that outlives the page."""
+"""Queue of jobs: computed one at a time in a separate process, each in a folder that outlives the page."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _OURS = {"made_by": "inerter serve"}  # in requests: a folder without it is some
 
 @dataclass
 class Job:
-    """A piece of long work."""
+    """Job: a long computation with its folder and state."""
 
     id: str
     kind: str
@@ -41,7 +41,7 @@ class Job:
     over: asyncio.Event = field(default_factory=asyncio.Event)
 
     def told(self) -> dict[str, Any]:
-        """What there is to say of it."""
+        """State and progress of the job, for an answer."""
         events, _ = events_of(self.folder)
         progress = next((e for e in reversed(events) if e["event"] == "progress"), {"done": 0, "total": 0, "told": ""})
         return {
@@ -50,7 +50,7 @@ class Job:
         }
 
     def files(self) -> dict[str, Path]:
-        """The files of its results, by the names under which they are given."""
+        """Files of the results, by the names under which they are served."""
         root = self.folder / RESULTS
         found = {path.relative_to(root): path for path in sorted(root.rglob("*")) if path.is_file()}
         return {
@@ -62,7 +62,7 @@ class Job:
 
 @dataclass
 class Jobs:
-    """All long work, and the process that does it."""
+    """Queue of all jobs, and the process that computes them."""
 
     root: Path
     worker: Executor = field(default_factory=lambda: Processes(1))
@@ -70,7 +70,7 @@ class Jobs:
     _queue: asyncio.Queue[Job] = field(default_factory=asyncio.Queue)
 
     def __post_init__(self) -> None:
-        """Know the work that an earlier server has left in the folder."""
+        """Register the jobs that an earlier server left in the folder."""
         for path in sorted(self.root.glob(f"*/{REQUEST}"), key=lambda path: path.stat().st_mtime):
             with suppress(OSError, ValueError, KeyError, AttributeError):
                 request = json.loads(path.read_bytes())
@@ -78,7 +78,7 @@ class Jobs:
                     self.known[path.parent.name] = _left(path.parent, request)
 
     def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
-        """Put work into the queue; raises `Refused` where too much is kept already."""
+        """Append a job to the queue; raises `Refused` where too much is kept already."""
         for old in [job for job in self.known.values() if job.state in ENDED][: max(len(self.known) - _MOST + 1, 0)]:
             self.forget(old)
         if len(self.known) >= _MOST:
@@ -92,25 +92,25 @@ class Jobs:
         return job
 
     def get(self, name: str) -> Job:
-        """The work of that id; raises `Refused` if there is none."""
+        """Job of that id; raises `Refused` if there is none."""
         if name not in self.known:
             raise Refused(404, "Unknown work: it was removed, or the server was restarted.")
         return self.known[name]
 
     def stop(self, job: Job) -> None:
-        """Have work stop at its next check; what waits is stopped at once."""
+        """Request a job to stop at its next check; a waiting job is stopped at once."""
         if job.state == "waiting":
             self._end(job, {"event": "stopped"})
         elif job.state == "running":
             (job.folder / STOP).touch()
 
     def forget(self, job: Job) -> None:
-        """Forget work that has ended, and its files."""
+        """Remove a job that has ended, and its files."""
         self.known.pop(job.id, None)
         shutil.rmtree(job.folder, ignore_errors=True)
 
     async def run(self) -> None:
-        """Do what is in the queue, for ever."""
+        """Compute the jobs of the queue, without end."""
         while True:
             job = await self._queue.get()
             if job.state == "waiting":
@@ -171,14 +171,14 @@ def _left(folder: Path, request: Mapping[str, Any]) -> Job:
 
 
 def result_of(job: Job) -> bytes:
-    """The result of work as text of JSON; raises `Refused` where there is none."""
+    """Result of a job as JSON text; raises `Refused` where there is none."""
     if job.state != "done":
         raise Refused(404, f"This work is {job.state}; it has no result. {job.sentence}".strip())
     return (job.folder / RESULT).read_bytes()
 
 
 def with_result(job: Job) -> bytes:
-    """What there is to say of work, with its result if it is done."""
+    """State of a job as JSON, with its result if it is done."""
     told = encoded(job.told())
     return told if job.state != "done" else told[:-1] + b', "result": ' + result_of(job) + b"}"
 

@@ -1,4 +1,4 @@
-"""Kinds of long work. A further one is one more row, and a function from a request and a folder to a result."""
+"""Job types. A further one is a registry entry, and a function from a request and a folder to a result."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ RESULTS = "results"  # the folder of results in that of the work
 
 
 class Stopped(Exception):  # noqa: N818 -- nothing is wrong
-    """Somebody asked that the work stops."""
+    """Raised in a job after a request to stop it."""
 
 
 @dataclass(frozen=True)
 class WorkKind:
-    """A kind of work: what it is, the keys of its request beside `study`, and the function that does it.
+    """Job type: title, keys of its request in addition to `study`, and the function that computes it.
 
     That takes the request, the folder of the work, and how to tell how far it is.
     """

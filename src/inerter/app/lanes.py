@@ -1,4 +1,4 @@
-"""Processes that answer requests one after another, and which requests: of the same page and panel the newest."""
+"""Worker queues that answer requests one at a time; a newer request of a page and panel supersedes older ones."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Call = tuple[Any, ...]  # a function that gives a status and a body, and its arg
 
 @dataclass(eq=False)
 class Waiting:
-    """A request, and what it is answered by."""
+    """Waiting request, and the future of its answer."""
 
     call: Call
     sequence: float = 0.0
@@ -28,38 +28,38 @@ class Waiting:
     outdated: asyncio.Event = field(default_factory=asyncio.Event)
 
     def refuse(self, why: Refused) -> None:
-        """Answer with a refusal, unless there is an answer already."""
+        """Answer with a refusal, unless already answered."""
         if not self.answer.done():
             self.answer.set_exception(why)
 
     def overtake(self) -> None:
-        """A newer request has come: nobody waits for this one any more."""
+        """Mark the request as superseded by a newer one."""
         self.refuse(out_of_date(self.sequence))
         self.outdated.set()
 
 
 @dataclass
 class Lane:
-    """One process, and the requests that wait for it."""
+    """Worker process, and the queue of requests that wait for it."""
 
     homes: tuple[str, ...]  # modules that the process loads when it begins
     worker: Executor
     waiting: asyncio.Queue[Waiting] = field(default_factory=asyncio.Queue)
 
     async def answer(self, mine: Waiting) -> bytes:
-        """The answer of a request, when its turn has come."""
+        """Answer of a request, in the order of the queue."""
         self.waiting.put_nowait(mine)
         return await mine.answer
 
     async def work(self) -> None:
-        """Answer what waits, the first first, for ever."""
+        """Answer the requests of the queue in order, without end."""
         while True:
             mine = await self.waiting.get()
             if not mine.outdated.is_set():
                 await self._do(mine)
 
     async def begin(self) -> None:
-        """Have the process begin, and load what it answers with."""
+        """Start the process, and import the modules of its answers."""
         with suppress(Exception):  # should it fail, so does the first request, which says why
             await (await self._submitted((load, *self.homes)))
 
@@ -81,12 +81,12 @@ class Lane:
                 mine.answer.set_result(body)
 
     async def _submitted(self, call: Call) -> asyncio.Future[Any]:
-        """The call, handed to the process, which may have to begin first."""
+        """Future of the call in the process, which is started if necessary."""
         function, *args = call
         return asyncio.wrap_future(await asyncio.to_thread(partial(self.worker.submit, function, *args)))
 
     async def _called(self, mine: Waiting) -> tuple[int, Any]:
-        """What the call gives; raises `TimeoutError` if that takes long, and nobody waits for it any more."""
+        """Status and body of the call; raises `TimeoutError` if that takes long, and nobody waits for it any more."""
         future = await self._submitted(mine.call)
         overtaken = asyncio.create_task(mine.outdated.wait())
         try:
@@ -98,7 +98,7 @@ class Lane:
 
 @dataclass
 class Newest:
-    """The newest request of each page and panel, on whichever lane it is."""
+    """Latest request of each page and panel, across all worker queues."""
 
     known: dict[Who, Waiting] = field(default_factory=dict)
 
@@ -117,5 +117,5 @@ class Newest:
 
 
 def out_of_date(sequence: float) -> Refused:
-    """What answers a request that a newer one has overtaken."""
+    """Refusal of a request that a newer one has superseded."""
     return Refused(409, "A newer request of this page has come.", outdated=True, sequence=sequence)

@@ -11,7 +11,7 @@ from inerter.methods.registry import DEFAULT, METHODS, is_blind
 
 @dataclass(frozen=True)
 class Panel:
-    """A panel: what it is, the function that answers it, and whether it does so at once if nothing is simulated."""
+    """Panel: its title, the function that answers it, and whether it is answered at once without simulation."""
 
     key: str
     title: str

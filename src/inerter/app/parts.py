@@ -16,7 +16,7 @@ _JOINED = {"|": "parallel", "-": "series"}
 
 
 def parse_network(text: str, elements: Container[str] | None) -> dict[str, Any]:
-    """The tree of a network with the place of each part, or where it is none and why."""
+    """Tree of a network with the place of each part, or the place and sentence of its error."""
     try:
         tree = parse_expression(expression(text), elements)
     except ExpressionError as error:

@@ -28,7 +28,7 @@ _KINDS = {SIMULATION: HISTORY}  # what the page calls figures that are called ot
 
 
 def picture(body: Mapping[str, Any]) -> bytes:
-    """The picture that is asked for: of the networks, or a figure of the results of these designs.
+    """Picture in the requested format: networks, a motion, or a figure of the results of the designs.
 
     Raises `StudyError` for a kind or a format that there is not.
     """

@@ -16,13 +16,13 @@ _MOST = 100  # that are kept
 
 @dataclass
 class Records:
-    """The records that there are, by their ids."""
+    """Uploaded records, by their ids."""
 
     root: Path
     known: dict[str, Path] = field(default_factory=dict)
 
     async def take(self, name: str, body: AsyncIterator[bytes]) -> str:
-        """Write what comes to a file, piece by piece; raises `Refused` if there are too many."""
+        """Write an uploaded record to a file in chunks, and return its id; raises `Refused` if there are too many."""
         if len(self.known) >= _MOST:
             raise Refused(400, f"There are {_MOST} records already. Delete some of them first.")
         number = token_hex(8)
@@ -40,7 +40,7 @@ class Records:
         return number
 
     def get(self, number: str) -> Path:
-        """The file of a record; raises `Refused` if there is none of that id."""
+        """File of a record; raises `Refused` if there is none of that id."""
         if number not in self.known:
             raise Refused(404, "Unknown record: it was deleted, or the server was restarted.")
         return self.known[number]

@@ -63,7 +63,7 @@ def run(
 
 @contextmanager
 def _ended_gently() -> Iterator[None]:
-    """Another process that ends this one lets it put its things away, as Ctrl-C does."""
+    """Raise KeyboardInterrupt at SIGTERM within the block, so that cleanup runs as after Ctrl-C."""
     if current_thread() is not main_thread():
         yield
         return
@@ -145,7 +145,7 @@ def _folder(folder: str | Path | None) -> Iterator[Path]:
 
 
 def _many_connections() -> None:
-    """As many connections at the same time as this machine allows."""
+    """Raise the limit of open files to the maximum of this machine, for as many connections."""
     with suppress(ImportError, ValueError, OSError):
         resource = import_module("resource")  # not on all machines
         _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)

@@ -1,4 +1,4 @@
-"""What a server holds: its processes, and what was sent to it."""
+"""State of a server: its processes, jobs and uploaded records."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _LANES = {  # norms; what simulates; records, figures and tables
 
 @dataclass
 class Server:
-    """What a server holds: the study that it was started with, its processes, and what was sent to it."""
+    """State of a server: the initial study, its processes, jobs and uploaded records."""
 
     root: Path  # the folder of long work and records
     start: dict[str, Any]  # the study of the command line
@@ -46,7 +46,7 @@ class Server:
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[None]:
-        """The processes are there inside, and gone afterwards."""
+        """Context in which the processes of the server run."""
         tasks = [asyncio.create_task(lane.work()) for lane in self.lanes.values()]
         tasks += [asyncio.create_task(self.jobs.run()), asyncio.create_task(self._get_ready())]
         try:
@@ -64,5 +64,5 @@ class Server:
         await self.lanes["slow"].begin()
 
     async def aside(self, home: str, *args: Any) -> bytes:
-        """What a function of that name gives in the process for everything that is asked now and then."""
+        """Answer of the function named `home`, computed in the process for occasional requests."""
         return await self.lanes["aside"].answer(Waiting((call, home, *args)))

@@ -57,7 +57,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
 
 
 def _studied(study: Study, folder: Path, tell: Tell) -> Any:
-    """What `inerter run` does, in the folder of the work."""
+    """Run a study as `inerter run` does, into the folder of the job; returns the results as data."""
 
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")

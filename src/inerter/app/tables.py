@@ -27,7 +27,7 @@ def as_csv(panel: str, request: Mapping[str, Any]) -> str:
 
 
 def _cell(value: Any) -> Any:
-    """Floats in full, nothing where there is no number, and no text that a spreadsheet takes for a formula."""
+    """Cell of a CSV table: floats exactly, nan empty, and texts quoted that a spreadsheet would take for a formula."""
     if isinstance(value, float):
         return "" if value != value else repr(float(value))
     text = "" if value is None else value
@@ -66,7 +66,7 @@ def _response(answer: Mapping[str, Any]) -> Rows:
 
 
 def _history(answer: Mapping[str, Any]) -> Rows:
-    """Each output has times of its own, where it is lowest and highest."""
+    """Rows of each output at its own times, those of local extremes."""
     yield ["output", "time [s]", "value", "unit"]
     for signal in answer["signals"]:
         for time, value in zip(signal["time"].tolist(), signal["values"].tolist(), strict=True):
@@ -74,7 +74,7 @@ def _history(answer: Mapping[str, Any]) -> Rows:
 
 
 def _tolerance(answer: Mapping[str, Any]) -> Rows:
-    """What the distribution is, then what each value that scatters makes of its variance, by itself and in all."""
+    """Rows on the distribution of the index, then first- and total-order Sobol' indices of each value."""
     yield [headed(answer["index"], answer["unit"]), "value"]
     yield ["status", ": ".join(filter(None, (answer["status"], answer["message"])))]
     for name in ("nominal", "mean", "standard_deviation"):

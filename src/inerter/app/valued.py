@@ -1,4 +1,4 @@
-"""What an index, or what is limited, comes to in a design; values that have been found are kept."""
+"""Values of indices and of limited quantities of a design, with a cache."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _REMEMBERED = 2000  # values of designs
 
 
 def valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
-    """The value of an index; where it cannot be had, nan with a status that says why."""
+    """Estimate of an index; nan with a status if it cannot be computed."""
     asked: tuple[Any, ...] = vehicle, index, method
     try:
         hash(asked)
@@ -44,7 +44,7 @@ _remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most 
 
 
 def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
-    """The limits of a study at a design, each with the value that comes closest, by the method of that name."""
+    """Limits of a study at a design, each with the value closest to it, by the method of that name."""
     pairs = zip(study.limits, limits_in(study), strict=True)
     return [_limit(one, several, design.vehicle, study.method(name)) for one, several in pairs]
 

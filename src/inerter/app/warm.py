@@ -20,7 +20,7 @@ from inerter.vehicle.quarter_car import QuarterCar
 
 
 def warm(told: str) -> None:
-    """Compile what panels call, the linear first, and write to the file `told`, a line each, which kernel is begun."""
+    """Compile the kernels of all methods, linear ones first; append each to the file `told` when its turn comes."""
     with Path(told).open("a", encoding="utf-8") as stream:
 
         def tell(title: str, number: int, total: int) -> None:
@@ -31,7 +31,7 @@ def warm(told: str) -> None:
 
 
 def is_compiled(method: str) -> bool:
-    """Whether what a method calls is compiled, as far as can be seen at once."""
+    """Whether the kernels of a method are compiled already, as far as a quick check shows."""
     return all(is_kept(kernel) for kernel in _of_method(method))
 
 

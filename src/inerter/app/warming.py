@@ -1,4 +1,4 @@
-"""How far the server is with getting ready: which kernels are compiled still."""
+"""Progress of the kernel compilation in a worker process."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ _LOOK = 0.1  # seconds between two looks at what happened
 
 @dataclass
 class Warming:
-    """How far the kernels are, which another process compiles and tells in a file."""
+    """Progress of the kernel compilation, which a worker process writes to a file."""
 
     path: Path
     done: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self, worker: Executor) -> None:
-        """Have them compiled; should that fail, each is compiled where it is called."""
+        """Have the kernels compiled; if the compilation fails, each is compiled at its first call."""
         try:
             future = await asyncio.to_thread(worker.submit, call, "inerter.app.warm:warm", str(self.path))
             await asyncio.wrap_future(future)
@@ -35,16 +35,16 @@ class Warming:
             self.done.set()
 
     async def wait(self) -> None:
-        """Wait until they are compiled."""
+        """Wait until the kernels are compiled."""
         await self.done.wait()
 
     def told(self) -> dict[str, Any]:
-        """Whether they are ready, and which one is under way."""
+        """Whether the kernels are compiled, and the one being compiled."""
         last = (_lines(self.path) or [{"title": "", "number": 0, "total": 0}])[-1]
         return {"ready": self.done.is_set(), **last}
 
     async def events(self) -> AsyncIterator[tuple[int, dict[str, Any]]]:
-        """Each kernel as it is begun, then that all are ready."""
+        """Events of the compilation: each kernel as it begins, then the end."""
         seen = 0
         while True:
             over = self.done.is_set()

@@ -27,7 +27,7 @@ def encoded(data: Any) -> bytes:
 
 
 def decoded(text: bytes) -> Any:
-    """JSON as data; raises `Refused` where it is none."""
+    """Data from JSON; raises `Refused` where it is none."""
     try:
         return json.loads(text, parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
@@ -35,7 +35,7 @@ def decoded(text: bytes) -> Any:
 
 
 def refusal_of(error: Exception) -> Refused:
-    """What answers a request that the library refuses."""
+    """Refusal of a request for an exception of the library, with its problems."""
     if isinstance(error, WorkError):
         return Refused(500, str(error))
     if isinstance(error, InerterError):

@@ -1,4 +1,4 @@
-"""What a process does with a piece of long work: it tells what happens in a file, and stops when another file asks."""
+"""Execution of a job in a worker process: events are appended to a file, and a stop file ends the job."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class _Telling:
             write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
 
     def step(self, step: ProgressStep) -> None:
-        """Tell how far what is under way is, beside how much is done; at least once a second."""
+        """Write the progress of the running step, at most every `_SELDOM` seconds; raises `Stopped` on request."""
         if (self.folder / STOP).exists():
             raise Stopped
         if not step.over and time.monotonic() - self.last > _SELDOM:
@@ -85,7 +85,7 @@ def write_last(folder: Path, event: dict[str, Any]) -> None:
 
 
 def events_of(folder: Path, start: int = 0) -> tuple[list[dict[str, Any]], int]:
-    """The events behind so many bytes, and how many bytes there are now; a line without its end is left for later."""
+    """Events after the byte offset `start`, and the next offset; an incomplete last line is left for the next call."""
     path = folder / EVENTS
     if not path.exists():
         return [], start

@@ -12,7 +12,7 @@ _MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
 
 
 def thinned(time: Matrix, values: Matrix, most: int = _MOST_POINTS) -> tuple[Matrix, Matrix]:
-    """The same curve to the eye with at most so many points: of each piece the lowest and the highest.
+    """Visually identical curve with about `most` points or fewer: lowest and highest sample of each piece.
 
     Values that are no numbers are breaks in the curve.
     """
@@ -24,7 +24,7 @@ def thinned(time: Matrix, values: Matrix, most: int = _MOST_POINTS) -> tuple[Mat
 
 
 def thinned_band(time: Matrix, low: Matrix, high: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-    """The same area to the eye with at most 2000 points: of each piece the lowest and the highest edge."""
+    """Visually identical band with about 2000 points or fewer: lowest and highest edge of each piece."""
     size = -(-2 * time.size // _MOST_POINTS)
     if size < 3:
         return time, low, high

@@ -1,4 +1,4 @@
-"""Figures of a rig: its records, a fit beside the measurement, and frequency responses with their bands."""
+"""Figures of a rig: records, comparison of a fit with the measurement, and frequency responses with their bands."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _WIDEST = 3.0  # spacings between two frequencies that a curve joins
 
 @dataclass(frozen=True, eq=False)
 class MotionCurve:
-    """What one curve shows: its name in the legend, and some channels in SI units."""
+    """Curve of a motion: its name in the legend, and channels in SI units."""
 
     label: str
     time: Matrix  # [s]
@@ -47,7 +47,7 @@ class MotionCurve:
 
 @dataclass(frozen=True, eq=False)
 class ProfileCurve:
-    """How much worse the best fit gets when one parameter is held at a value, over what an 95 % interval allows."""
+    """Profile likelihood of one parameter: rise of the loss over the rise allowed in a 95 % interval."""
 
     label: str
     values: Matrix  # increasing, in the unit
@@ -69,7 +69,7 @@ def response_figure(
     linear: Response | None = None,
     ideal: Response | None = None,
 ) -> Figure:
-    """Gain, phase and coherence over frequency, measured with its band, beside a model; as in Figure 10 of the paper.
+    """Gain, phase and coherence over frequency, measured with 95 % bands, and of models; as in Figure 10 of the paper.
 
     `model` is the model's response at the same amplitude, `linear` the linear one and `ideal` that of the inertance
     alone as baselines, as far as there are any.
@@ -108,17 +108,17 @@ def response_figure(
 
 
 def draw_gain(ax: Axes, response: Response, own: Scale, label: str, style: dict[str, Any]) -> Axes:
-    """The gain in a unit of its own, and what is measured with its band."""
+    """Draw the gain in the unit `own` over frequency, with the band of a measured one."""
     return _with_band(ax, response, response.gain * own.factor, response.band * own.factor, style, label)
 
 
 def draw_phase(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
-    """The phase in degrees, and what is measured with its band."""
+    """Draw the phase in degrees over frequency, with the band of a measured one."""
     return _with_band(ax, response, np.degrees(response.phase), np.degrees(response.phase_band), style)
 
 
 def draw_coherence(ax: Axes, response: Response, style: dict[str, Any]) -> Axes:
-    """The coherence, where there is scatter to know it by."""
+    """Draw the coherence over frequency, where its scatter is known."""
     if np.any(np.isfinite(response.averages)):
         marks = _marks(response, style)
         ax.plot(*_with_gaps(response, response.coherence), **marks)
@@ -163,7 +163,7 @@ def record_figure(received: Record, used: Record) -> Figure:
 
 
 def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: Matrix, bound: float) -> Figure:
-    """What a fit leaves of the force [N] over time [s], and its autocorrelation over lags [s].
+    """Residual of the force [N] over time [s], and its autocorrelation over lags [s].
 
     `bound` is what the autocorrelation of white noise stays within in 95 of 100 cases.
     """
@@ -221,7 +221,7 @@ def profile_figure(curves: Sequence[ProfileCurve]) -> Figure:
 
 
 def draw_profile(ax: Axes, curve: ProfileCurve) -> Axes:
-    """One profile; between points that were computed its root is taken as a straight line, as that of a parabola is."""
+    """Draw one profile likelihood; its square root is interpolated linearly between computed points."""
     at, rises = _between(curve)
     ax.axvspan(*curve.interval, color="#DDE9F3", linewidth=0.0, zorder=0.5, label="95 % interval")
     ax.axhline(1.0, color=colour(1), linewidth=0.9, linestyle="--", label="95 % threshold")
@@ -245,7 +245,7 @@ def draw_profile(ax: Axes, curve: ProfileCurve) -> Axes:
 
 
 def _between(curve: ProfileCurve) -> tuple[Matrix, Matrix]:
-    """The curve on a fine grid; its root changes sign at the best fit."""
+    """Fine grid of parameter values and the profile there, by linear interpolation of its signed square root."""
     best = float(curve.values[int(np.argmin(curve.rises))])
     root = np.sqrt(np.maximum(curve.rises, 0.0)) * np.sign(curve.values - best)
     at = np.unique(
@@ -255,7 +255,7 @@ def _between(curve: ProfileCurve) -> tuple[Matrix, Matrix]:
 
 
 def _range_of_view(curve: ProfileCurve) -> tuple[float, float]:
-    """Somewhat more than the interval on either side, as far as there is a curve."""
+    """Range of the abscissa: the interval with 70 % of its width on either side, within the curve."""
     begin, end = curve.interval
     low, high = min(float(curve.values[0]), begin), max(float(curve.values[-1]), end)
     width = end - begin or high - low
@@ -281,7 +281,7 @@ def _with_band(
 
 
 def _marks(response: Response, style: dict[str, Any]) -> dict[str, Any]:
-    """A curve where there are many frequencies, points where there are few."""
+    """Line keywords of a curve with many frequencies, marker keywords of one with few."""
     if response.omega.size > _FEW:
         return {**style, "linewidth": 0.8}
     hollow = style is not _MEASURED
@@ -291,7 +291,7 @@ def _marks(response: Response, style: dict[str, Any]) -> dict[str, Any]:
 
 
 def _with_gaps(response: Response, values: Matrix) -> tuple[Matrix, Matrix]:
-    """Frequencies and values with breaks where frequencies are left out, so that no line tells what is not known."""
+    """Frequencies and values with nan inserted where frequencies are missing, so that lines break there."""
     frequency = response.frequency
     if frequency.size < 3:
         return frequency, values
@@ -300,7 +300,7 @@ def _with_gaps(response: Response, values: Matrix) -> tuple[Matrix, Matrix]:
 
 
 def _over_time(ax: Axes, curves: Sequence[tuple[Matrix, Matrix, str, dict[str, Any]]], unit: str) -> Scale:
-    """Curves in the unit that suits the largest value of the first; returns that unit."""
+    """Draw curves over time in the unit that suits the largest value of the first; returns that unit."""
     own = scale([np.nanmax(np.abs(curves[0][1]))], unit)
     for time, values, label, style in curves:
         named: dict[str, Any] = {"label": label} if label else {}

@@ -1,4 +1,4 @@
-"""What a results dataset says of itself, in words and numbers for people."""
+"""Labels, names and number formats for the results dataset."""
 
 from __future__ import annotations
 
@@ -50,12 +50,12 @@ def one_method(results: xr.Dataset) -> xr.Dataset:
 
 
 def by_which(results: xr.Dataset) -> str:
-    """Words for titles: by which of several methods the results are; empty if there is but one."""
+    """Words for titles: the method of the results if the study has several; else empty."""
     return f", {results.attrs['way']}" if "way" in results.attrs else ""
 
 
 def way(results: xr.Dataset, method: str) -> str:
-    """What a method is called beside others, such as "with friction"; a single one may have no words."""
+    """Method in words that distinguish it from the others, such as "with friction"; may be empty for a single one."""
     return str(results["method_words"].sel({"method": method}).item())
 
 
@@ -71,7 +71,7 @@ def by_method(results: xr.Dataset, method: str) -> xr.Dataset:
 
 
 def error_of(design: xr.Dataset, of: str = "value") -> float:
-    """The standard error of the value, or the improvement, of one design; nan where there is none."""
+    """Standard error of the value, or of the improvement, of one design; nan if unknown."""
     name = {"value": "standard_error", "improvement": "improvement_error"}[of]
     return float(design[name]) if name in design else np.nan
 
@@ -88,7 +88,7 @@ def improvement_text(design: xr.Dataset) -> str:
 
 
 def swept_places(results: xr.Dataset) -> list[str]:
-    """The places that the study sweeps, such as elements by their names; they are also names of dimensions."""
+    """Names of the swept places, such as elements; also names of dimensions."""
     return [str(name) for name in results["status"].dims if name not in ("layout", "index")]
 
 
@@ -98,7 +98,7 @@ def swept_element(results: xr.Dataset) -> str | None:
 
 
 def swept_words(results: xr.Dataset) -> list[str]:
-    """What is swept, in words."""
+    """Names of the swept parameters, in words."""
     return [str(results[place].attrs["long_name"]) for place in swept_places(results)]
 
 
@@ -120,26 +120,26 @@ def swept_text(results: xr.Dataset, place: str, value: float, write: Callable[..
 
 
 def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
-    """The label of an axis of swept values: what an element is called stays as it is."""
+    """Label of the axis of a swept parameter; the name of an element keeps its case."""
     words = str(results[place].attrs["long_name"])
     return axis_label(words if words == place else capital(words), unit)
 
 
 def infeasible(results: xr.Dataset) -> xr.DataArray:
-    """Where no design keeps the limits."""
+    """True where no design satisfies the constraints; dimensions as `status`."""
     kept_by_none = np.vectorize(lambda text: Status.parts(str(text))[0] == StatusKind.INFEASIBLE, otypes=[bool])
     return results["status"].copy(data=kept_by_none(results["status"].values))
 
 
 def held_back(results: xr.Dataset) -> xr.DataArray:
-    """Where a limit holds the best design back; nowhere in a study without limits."""
+    """True where a constraint of the best design is active; False everywhere in a study without limits."""
     if "limit_active" not in results:
         return results["status"].copy(data=np.zeros(results["status"].shape, dtype=bool))
     return results["limit_active"].any("limit") & ~infeasible(results)
 
 
 def layouts(results: xr.Dataset) -> list[str]:
-    """Names of all layouts, the baseline (if there is one) first, the others in the order of the study."""
+    """Names of all layouts, the baseline first if there is one, then in the order of the study."""
     names: list[str] = results["layout"].values.tolist()
     return sorted(names, key=lambda name: name != results.attrs["baseline"])
 
@@ -166,7 +166,7 @@ def index_unit(results: xr.Dataset, index: str) -> str:
 
 
 def titled(title: str, name: str, form: str = "{} ({})") -> str:
-    """What an index is, with what the study calls it, unless that says the same.
+    """Title of an index with its name in the study, unless the title contains the name.
 
     >>> titled("ride comfort", "J1"), titled("dynamic tyre load", "tyre-load")
     ('ride comfort (J1)', 'dynamic tyre load')
@@ -175,7 +175,7 @@ def titled(title: str, name: str, form: str = "{} ({})") -> str:
 
 
 def criteria(results: xr.Dataset) -> list[str]:
-    """The indices of the trade-off that the study asks for; none if it asks for none."""
+    """Names of the indices of the trade-off; empty for a study without one."""
     names: list[str] = results["criterion"].values.tolist() if "front_value" in results else []
     return names
 
@@ -191,19 +191,19 @@ def criterion_unit(results: xr.Dataset, name: str) -> str:
 
 
 def which_front(results: xr.Dataset) -> str:
-    """Words for titles: by which of several methods the fronts are."""
+    """Words for titles: the method of the fronts if the study has several."""
     words = results["front_value"].attrs.get("method_words", "")
     return f", {words}" if words else ""
 
 
 def trade_off_title(results: xr.Dataset) -> str:
-    """Between which indices the trade-off of the study is, and by which of several methods."""
+    """Title of the trade-off: its indices, and the method if the study has several."""
     titles = [criterion_title(results, name) for name in criteria(results)]
     return f"Trade-off between {listed(titles)}{which_front(results)}"
 
 
 def flat_range(entry: xr.Dataset) -> str:
-    """The range of a parameter over equally good optima, empty where it is less than a per cent wide."""
+    """Range of a parameter over equally good optima as text; empty if less than 1 % wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
     return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
@@ -220,7 +220,7 @@ def capital(text: str) -> str:
 
 
 def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
-    """A value for people: four digits and a prefix, "inf", or "n/a" where there is none.
+    """Value with its unit as text: four digits and a prefix, "inf", or "n/a" for nan.
 
     With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
     error, the relative `bound`, allows no more.
@@ -244,7 +244,7 @@ def digits_of(value: float, bound: float = np.nan) -> int:
 
 
 def decimals_of(value: float, error: float, bound: float, digits: int) -> int | None:
-    """Decimal places that a value bears, with `digits` significant ones at most where no standard error is shown."""
+    """Decimal places that the uncertainty of a value justifies; at most `digits` significant ones if none is shown."""
     if not np.isfinite(value):
         return None
     shown = error if shows_error(value, error, bound) else np.nan
@@ -259,7 +259,7 @@ def plain_number(value: float, bound: float = np.nan) -> str:
 
 
 def shows_error(value: float, error: float, bound: float = np.nan) -> bool:
-    """Whether a standard error is there and large enough to be shown, beside a relative error `bound` too."""
+    """Whether a standard error exists and is large enough to be shown next to a relative error `bound`."""
     return bool(np.isfinite(value) and np.isfinite(error) and error > np.fmax(_LEAST_ERROR, bound) * abs(value))
 
 
@@ -273,12 +273,12 @@ def measured(value: float, error: float, bound: float = np.nan, sign: str = "") 
 
 
 def printed(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
-    """A value as it is printed, on one line with its unit."""
+    """Value with its unit in printed form, without line breaks."""
     return typeset(with_unit(value, unit, error, bound)).replace(" ", _NO_BREAK_SPACE)
 
 
 def together(text: str) -> str:
-    r"""Text in which numbers stay on one line with their units.
+    r"""Text with no-break spaces between numbers and their units.
 
     >>> together("at most 400 N of 1 of 2").split(" ")
     ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
@@ -287,7 +287,7 @@ def together(text: str) -> str:
 
 
 def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
-    """An improvement with its sign, and its standard error if there is one; "-inf %", or "n/a" where there is none.
+    """Improvement [%] with its sign and, if known, its standard error, as text; "-inf %", or "n/a" for nan.
 
     `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths.
     """
@@ -302,7 +302,7 @@ def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
 
 
 def typeset(text: str) -> str:
-    """Plain units and numbers as they are printed: superscripts, powers of ten, and a minus that is one.
+    """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs.
 
     >>> typeset("5e-07 m^3/cycle")
     '5 × 10⁻⁷ m³/cycle'
@@ -329,6 +329,6 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 
 
 def axis_label(what: str, unit: str) -> str:
-    """The label of an axis: what it is, and its unit in brackets; on two lines where it is long."""
+    """Label of an axis: quantity and unit in brackets; on two lines if long."""
     text = headed(what, typeset(unit).replace(" ", _NO_BREAK_SPACE))
     return text if len(text) <= _LONGEST_LABEL else fill(text, _LONGEST_LABEL, break_long_words=False)

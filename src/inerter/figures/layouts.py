@@ -1,4 +1,4 @@
-"""The networks of the layouts of a study, each layout drawn by itself."""
+"""Figures of the networks of a study, one per layout."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from inerter.networks.parser import network
 
 
 def layout_figure(layout: str) -> str:
-    """The name of the files of its figure."""
+    """File name, without suffix, of the figure of a layout."""
     return f"layout-{layout}"
 
 

@@ -92,7 +92,7 @@ def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequen
 
 
 def _in_lines(title: str) -> str:
-    """A title that stays within its panel."""
+    """Title broken into lines that fit the panel."""
     return fill(title, _TITLE)
 
 
@@ -108,12 +108,12 @@ def _places(data: xr.Dataset) -> tuple[Array, Array]:
 
 
 def _sequential(numbers: Array) -> dict[str, Any]:
-    """How values are coloured: evenly from the least to the largest."""
+    """Contour keywords for values: evenly spaced colours from the least to the largest."""
     return {"levels": _levels(numbers), "cmap": "viridis"}
 
 
 def _diverging(numbers: Array) -> dict[str, Any]:
-    """How improvements are coloured: those that are none in white, better in blue and worse in red."""
+    """Contour keywords for improvements: zero white, positive blue, negative red."""
     levels = _levels(np.append(numbers, 0.0))
     most = max(abs(levels[0]), abs(levels[-1]))
     return {"levels": levels, "cmap": "RdBu", "vmin": -most, "vmax": most}
@@ -129,7 +129,7 @@ def _levels(numbers: Array) -> Array:
 
 
 def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], label: str) -> None:
-    """One map of a layout with its scale: bands of colour, and where designs were found, in black at a limit."""
+    """Draw the map of a layout with its colour bar; dots mark computed designs, black ones those at a limit."""
     x, y = _places(data)
     shown = np.ma.masked_invalid(numbers.T)
     ax.set_facecolor(_NO_VALUE)
@@ -148,13 +148,13 @@ def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], labe
 
 
 def _mark(ax: Axes, x: Array, y: Array, **look: Any) -> None:
-    """Markers over the edge of a map too; without any there is nothing to draw, for which a layout has no room."""
+    """Draw markers if there are any."""
     if x.size:
         ax.plot(x, y, linestyle="", marker="o", **look)
 
 
 def _draw_zero(data: xr.Dataset, numbers: Array, ax: Axes) -> None:
-    """Where a layout is as good as the baseline, if that is between designs that are better and worse."""
+    """Draw the line of equal performance with the baseline, if improvements of both signs occur."""
     known = numbers[np.isfinite(numbers)]
     if known.size and known.min() < -NOTICEABLE < NOTICEABLE < known.max():
         ax.contour(*_places(data), np.ma.masked_invalid(numbers.T), levels=[0.0], colors="black", linewidths=1.6)

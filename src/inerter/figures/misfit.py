@@ -27,7 +27,7 @@ _SOUND: dict[str, Any] = {"color": "#7A7A7A", "linewidth": 0.9}
 
 @dataclass(frozen=True, eq=False)
 class ResidualSamples:
-    """What a fit leaves of the force at each sample, the motion there, and what sound sensors would leave."""
+    """Residual force at each sample, the motion there, and residuals expected from sensor noise."""
 
     time: Matrix  # [s]
     residual: Matrix  # [N]

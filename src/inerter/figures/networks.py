@@ -59,7 +59,7 @@ class Placed:
 
     @property
     def right(self) -> float:
-        """Where its label ends."""
+        """Right end of the label [pt]."""
         return self.x + HALF_WIDTH + TO_LABEL + text_width(self.label)
 
 
@@ -74,7 +74,7 @@ class Schematic:
     lines: tuple[Line, ...] = ()
 
     def moved(self, x: float, y: float) -> tuple[tuple[Placed, ...], tuple[Line, ...]]:
-        """Its elements and lines with the upper end at (x, y)."""
+        """Elements and lines with the upper end at (x, y)."""
         placed = tuple(Placed(p.element, p.label, p.x + x, p.y + y) for p in self.placed)
         return placed, tuple(moved(line, x, y) for line in self.lines)
 
@@ -118,7 +118,7 @@ def draw_network(network: Network, axes: Axes, at: Point = (0.0, 0.0), *, values
 
 
 def schematic(network: Network, *, values: bool = False) -> Schematic:
-    """Where everything in the drawing of a network is; with `values`, numbers stand below their names.
+    """Positions of all parts in the drawing of a network; with `values`, numbers stand below the names.
 
     Raises `NetworkError` if `network` is none.
     """
@@ -134,7 +134,7 @@ def schematic(network: Network, *, values: bool = False) -> Schematic:
 
 
 def element_label(element: Element, *, values: bool = False) -> str:
-    """The name of an element as it is drawn, with its value (if that is a number) in a second line if asked for."""
+    """Label of an element in a drawing; with `values`, its fixed value in a second line."""
     name, value = symbol(element.label), element.value
     return name if isinstance(value, Free | Tied) or not values else f"{name}\n{printed(value, element.unit)}"
 

@@ -1,4 +1,4 @@
-"""The figure of a simulation: what comes in, what the body and the tyres feel, and the force in every strut."""
+"""Figure of a simulation: inputs, body acceleration, tyre forces, and the force of every strut, over time."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _OVER_GAPS: Any = {"facecolor": "none", "edgecolor": "#8C8C8C", "hatch": "//////
 
 @dataclass(frozen=True)
 class Curve:
-    """An output, how it is called beside others in its panel, the number of its colour, and a factor."""
+    """Curve of an output: label in its panel, colour number, and factor."""
 
     output: str
     label: str = ""
@@ -67,7 +67,7 @@ def draw_simulation(result: SimulationResult, folder: Path, window: Window | Non
 
 
 def panels(result: SimulationResult) -> list[TimePanel]:
-    """What is drawn, from top to bottom."""
+    """Panels of the figure, from top to bottom."""
     outputs, struts = result.run.outputs, result.struts
     inputs = result.inputs
     found = [TimePanel(_common(inputs), outputs[inputs[0]].unit, _curves(inputs))]
@@ -96,7 +96,7 @@ def panels(result: SimulationResult) -> list[TimePanel]:
 
 
 def readable_window(result: SimulationResult) -> Window:
-    """The whole run, or as much of its end as can be told apart in print: the last 1/2, 1/5, 1/10, ... of it."""
+    """Time window [s] legible in print: the whole run, or its last 1/2, 1/5, 1/10, ..."""
     run = result.run
     end = float(run.time[-1])
     length = whole = end - float(run.time[0])
@@ -111,7 +111,7 @@ def readable_window(result: SimulationResult) -> Window:
 
 
 def simulation_figure(result: SimulationResult, window: Window) -> Figure:
-    """All panels above each other over the times in `window` [s]; for a rig the loop of its force beside them."""
+    """Figure of all panels over the times in `window` [s]; for a rig, with the force-displacement loop."""
     wanted, run = panels(result), result.run
     inside = (run.time >= window[0]) & (run.time <= window[1])
     if np.sum(inside) < 2:
@@ -188,12 +188,12 @@ def _shared(names: Sequence[str]) -> list[str]:
 
 
 def _common(names: Sequence[str]) -> str:
-    """What several outputs are, in the words that they share; else the first of them."""
+    """Words common to the names of several outputs; else the first name."""
     return " ".join(_shared(names)) or names[0].replace("_", " ")
 
 
 def _own(names: Sequence[str]) -> list[str]:
-    """What tells each of several outputs from the others: "front" of `road_front`, or its whole name."""
+    """Words that distinguish each of several outputs: "front" of `road_front`, or its whole name."""
     shared = _shared(names)
     own = [" ".join(word for word in name.split("_") if word not in shared) for name in names]
     return own if all(own) and len({*own}) == len(own) else [name.replace("_", " ") for name in names]

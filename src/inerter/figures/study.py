@@ -1,4 +1,4 @@
-"""All figures of a study: which there are, their captions, and writing them."""
+"""All figures of a study, with their captions and files."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
 @dataclass(frozen=True)
 class StudyFigure:
-    """A figure of a study: the name of its files, its caption, and how it is drawn."""
+    """Figure of a study: file name, caption, and drawing function."""
 
     name: str
     caption: str
@@ -158,7 +158,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
 
 
 def _limits(here: xr.Dataset, held: str, missed: str) -> str:
-    """What marks designs that a limit holds back, and where no design keeps the limits, if there are any."""
+    """Sentences on the markers of designs with active constraints and of infeasible ones, if any."""
     told = [
         (held, "a limit holds the design back", held_back(here)),
         (missed, "no design keeps the limits", infeasible(here)),
@@ -186,7 +186,7 @@ def _any(where: ArrayLike) -> bool:
 
 
 def _uncertain(results: xr.Dataset, sentence: str) -> str:
-    """The sentence if there is a standard error that can be seen."""
+    """Sentence on standard errors if any is visible; else empty."""
     return sentence if "improvement_error" in results and bool((results["improvement_error"] > 0.0).any()) else ""
 
 
@@ -217,7 +217,7 @@ def _improvement(results: xr.Dataset) -> Figure:
 
 
 def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
-    """Which outputs of an index answer at all: roll does not, where both tracks are alike."""
+    """True for each output of an index with a nonzero response; roll has none where both tracks are equal."""
     gain = results[f"gain_{index}"]
     most = np.asarray(gain.max([name for name in gain.dims if name != f"output_{index}"]).fillna(0.0).values)
     return np.asarray(most > _STILL * most.max(initial=0.0)) | (not most.any())

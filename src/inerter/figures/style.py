@@ -1,4 +1,4 @@
-"""How figures look: sizes, fonts, colours and lines, legends, and files that are the same in every run."""
+"""Style of figures: sizes, fonts, colours, lines, legends, and reproducible files."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ _UNDATED: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": Non
 
 @dataclass(frozen=True)
 class LayoutStyle:
-    """How one layout is drawn in all figures of a study."""
+    """Style of one layout in all figures of a study."""
 
     colour: str
     line: Any
@@ -113,7 +113,7 @@ def colour(number: int) -> str:
 
 @contextmanager
 def styled() -> Iterator[None]:
-    """What is created and drawn inside has the style of the package; settings of the caller are back afterwards."""
+    """Context that applies the style of the package to figures created and drawn inside, and restores the settings."""
     with matplotlib.rc_context(_SETTINGS):
         yield
 
@@ -145,7 +145,7 @@ class _PlainTicks(ScalarFormatter):
 
 
 def add_legend(figure: Figure, axes: Iterable[Axes], most: int | None = None) -> Legend:
-    """One legend for all axes, below them, in as many columns as the figure has room for, or `most`."""
+    """Add a legend of all axes below them, with as many columns as fit, at most `most`."""
     entries: dict[str, Artist] = {}
     for ax in axes:
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):

@@ -40,7 +40,7 @@ _MOST_MARKERS = 40
 
 
 def markers_shown(results: xr.Dataset) -> bool:
-    """Whether there are so few swept values that each has its marker."""
+    """Whether the swept values are few enough for markers."""
     return results.sizes[str(swept_element(results))] <= _MOST_MARKERS
 
 
@@ -78,7 +78,7 @@ class _Sweep:
             ax.plot(self.values[open_where], finite[open_where], **look)
 
     def band(self, ax: Axes, layout: str, low: Array, high: Array, alpha: float) -> None:
-        """What lies between two curves."""
+        """Fill the area between two curves."""
         area, colour = thinned_band(self.values, low, high), self.styles[layout].colour
         ax.fill_between(*area, color=colour, alpha=alpha, linewidth=0.0)
 
@@ -119,7 +119,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
 
 
 def _method_line(number: int) -> dict[str, Any]:
-    """How curves of a method differ: in their line; only those of the first name their layout in the legend."""
+    """Keywords of the curves of a method: its line style; no label except for the first method."""
     return {"linestyle": method_line(number), **({} if number == 0 else {"label": "_"})}
 
 

@@ -1,1 +1,1 @@
-"""How a number is got."""
+"""Methods: evaluation of an index for a design, by norms, by linearisation, or by simulation."""

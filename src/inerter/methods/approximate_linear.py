@@ -164,7 +164,7 @@ class ApproximateLinear:
         return SampledObjective(self.estimate, vehicle, index)
 
     def fixed(self, realisations: int, period: int | None = None) -> ApproximateLinear:
-        """The same with so many realisations; their length is that of the excitation."""
+        """Copy of the method with a fixed number of realisations; `period` is ignored, as the excitation sets it."""
         return replace(self, realisations=realisations, relative_error=None)
 
     @property
@@ -172,13 +172,13 @@ class ApproximateLinear:
         return self.conventions == "paper2008"
 
     def _known(self, mechanism: Mechanism, question: Question) -> Estimate:
-        """A linear design's norm, as an estimate without scatter."""
+        """Estimate of a linear design: its norm, without scatter."""
         problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
         norm = problem.estimate({})
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
     def _drive(self, mechanism: Mechanism, question: Question) -> Excited:
-        """Which inputs are moved, by what and how late."""
+        """Excitation of the inputs: signal, r.m.s. value, and delay of each input."""
         driven = question.drive.driven(mechanism)
         arrivals = question.arrivals(driven)
         _check_gains(arrivals)
@@ -191,7 +191,7 @@ class ApproximateLinear:
         return Excited(excitation, rms, tuple(delays.get(name) for name in inputs))
 
     def _counterpart(self, mechanism: Mechanism, question: Question) -> Counterpart | None:
-        """What the linear design that moves alike is made from; None where none may serve."""
+        """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
         return None if self._raw else counterpart(mechanism, question, CONVENTIONS[self.conventions])
 
     def _answer(self, question: Question, linear: Counterpart | None, runs: Runs) -> Estimate:
@@ -226,7 +226,7 @@ class ApproximateLinear:
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
 
     def _from_gains(self, question: Question, linear: Counterpart | None, gains: Array, runs: Runs) -> Estimate:
-        """The index from squared gains, with what is known of the linear design that moves alike if there is one."""
+        """Estimate of the index from squared gains, with the equivalent linear model as control if there is one."""
         drive = runs.drive
         if self._raw:
             return self._combine(question, None, gains, drive)
@@ -287,7 +287,7 @@ class ApproximateLinear:
         return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources)
 
     def _near_peak(self, estimate: Estimate, drive: Excited) -> Array:
-        """One at the harmonics of which the value is made: of a peak gain those that are smoothed together."""
+        """Mask (harmonics,) as 0 or 1: harmonics smoothed together at the peak of a peak gain; else all ones."""
         if not estimate.peaks:
             return np.ones(drive.omega.size)
         reach = max(2.0 * math.pi * self.smoothing, drive.omega[0])
@@ -312,7 +312,7 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
 
 
 def _factor(question: Question, arrival: Arrival, runs: Runs) -> Array:
-    """From squared gains to what the index adds up (outputs, frequencies): those of a road are from its height."""
+    """Factors (outputs, frequencies) from squared gains to the squares that the index sums."""
     omega = runs.drive.omega
     one = np.ones(omega.size)
     squares = np.array([one if f is None else np.abs(f.response(omega)) ** 2 for f in question.filters])
@@ -332,7 +332,7 @@ def _check_gains(arrivals: Sequence[Arrival]) -> None:
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
-    """Whether there is a friction or a gap that is not zero."""
+    """Whether the mechanism has a friction or a gap of nonzero size."""
     elements = (branch.element for branch in full_graph(mechanism).branches)
     return any(e.acts and isinstance(e.value, float | int) for e in elements)
 

@@ -1,4 +1,4 @@
-"""An index of a design by a method, whatever the index is made of and whatever the design's values follow from.
+"""Evaluation of an index by a method, for simple and composed indices, and for dependent values of a design.
 
 A method answers one question about a mechanism of numbers and free values. An index that is made of several answers, or
 of none, is `Composed`: it asks by itself. Values that are tied to others are free ones to a method, and what it says of
@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 @runtime_checkable
 class Composed(Protocol):
-    """An index that is not one question: it puts together what it asks, or tells its value by itself."""
+    """Composed index: combines several indices, or computes its value without a method."""
 
     @property
     def symbol(self) -> str:
@@ -52,15 +52,15 @@ class Composed(Protocol):
 
     @property
     def response(self) -> str:
-        """What its frequency response is, in words."""
+        """Frequency response of the index, in words."""
         ...
 
     def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
-        """The indices that are asked, each of its vehicle; raises `InerterError` if the vehicle has no answer."""
+        """Constituent indices, each with its vehicle; raises `InerterError` if the vehicle has no answer."""
         ...
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> Sequence[Composed]:
-        """What a limit is put on: the index of each output that `split` tells apart, taken in the same way."""
+        """Composed indices of the single outputs that `split` separates, for constraints on each."""
         ...
 
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
@@ -80,12 +80,12 @@ Asked = Index | Composed
 
 
 def is_index(given: object) -> bool:
-    """Whether something can be asked for: an index, or what is made of some; not its class."""
+    """Whether an object is an index or a composed index, not its class."""
     return not isinstance(given, type) and (hasattr(given, "question") or is_composed(given))
 
 
 def is_composed(index: object) -> TypeIs[Composed]:
-    """Whether the index asks by itself."""
+    """Whether an index is composed."""
     return not isinstance(index, type) and isinstance(index, Composed)
 
 
@@ -117,7 +117,7 @@ def objective_of(vehicle: Vehicle, index: Asked, method: Method) -> Objective:
 
 @dataclass(frozen=True)
 class Ties:
-    """How the free values of another design follow from some: as they are, by ties, or as numbers; times a factor."""
+    """Map from the design variables to the values of another design: each a free, tied or fixed value."""
 
     names: tuple[str, ...]
     inner: tuple[Tied, ...]  # of each value of the other design
@@ -137,14 +137,14 @@ class Ties:
 
 @dataclass(frozen=True)
 class Loose:
-    """A design whose tied values are free ones, and how those follow from its free values."""
+    """Design whose tied values are design variables, and the map that gives them."""
 
     vehicle: Vehicle
     follow: Ties
 
 
 def without_tied_values(vehicle: Vehicle) -> Loose | None:
-    """The design with free values in the place of tied ones; None if it has none of these.
+    """Design with design variables in place of tied values, and their map; None if there are no tied values.
 
     What they lie between is half to twice the value in the middle of what they follow from.
     """

@@ -1,4 +1,4 @@
-"""Means of independent values, and how far they can be trusted."""
+"""Means of independent values, and their uncertainty."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ CONFIDENCE = 0.95
 
 
 def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[float, float]]:
-    """Mean of independent values, its standard error, and its interval of 95 % confidence."""
+    """Mean of independent values, its standard error, and its 95 % confidence interval."""
     mean, error = float(np.mean(values)), float(np.std(values, ddof=1) / np.sqrt(values.size))
     return mean, error, interval_of(mean, error, values.size)
 
 
 def interval_of(mean: float, error: float, count: int) -> tuple[float, float]:
-    """The interval of 95 % confidence about the mean of `count` values: Student's, or the normal one for none."""
+    """95 % confidence interval about the mean of `count` values: Student's t, or normal for fewer than two values."""
     share = 0.5 + 0.5 * CONFIDENCE
     # As `scipy.stats` has them, which takes a quarter of a second to load, in each process anew.
     quantile = scipy.special.stdtrit(count - 1, share) if count > 1 else scipy.special.ndtri(share)

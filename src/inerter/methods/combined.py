@@ -20,14 +20,14 @@ _MOST_OF_EACH, _MOST_SUMS = 4, 24  # peaks of each part that a sum combines, and
 
 
 class Follow(Protocol):
-    """How the values of a part follow from ours."""
+    """Map from our values to those of a part of the objective."""
 
     def values(self, points: Array) -> Array:
         """Values (n, inner), one row for each of `points`."""
         ...
 
     def slopes(self, point: Array) -> Array:
-        """Their derivatives (inner, outer) at one point."""
+        """Derivatives (inner, outer) of the part's values at one point."""
         ...
 
 
@@ -41,7 +41,7 @@ class ObjectivePart:
     offset: float = 0.0
 
     def values(self, points: Array) -> Array:
-        """At each row of `points`; infinite where a value that follows is not positive."""
+        """Scaled and offset objective at each row of `points`; infinite where a dependent value is not positive."""
         if self.follow is None:
             return np.asarray(self.scale * self.objective.values(points) + self.offset)
         inner = self.follow.values(points)
@@ -60,12 +60,12 @@ class ObjectivePart:
         return self.scale * value + self.offset, self.scale * (gradient if slopes is None else gradient @ slopes)
 
     def active(self, point: Array) -> Any:
-        """As that of the objective."""
+        """Active components of the objective at `point`; empty where a dependent value is not positive."""
         inner, _ = self._inner(point)
         return np.zeros(0) if inner is None else self.objective.active(inner)
 
     def components(self, point: Array, which: Any) -> tuple[Array, Array]:
-        """As those of the objective, scaled; where this is smooth, the one that it is for each of `which`."""
+        """Components `which` of the scaled objective, and their gradients over our values."""
         inner, slopes = self._inner(point)
         if inner is None:
             return np.full(len(which), np.inf), np.zeros((len(which), point.size))
@@ -154,7 +154,7 @@ class Combined:
         return chosen[order if self.plain.worst else order[:_MOST_SUMS]]
 
     def components(self, point: Array, which: Any) -> tuple[Array, Array]:
-        """Those smooth functions and their gradients."""
+        """Components `which` of the combined objective, and their gradients."""
         values, gradients = np.zeros(len(which)), np.zeros((len(which), point.size))
         for i, part in enumerate(self._parts):
             if self.plain.worst:
@@ -172,7 +172,7 @@ class Combined:
 
 
 def _listed(several: list[Any]) -> Any:
-    """As an array: of numbers, or of what is no number."""
+    """Array of the entries: of floats if all are, else of objects."""
     if all(isinstance(one, float) for one in several):
         return np.array(several, dtype=float)
     found = np.empty(len(several), dtype=object)

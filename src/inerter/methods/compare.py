@@ -1,4 +1,4 @@
-"""Two designs on the same roads: what differs between them is known better than either."""
+"""Comparison of two designs on the same roads, with a smaller standard error than of either value."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Comparison:
 
     @property
     def status(self) -> Status:
-        """How far both can be trusted: the worse of their statuses."""
+        """Worse of the statuses of both estimates."""
         return worst_of((self.first.status, self.second.status))
 
     def __str__(self) -> str:

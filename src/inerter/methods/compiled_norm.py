@@ -44,7 +44,7 @@ _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that a
 
 @dataclass(frozen=True, eq=False)
 class CompiledQuestion:
-    """One question as a function of the free values: the `Differentiable` objective of `Norm`."""
+    """Index as a function of the design variables, from compiled code: the `Differentiable` objective of `Norm`."""
 
     problem: LinearProblem
 
@@ -88,7 +88,7 @@ class CompiledQuestion:
 
     @cached_property
     def apart(self) -> tuple[CompiledQuestion, ...]:
-        """One for each source, where there are several: their squares add up."""
+        """Objectives of the single sources, whose squares add up; empty for one source."""
         sources = tuple(dict.fromkeys(self.problem.sources))
         return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
 
@@ -99,30 +99,30 @@ class CompiledQuestion:
 
     @cached_property
     def serves(self) -> NDArray[np.bool_]:
-        """Which outputs compiled code may value: those that are finite at a design beside the middle of the bounds."""
+        """True for outputs that compiled code can evaluate: finite at a design near the middle of the bounds."""
         if self.is_peak:
             return np.array([self._exact(self._special).status.ok])
         return np.asarray(~np.isinf(self._beside))
 
     @cached_property
     def seen(self) -> NDArray[np.bool_]:
-        """Which outputs the source reaches, as those of one half of a car do not see what the two sides share."""
+        """True for outputs that the source excites; those of a half model ignore the common motion of both sides."""
         return np.asarray(self._beside > 0.0)
 
     @cached_property
     def sighted(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
-        """For each source the outputs that it reaches, and the question about these."""
+        """Mask of the outputs that each source excites, and the objective of these outputs."""
         sources = [one for one in self.apart or (self,) if np.any(one.seen)]
         return tuple((one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in sources)
 
     @cached_property
     def _beside(self) -> Array:
-        """Norms at a design beside the middle of the bounds."""
+        """Norms of the outputs at a design near the middle of the bounds."""
         return self._norms(self._special)
 
     @cached_property
     def _special(self) -> Array:
-        """A design beside the middle of the bounds."""
+        """Values of a generic design near the middle of the bounds."""
         halfway = np.array([middle(free) for free in self._free.values()])
         return np.asarray(halfway * (1.0 + _ASIDE * np.arange(1, halfway.size + 1)))
 
@@ -131,7 +131,7 @@ class CompiledQuestion:
         return dict(self.problem.descriptor.free)
 
     def _columns(self, one: CompiledQuestion) -> list[int]:
-        """Which of the free values those of the question of one source are."""
+        """Positions of the design variables of `one` among all design variables."""
         names = list(self._free)
         return [names.index(name) for name in one._free]
 
@@ -155,7 +155,7 @@ class CompiledQuestion:
         return self.problem.corrected(system, h2_exactly(system, self.problem.pade_order)[0])[0]
 
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`, for a search: infinite where it is not known.
+        """Index at each row of `points`, for a search: infinite where unknown.
 
         Where compiled code is not sure there is hardly any damping, or nearly a rigid link, which few searches want. So
         such designs are valued without rounding only where there are few others to choose from.
@@ -172,7 +172,7 @@ class CompiledQuestion:
         return np.asarray(np.isnan(found.reshape(points.shape[0], -1)).any(axis=1))
 
     def known(self, points: Array) -> Array:
-        """The index at each row of `points`; infinite where it is, nan where it is not known."""
+        """Index at each row of `points`, which may be infinite; nan where unknown."""
         if not self.is_peak:
             return self._combined(self.output_norms(points))
         result = self._compiled(points)
@@ -188,7 +188,7 @@ class CompiledQuestion:
         return result
 
     def _compiled(self, points: Array) -> Array:
-        """The index by compiled code alone; infinite where the topology makes it so, nan where it is not sure."""
+        """Index by compiled code alone; infinite where the topology makes it so, nan where inaccurate."""
         if not self.is_peak:
             return self._combined(self._compiled_norms(points))
         if not self.serves[0]:
@@ -234,11 +234,11 @@ class CompiledQuestion:
 
     @cached_property
     def _excess(self) -> Excess | None:
-        """By what part the density of the one source exceeds that behind its filter."""
+        """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
     def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms over a source that reaches all outputs, those behind its filter, and how doubtful they are."""
+        """Norms over a source that excites all outputs, norms for its filter alone, and doubts (designs,)."""
         found, _, doubts = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
         if self._excess is None:
             return found, found, doubts
@@ -256,11 +256,11 @@ class CompiledQuestion:
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
     def _sure(self, points: Array, norms: Array, doubts: Array) -> NDArray[np.bool_]:
-        """Whether norms are right: doubtful ones behind filters beyond first order, whether they stay as they are where
-        the points are moved by some roundings.
+        """True for designs whose norms are accurate (designs,).
 
-        Under light damping the states of such a filter cancel in its output, and the error bound of compiled code may
-        then be exceeded a little.
+        Doubtful norms behind filters beyond first order count as accurate if steps of rounding size do not change them.
+        Under light damping the states of such a filter cancel in its output, and the error bound of compiled code
+        may then be exceeded a little.
         """
         sure = np.isfinite(doubts)
         asked = np.flatnonzero(sure & (doubts > _DOUBTFUL) & (self.problem.highest_filter >= 2))
@@ -293,7 +293,7 @@ class CompiledQuestion:
         return self.problem.question.combined(norms, self.problem.weights)
 
     def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
-        """As `_with_gradients` at one point, with those of the index."""
+        """Norms, gradient of the index, and doubts of the norms, at one point."""
         question, weights = self.problem.question, self.problem.weights
         if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
             return self._with_gradients(points, weights)
@@ -302,14 +302,14 @@ class CompiledQuestion:
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
-        """What compiled code takes beside the points; filters are part of the descriptor."""
+        """Arguments of compiled code other than the points; filters are part of the descriptor."""
         return self.descriptor, self.twofold, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
         return float(self._combined(self._exact_norms(point)))
 
     def _confirmed(self, point: Array, value: float, gradient: Array) -> bool:
-        """Whether the gradient tells how the value changes in some direction: it has no error bound of its own."""
+        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
         ahead, behind = self._combined(self._with_gradients(ends, np.empty(0))[0])
@@ -358,7 +358,7 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 def evaluate_problems(
     mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
-    """Indices (designs, indices), nan where they are not ok; those with one excitation and filter share one solve."""
+    """Indices (designs, indices), nan where not ok; indices with the same excitation and filter share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
     groups: dict[Any, list[int]] = {}
     for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):

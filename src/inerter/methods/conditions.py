@@ -1,4 +1,4 @@
-"""Operating conditions: speeds, roads, loads and tyres with their shares, and indices that are taken over them."""
+"""Operating conditions: speeds, roads, loads and tyres with their shares, and indices combined over them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Condition:
-    """How the vehicle goes for a part of the time.
+    """Operating condition: replaced numbers of the vehicle and the road, with a share of the time.
 
     `vehicle` has other numbers of it by their names, such as `sprung_mass`, `tyre_stiffness` or the label of an
     element; `road` is another road, or other numbers of the one of the index, such as `speed`. What is not named stays
@@ -63,7 +63,7 @@ class Condition:
             )
 
     def of(self, index: Asked) -> Asked:
-        """The index on the road of this condition; as it is where no road is asked for."""
+        """Index on the road of the condition; unchanged if the condition has none."""
         return _on_other_road(index, self.road) if isinstance(self.road, Road) or self.road else index
 
     def __str__(self) -> str:
@@ -136,18 +136,18 @@ class OverConditions(OfIndex):
 
     @property
     def title(self) -> str:
-        """That of the index, with how it is taken."""
+        """Title of the index, with "mean" or "worst" over conditions."""
         return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
 
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
-        """The vehicle and the index in each condition; raises `DesignError` for a name that stands for nothing."""
+        """Vehicle and index in each condition; raises `DesignError` for a name that stands for nothing."""
         return [
             (replace_values(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
             for one in self.conditions.conditions
         ]
 
     def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
-        """What is asked in all conditions."""
+        """Constituent indices in all conditions, each with its vehicle."""
         return [asked for case, index in self.cases(vehicle) for asked in asked_of(case, index)]
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[OverConditions]:
@@ -219,7 +219,7 @@ def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, no
 
 
 def _on_other_road(value: Any, road: Road | Mapping[str, Any]) -> Any:
-    """The same with another road wherever it holds one."""
+    """Copy of `value` with another road, or another number of its road, wherever a road is a part of it."""
     if isinstance(road, Road):
         if isinstance(value, Road | MeasuredRoad):
             return road

@@ -1,4 +1,4 @@
-"""The linear design that a simulated motion resembles: each friction a damper of the force and speed that it had.
+"""Equivalent linear model of a simulated motion: each friction a damper of the force and r.m.s. velocity found.
 
 A friction f across which the velocity has the r.m.s. value sigma is nearest to the damper sqrt(2/pi) f / sigma, as in
 statistical linearisation; here sigma is that of the simulated motion, so that no assumption decides what sticks. Gaps
@@ -44,7 +44,7 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 
 
 def has_play(system: PiecewiseSystem) -> bool:
-    """Whether something switches that no damper stands for, as a gap, so that no linear design need resemble it."""
+    """Whether an element switches that no damper represents, as a gap."""
     elements = (b.element for b in system.graph.branches)
     return any(e.acts and not e.is_damped for e in elements)
 
@@ -61,7 +61,7 @@ class Counterpart:
         return self.problem.system(close(self.problem.descriptor, self._dampers(speeds)))
 
     def at_inputs(self, speeds: Array) -> LinearSystem:
-        """The same from the inputs of the mechanism themselves."""
+        """Equivalent linear model with the inputs of the mechanism instead of the sources."""
         names = [output.output for output in self.problem.question.outputs]
         arrivals = self.problem.question.arrivals(self.mechanism)
         descriptor = filtered(describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters)
@@ -83,7 +83,7 @@ class Counterpart:
         return dict(zip(self.parts.dampers, dampings.tolist(), strict=True))
 
     def unlike(self, speeds: Array, norms: Array) -> float:
-        """By what part of a mean square it changes if frictions slip twice as fast; `norms` are those at `speeds`."""
+        """Relative change of the mean squares if all slip velocities double; `norms` are those at `speeds`."""
         system = self.system(2.0 * speeds)
         other = self.problem.corrected(system, h2(system, self.problem.pade_order).outputs)[0]
         return relative_change(other**2, norms**2)
@@ -96,7 +96,7 @@ def relative_change(values: Array, references: Array) -> float:
 
 
 def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:
-    """The counterpart of a design without free values; None where it has none, as beside a closed gap."""
+    """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:
         parts = equivalent(mechanism, slipping_freely(mechanism, question))
         return Counterpart(linear_problem(parts.mechanism, question, conventions), parts)
@@ -105,7 +105,7 @@ def counterpart(mechanism: Mechanism, question: Question, conventions: Conventio
 
 
 def memory(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
-    """How much of an output's r.m.s. value is what the motion was `time` [s] ago, at most, and by which pole [rad/s].
+    """Largest share of an r.m.s. value due to the motion `time` [s] ago, and the pole that carries most of it [rad/s].
 
     Each mode's share of the outputs, which have these H2 `norms`, is taken by itself and decays at its own rate. The
     power that lines 1/T Hz apart find in a response is off by twice its memory of T at most.

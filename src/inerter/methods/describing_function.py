@@ -50,13 +50,13 @@ class HarmonicBalance:
 
     @property
     def amplitude(self) -> float:
-        """Of the force [N]."""
+        """Force amplitude [N]."""
         assert self.question.amplitude is not None
         return self.question.amplitude
 
     @property
     def weight(self) -> float:
-        """What the gain is multiplied by in the index."""
+        """Factor of the gain in the index."""
         return abs(self.question.outputs[0].weight)
 
     @cached_property
@@ -67,7 +67,7 @@ class HarmonicBalance:
 
     @cached_property
     def places(self) -> NDArray[np.int64]:
-        """Where the dampers stand among the free values of the descriptor."""
+        """Positions of the equivalent dampers among the free values of the descriptor."""
         names = list(self.descriptor.free)
         return np.array([names.index(name) for name in self.parts.dampers], dtype=np.int64)
 
@@ -105,7 +105,7 @@ class HarmonicBalance:
         return float(max(_DISTORTED * third, min(_STOPS * third**0.75, PROMISE)))
 
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
+        """Index at each row of `points`, accurate or not; infinite where unknown."""
         known = self.known(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
@@ -181,5 +181,5 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
 
 
 def _slowest(omegas: Array) -> float:
-    """A frequency [rad/s] that stands for the limit of low ones beside these."""
+    """Frequency [rad/s] far below `omegas`, for the static limit."""
     return 1e-7 * float(np.min(omegas[omegas > 0.0], initial=1.0))

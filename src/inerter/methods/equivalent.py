@@ -37,7 +37,7 @@ STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid lin
 
 @dataclass(frozen=True, eq=False)
 class Equivalent:
-    """A mechanism with a free damper in the place of each friction that can move, and what those frictions were."""
+    """Mechanism with a free damper in place of each friction that can move, and the frictions replaced."""
 
     mechanism: Mechanism
     dampers: tuple[str, ...]  # names of the dampers, as free values and as elements
@@ -59,12 +59,12 @@ class Equivalent:
 
     @cached_property
     def places(self) -> tuple[int, ...]:
-        """For each friction the number of the free value that is its force, or -1 if its force is fixed."""
+        """Position of each friction force among the values of the design; -1 for a fixed force."""
         names = [force.name if isinstance(force, Free) else None for force in self.forces]
         return tuple(-1 if name is None else self.design.index(name) for name in names)
 
     def order(self, descriptor: Descriptor) -> list[int]:
-        """For each free value of `descriptor`, where it stands in (values of the design, dampers)."""
+        """Position of each free value of `descriptor` in (values of the design, dampers)."""
         known = (*self.design, *self.dampers)
         return [known.index(name) for name in descriptor.free]
 
@@ -80,7 +80,7 @@ class Equivalent:
 
 
 def poorly(what: str, bound: float) -> Status:
-    """Inaccurate because of `what`, with the error bound if there is one."""
+    """Status inaccurate because of `what`, with the error bound if below 1."""
     most = f", by {100.0 * bound:.2g} % at most" if bound < 1.0 else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
@@ -117,7 +117,7 @@ def has_friction(mechanism: Mechanism) -> bool:
 
 
 def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
-    """`mechanism` with a free damper in the place of each friction.
+    """Mechanism with a free damper in place of each friction.
 
     Those in `without` are left out, those in `locked` become rigid links (both named by their damper). A friction
     beside a rigid link cannot move and is left out too.
@@ -167,7 +167,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
 
 
 def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
-    """The dampers of frictions that white noise passes straight to, as of one in a tyre on a road.
+    """Names of dampers of frictions with direct feedthrough from white noise, as of one in a tyre on a road.
 
     With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
     """
@@ -186,13 +186,13 @@ def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
 
 
 def _reachable(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> list[Strut | Tyre]:
-    """What is mounted on a road that is an input: forces act on masses, whose velocity has no jumps."""
+    """Mounts connected to excited roads; forces act on masses, whose velocity has no jumps."""
     roads = {road.name for road in mechanism.roads} & {arrival.input for arrival in arrivals}
     return [m for m in mechanism.mounts() if roads & ({m.road} if isinstance(m, Tyre) else {*m.upper, *m.lower})]
 
 
 def _reached_directly(descriptor: Descriptor) -> list[int]:
-    """Numbers of the outputs that white noise passes straight to."""
+    """Numbers of the outputs with direct feedthrough from white noise."""
     halfway = {name: middle(free) for name, free in descriptor.free.items()}
     return [int(i) for i in np.flatnonzero(np.any(close(descriptor, halfway).D != 0.0, axis=1))]
 

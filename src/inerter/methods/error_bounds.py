@@ -1,4 +1,4 @@
-"""Errors of estimates: what a method promises, and what becomes of errors where numbers are put together."""
+"""Error sources of estimates, and their propagation through sums and maxima."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ STAND_INS = 0.1  # relative error of a value that is ok by what stands in for it
 
 
 def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
-    """The estimate with a method's `own` error sources before those of stand-ins, which it has already.
+    """Estimate with a method's `own` error sources before those of approximated excitations, which it already has.
 
     Inaccurate where its own exceed `promise`, or the others `STAND_INS`. A value that is infinite is so exactly, and
     one that is not known has no error.

@@ -49,21 +49,21 @@ class MultisineExcitation:
 
     @property
     def period(self) -> float:
-        """Time after which it repeats [s]."""
+        """Period [s]."""
         return 1.0 / self.lowest
 
     @property
     def harmonics(self) -> int:
-        """How many harmonics it has."""
+        """Number of harmonics."""
         return math.floor(self.highest / self.lowest * (1.0 + 1e-12))
 
     @property
     def samples(self) -> int:
-        """Four for the shortest wave, or more."""
+        """Samples per period, at least four per period of the highest harmonic."""
         return max(4 * self.harmonics, math.ceil(self.period / _COARSEST * (1.0 - 1e-12)))
 
     def signal(self, rms: float, seed: int) -> Signal:
-        """One realisation."""
+        """Realisation of the multisine with this r.m.s. value and seed."""
         return flat_multisine(seed, rms, self.lowest, self.highest)
 
 
@@ -95,16 +95,16 @@ class NoiseExcitation:
 
     @property
     def samples(self) -> int:
-        """One for each interval."""
+        """Samples per period, one per interval."""
         return round(self.period / self.interval)
 
     @property
     def harmonics(self) -> int:
-        """Up to half the rate of its samples, without that frequency itself."""
+        """Number of harmonics below half the sampling rate."""
         return (self.samples - 1) // 2
 
     def signal(self, rms: float, seed: int) -> Signal:
-        """One realisation."""
+        """Realisation of the held noise with this r.m.s. value and seed."""
         return held_noise(seed, rms**2 * self.interval, self.interval, self.period)
 
 
@@ -121,7 +121,7 @@ class Excited:
 
     @property
     def first(self) -> int:
-        """The input that it reaches first, to which gains refer."""
+        """Number of the input with the smallest delay, the reference of gains."""
         return min((d, i) for i, d in enumerate(self.delays) if d is not None)[1]
 
     @property
@@ -130,12 +130,12 @@ class Excited:
         return 2.0 * math.pi / self.excitation.period * np.arange(1.0, self.excitation.harmonics + 1.0)
 
     def signals(self, seed: int) -> list[Signal | None]:
-        """One realisation: a signal for each input, or None."""
+        """Signal of each input in one realisation, None for an input at rest; all are equal before their delays."""
         signal = self.excitation.signal(self.rms, seed)
         return [None if delay is None else signal for delay in self.delays]
 
     def realisation(self, seed: int) -> tuple[InputTable, Array]:
-        """One along the steps of a period that is repeated, and its `power`."""
+        """Input table over one period of a realisation, and its `power`."""
         small = self.excitation.samples * len(self.delays) <= _SMALL
         return _kept(self, seed) if small else _laid_out(self, seed)
 

@@ -138,11 +138,11 @@ class ExpectedValue:
         return SampledObjective(fixed.estimate, vehicle, index)
 
     def fixed(self, realisations: int, period: int | None = None) -> ExpectedValue:
-        """The same with so many roads, whatever their scatter, of this length [s] if one is given."""
+        """Copy of the method with a fixed number of roads, and with `period` [s] as their length if given."""
         return replace(self, realisations=realisations, relative_error=None, period=period or self.period)
 
     def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
-        """What friction does to the index, to first order, on the first `count` roads (count,), and on many more.
+        """First-order change of the index by friction on the first `count` roads (count,), and on further roads.
 
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
@@ -213,7 +213,7 @@ class ExpectedValue:
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
-    """Where harmonic balance has local maxima [rad/s]; None where it does not serve."""
+    """Frequencies of the local maxima by harmonic balance [rad/s]; None if it does not apply."""
     try:
         peaks = StatisticalLinearisation().estimate(vehicle, index).peaks
     except InerterError:
@@ -223,20 +223,20 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
 
 
 def is_nonlinear(system: PiecewiseSystem, question: Question) -> bool:
-    """Whether something switches, or, where mean squares are asked for, pushes all the time."""
+    """Whether an element switches or, for mean squares, exerts a constant force."""
     lower, upper = system.mechanics.limits.T
     return bool(np.any(lower < upper) or (not question.is_peak and np.any(upper != 0.0)))
 
 
 def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:
-    """Whether the conventions make the answer another one than the norm, for linear designs too."""
+    """Whether the conventions change the value of linear designs too, so that it differs from the norm."""
     if conventions.hold is None:
         return False
     return not question.drive.is_random or drive(system, question, conventions).hold is not None
 
 
 def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> LinearProblem | None:
-    """The linear problem of the design; None if without friction a part is held by nothing."""
+    """Linear problem of the design; None if it is ill-posed without friction."""
     try:
         return linear_problem(vehicle.mechanism(), question, conventions)
     except (MechanismError, LinearSystemError):

@@ -1,4 +1,4 @@
-"""The steady state under a sine of an input: its size over all frequencies, for mechanisms that are not linear."""
+"""Periodic steady state under a sinusoidal input: gain over frequency, for nonlinear mechanisms."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _STEPPED = 1e-5  # relative error of a ratio by the time step
 
 @dataclass(frozen=True, eq=False)
 class Forced:
-    """R.m.s. of an output over that of an input A sin(omega t), once the motion repeats."""
+    """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
 
     system: PiecewiseSystem
     arrival: Arrival  # a force, or a road's displacement or velocity
@@ -42,7 +42,7 @@ class Forced:
     filter: Filter | None = None  # that the output passes through
 
     def __call__(self, omega: float) -> tuple[float, Squares]:
-        """The ratio at `omega` [rad/s], and what it is made of."""
+        """Ratio at `omega` [rad/s], and the mean squares of the steady state."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
         mechanism, arrival = self.system.mechanism, self.arrival
@@ -67,19 +67,19 @@ class Summit:
 
     @property
     def status(self) -> Status:
-        """How far to trust it."""
+        """Status of the steady state at the peak."""
         return self.found.status
 
     @property
     def errors(self) -> tuple[ErrorSource, ...]:
-        """What its height may be off by."""
+        """Error sources of the height of the peak."""
         missed = ErrorSource("search for the peak", self.missed)
         stepped = ErrorSource("time step", _STEPPED + float(self.found.jumps[0]))
         return stepped, unsettled([self.found.steady], sqrt(2.0)), missed
 
 
 def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
-    """The local maxima of the ratio near the frequencies [rad/s] at which they are expected, the highest first.
+    """Local maxima of the ratio near the expected frequencies [rad/s], the highest first.
 
     One that is expected at zero is the ratio at `lowest`.
     """
@@ -97,7 +97,7 @@ def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor)
 
 
 def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
-    """The largest ratio between two frequencies, if it is not at one of them."""
+    """Local maximum of the ratio between two frequencies; None if the search ends at one of them."""
     visited: dict[float, tuple[float, Squares]] = {}
 
     def depth(logarithm: float) -> float:
@@ -114,7 +114,7 @@ def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
 
 
 def _above(visited: Mapping[float, tuple[float, Squares]], at: float) -> float:
-    """By how much a parabola through the highest place and its neighbours is higher, twice."""
+    """Twice the rise of a parabola through the highest point and its neighbours over that point."""
     places = sorted(visited)
     i = places.index(at)
     if not 0 < i < len(places) - 1:
@@ -128,7 +128,7 @@ def _above(visited: Mapping[float, tuple[float, Squares]], at: float) -> float:
 
 
 def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
-    """About where the local maxima are [rad/s], from a grid around the `poles` [rad/s] of the linear motion.
+    """Approximate frequencies of the local maxima [rad/s], on a grid around the `poles` [rad/s] of the linear motion.
 
     Zero stands for one below the grid.
     """

@@ -66,7 +66,7 @@ def linear_model(linear: Counterpart, speeds: Array, period: float) -> LinearMod
 
 @dataclass(eq=False)
 class Runs:
-    """Power spectra of some outputs of a design, one realisation after the other as they are asked for."""
+    """Power spectra of some outputs of a design, with realisations simulated on demand."""
 
     system: PiecewiseSystem
     drive: Excited
@@ -96,7 +96,7 @@ class Runs:
         return np.asarray(np.sqrt(np.mean(self.powers, axis=0)))
 
     def missed(self, places: Sequence[int], factor: Array) -> float:
-        """What samples may miss of r.m.s. values made of squared gains times `factor` (outputs, harmonics).
+        """Relative error from sampling of r.m.s. values of squared gains times `factor` (outputs, harmonics).
 
         That of the worst realisation: what is folded onto low harmonics adds to all of them.
         """

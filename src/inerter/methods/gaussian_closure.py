@@ -1,4 +1,4 @@
-"""Statistical linearisation of dry friction: the dampers whose r.m.s. force is that of the friction, and what follows.
+"""Statistical linearisation of dry friction: equivalent dampers for a Gaussian motion, and the index with them.
 
 With a Gaussian velocity of r.m.s. sigma across it, the damper nearest to a Coulomb friction f in the mean square is
 c = sqrt(2/pi) f / sigma (Caughey 1963; Roberts and Spanos 1990), and sigma follows from c by one Lyapunov equation.
@@ -44,7 +44,7 @@ Speeds = Callable[[Array, NDArray[np.intp]], Array]
 
 @dataclass(frozen=True, eq=False)
 class Dampers:
-    """Equivalent dampers (designs, frictions) [N s/m], those that stand for a friction that sticks, and the error.
+    """Equivalent dampers (designs, frictions) [N s/m], masks of sticking frictions, and errors.
 
     `error` is the largest relative error of the force of a friction that slips; nan where the covariance was lost.
     `unlike` (designs, frictions) is what the index may be off by, relative to it, because one damper stands for a
@@ -59,7 +59,7 @@ class Dampers:
     share: Array
 
     def of(self, designs: NDArray[np.intp]) -> Dampers:
-        """Those of some designs."""
+        """Equivalent dampers of the designs of these numbers."""
         return Dampers(
             self.damping[designs], self.sticks[designs], self.error[designs], self.unlike[designs], self.share[designs]
         )
@@ -142,17 +142,17 @@ class Pattern:
 
     @cached_property
     def columns(self) -> list[int]:
-        """For each free value of the descriptor, where it stands in (values of the design, dampers)."""
+        """Position of each free value of the descriptor in (values of the design, dampers)."""
         return self.parts.order(self.index.problem.descriptor)
 
     @cached_property
     def single(self) -> tuple[CompiledQuestion, ...]:
-        """The velocity across each friction by itself."""
+        """Objectives of the r.m.s. velocity across each friction."""
         problem = self.velocities.problem
         return tuple(CompiledQuestion(problem.part(slice(i, i + 1))) for i in range(len(problem.question.outputs)))
 
     def rows(self, points: Array, damping: Array) -> Array:
-        """Rows of values for the descriptors."""
+        """Rows of values in the order of the descriptor's free values."""
         return np.ascontiguousarray(np.hstack([points, damping])[:, self.columns])
 
     def dampers(self, points: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
@@ -265,11 +265,11 @@ class GaussianClosure:
         return solved
 
     def _numbers(self, pattern: Pattern) -> list[int]:
-        """Which of all frictions those that slip in a pattern are."""
+        """Numbers, among all frictions, of those that slip in a pattern."""
         return [self.free.parts.dampers.index(name) for name in pattern.parts.dampers]
 
     def off_by(self, points: Array, solved: Solved, promise: float = PROMISE) -> Array:
-        """What the index may be off by in these designs, relative to it: the sum over all frictions.
+        """Relative error of the index (designs,) from the linearisation: sum over all frictions.
 
         Where that is more than `promise`, a friction counts only by a share of the range that the index has without it,
         with a rigid link in its place, and with any damper between: it may not matter. (The ends alone do not tell: the
@@ -295,12 +295,12 @@ class GaussianClosure:
         return np.asarray(unlike.sum(axis=1))
 
     def values(self, points: Array) -> Array:
-        """The index at each row of `points`, also where it is not to be trusted; infinite where there is none."""
+        """Index at each row of `points`, accurate or not; infinite where unknown."""
         known = self.known(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
     def known(self, points: Array, trusted: bool = True) -> Array:
-        """The index at each row of `points`; nan where it cannot be told."""
+        """Index at each row of `points`; nan where it is not available, or not accurate if `trusted`."""
         result = np.full(points.shape[0], np.nan)
         for solved in self.solve(points):
             good = solved.dampers.error <= _SETTLED
@@ -333,7 +333,7 @@ class GaussianClosure:
         return None
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Not asked for where `active` gives None."""
+        """Not implemented: `active` returns None, so the index has no components."""
         raise NotImplementedError
 
     def estimate(self) -> Estimate:
@@ -359,7 +359,7 @@ class GaussianClosure:
         return replace(result, notes=(*self.free.index.problem.descriptor.notes, *told))
 
     def _stick(self, unlike: Array) -> str:
-        """Words on those frictions that one damper represents poorly: each by itself, or all together."""
+        """Clause on the frictions that one damper represents poorly."""
         worst = np.flatnonzero(unlike > PROMISE) if np.any(unlike > PROMISE) else np.flatnonzero(unlike)
         words = " and ".join(self.free.parts.frictions[i] for i in worst)
         return f"{words} sticks for a part of the time, which"

@@ -1,4 +1,4 @@
-"""A question put to the linear model of a mechanism: which matrices, which delays, which filter, which weights."""
+"""Linear model of a mechanism for an index: matrices, delays, filters, and weights."""
 
 from __future__ import annotations
 
@@ -37,9 +37,7 @@ PROMISE = 1e-9  # relative error of a norm that is ok, beside those of what stan
 
 @dataclass(frozen=True)
 class Conventions:
-    """How the wheelbase delay is taken, which filter stands in for 1/s in the definition of tyre loads where the road
-    arrives at several axles, and for how long simulated roads are held.
-    """
+    """Conventions on the wheelbase delay, the filter in place of 1/s for tyre loads, and the hold of road inputs."""
 
     name: str
     sentence: str  # which tells them in a report
@@ -79,7 +77,7 @@ def check_conventions(name: object) -> None:
 
 @dataclass(frozen=True, eq=False)
 class LinearProblem:
-    """A question put to the linear model of a mechanism: a descriptor, and what to do with its system."""
+    """Linear problem of an index: the descriptor of the mechanism, and the evaluation of its system."""
 
     question: Question
     unfiltered: Descriptor
@@ -89,22 +87,22 @@ class LinearProblem:
 
     @cached_property
     def descriptor(self) -> Descriptor:
-        """With the filters on its outputs."""
+        """Descriptor with the filters on its outputs."""
         return filtered(self.unfiltered, self.question.filters)
 
     @cached_property
     def weights(self) -> Array:
-        """What each output's norm is multiplied by in the index."""
+        """Factor of each output's norm in the index."""
         return self.question.drive.size * np.array([abs(output.weight) for output in self.question.outputs])
 
     @property
     def delays(self) -> Array:
-        """Of each input of the descriptor [s]."""
+        """Delay of each input of the descriptor [s]."""
         return np.array([delay for *_, delay in self.arrivals])
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Of each input of the descriptor."""
+        """Source of each input of the descriptor."""
         return tuple(source for _, source, _ in self.arrivals)
 
     @cached_property
@@ -169,7 +167,7 @@ class LinearProblem:
         return self._with_errors(found, norms.error, more, unsure)
 
     def norms(self, system: LinearSystem, values: Mapping[str, float]) -> tuple[H2, float]:
-        """Norms of the outputs over the sources as they are, and the relative error of any by their densities.
+        """Norms of the outputs for the true densities of the sources, and the largest relative error from these.
 
         `system` is the one for these free values. Where norms are corrected, each source is asked of the half of the
         mechanism that it moves, which needs no states that only drift.
@@ -210,7 +208,7 @@ class LinearProblem:
     def _with_errors(
         self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = (), integral: float = 0.0
     ) -> Estimate:
-        """The estimate with what rounding, and what stands in for the excitation that is meant, make of it."""
+        """Estimate with the errors from rounding and from approximated excitations."""
         stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
         own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, rounding + _FEW),)
         if self.excesses:
@@ -220,7 +218,7 @@ class LinearProblem:
 
 
 def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
-    """The descriptor for `question`, with its sources and the filters that the conventions ask for.
+    """Linear problem for `question`, with its sources and the filters of the conventions.
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
@@ -239,7 +237,7 @@ def check_peak_gain(question: Question) -> None:
 
 
 def under(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
-    """The question with the filters that the conventions add to its own."""
+    """Index definition with the filters of the conventions added to its filters."""
     if conventions.load_filter is None:
         return question
     delays = [arrival.delay for arrival in question.arrivals(question.drive.driven(mechanism))]

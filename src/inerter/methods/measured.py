@@ -1,4 +1,4 @@
-"""What indices on a measured road may be off by: the line that stands for its spectrum, and what was not measured."""
+"""Errors of indices on a measured road: the fitted line instead of its spectrum, and unmeasured waves."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def road_errors(
 
 
 def _change_of(question: Question, norms: Array) -> Callable[[Array], float]:
-    """The relative change of the index by relative changes of its mean squares."""
+    """Function from relative changes of the mean squares to the relative change of the index."""
     weights = np.array([abs(output.weight) for output in question.outputs])
     value = float(question.combined(norms, weights))
 

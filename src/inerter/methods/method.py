@@ -1,4 +1,4 @@
-"""What every method offers, what it returns, and the functions that put a design, an index and a method together."""
+"""Interface of the methods, their estimates, and the functions that evaluate an index of a design by a method."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _TOGETHER = 64  # designs that are valued in one call where others take some too
 
 @dataclass(frozen=True)
 class Estimate:
-    """The value of an index, and how far it can be trusted.
+    """Value of an index, with its uncertainty and status.
 
     What random inputs make of it is its `standard_error`; all other errors are among `error_sources`.
     """
@@ -64,31 +64,31 @@ class Averaging(Protocol):
     """A method whose value is a mean over random inputs."""
 
     def fixed(self, realisations: int, period: int | None = None) -> Method:
-        """The same with so many random inputs, whatever their scatter, of this length [s] if one is given."""
+        """Copy of the method with a fixed number of random inputs, and with `period` [s] as their length if given."""
         ...
 
 
 @runtime_checkable
 class Controlled(Protocol):
-    """A method that knows something of its samples beforehand."""
+    """Method with control variates for its samples."""
 
     def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
-        """What is known of the first `count` samples, and of many more; None if nothing is."""
+        """Control variates of the first `count` samples, and of many more; None if there are none."""
         ...
 
 
 @runtime_checkable
 class Doubting(Protocol):
-    """A method of which many values take much longer where double precision does not suffice."""
+    """Method that is much slower where double precision does not suffice."""
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, NDArray[np.float64]]) -> float:
-        """The part of many designs for which it does not."""
+        """Share of many designs for which double precision does not suffice."""
         ...
 
 
 @runtime_checkable
 class Refusing(Protocol):
-    """A method that refuses some questions about a design, whatever its values."""
+    """Method that does not support some indices or elements, whatever the values."""
 
     def check(self, vehicle: Vehicle, index: Index) -> None:
         """Raises what `estimate` would raise before it computes anything."""
@@ -100,12 +100,12 @@ class Compiled(Protocol):
     """A method that calls compiled code."""
 
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
-        """What it calls for an estimate, or for a search: what takes longest to compile first."""
+        """Compiled functions called by an estimate, or by a search; the slowest to compile first."""
         ...
 
 
 class Sees(Enum):
-    """What a method sees of a design that is not linear, in the order of how much that is."""
+    """Nonlinearities that a method models, in ascending order."""
 
     NEITHER = auto()  # friction is left out, gaps are closed
     FRICTION = auto()  # gaps are refused
@@ -114,7 +114,7 @@ class Sees(Enum):
 
 @runtime_checkable
 class Method(Protocol):
-    """A way to get a number.
+    """Method to evaluate an index of a design.
 
     A method that files know is a frozen dataclass. Of `conventions`, `seed`, `realisations`, `relative_error` and
     `jobs`, it gets from a study those that it has as fields. Fields that are quantities (`quantity`) are keys of a
@@ -123,17 +123,17 @@ class Method(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name in study files and results."""
+        """Name of the method in study files and results."""
         ...
 
     @property
     def words(self) -> str:
-        """What its values are, to go after "Values are" in a report."""
+        """Description of the values, to follow "Values are" in a report."""
         ...
 
     @property
     def sees(self) -> Sees:
-        """Whether friction and gaps matter to it."""
+        """Nonlinearities that the method models."""
         ...
 
     @property
@@ -160,7 +160,7 @@ class Method(Protocol):
 
 
 def evaluate(vehicle: Vehicle, index: Asked, method: Method, *, executor: Executor | None = None) -> Estimate:
-    """One index of one design by one method.
+    """Estimate of one index of one design by one method.
 
     An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) does what comes apart, such as random roads.
 
@@ -227,7 +227,7 @@ def _estimated(vehicle: Vehicle, indices: Sequence[Asked], names: Sequence[str],
 
 
 def asked_of(vehicle: Vehicle, index: Asked) -> Sequence[tuple[Vehicle, Index]]:
-    """The questions that an index comes to, each of its vehicle."""
+    """Constituent indices of an index, each with its vehicle."""
     return index.asks(vehicle) if is_composed(index) else [(vehicle, index)]
 
 

@@ -1,4 +1,4 @@
-"""`Norm`: linear designs, exactly. Friction is left out and gaps are closed, and the estimate says so."""
+"""`Norm`: exact norms of the linear model, which neglects friction and treats gaps as closed, as its notes state."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a method says beside its number: text whose numbers are known apart, so that designs can be told together."""
+"""Notes of methods: text with separate numbers, so that notes of several designs can be merged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an optimiser asks of an index: its values, and where there are some, its gradients."""
+"""Objective functions of optimisers: values of an index and, if available, gradients."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ class Differentiable(Objective, Protocol):
     """An index with gradients: smooth, or the largest of smooth functions."""
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
-        """The index and its gradient at one point, where it is smooth."""
+        """Index and its gradient at one point where it is smooth."""
         ...
 
     def active(self, point: Array) -> Array | None:
-        """Where the index is the largest of many smooth functions: those that matter here; None if it is smooth."""
+        """Active components of a maximum of smooth functions, as `components` takes them; None for a smooth index."""
         ...
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Those smooth functions and their gradients (components,), (components, values)."""
+        """Values (components,) and gradients (components, values) of the components `which`."""
         ...

@@ -1,4 +1,4 @@
-"""An index of r.m.s. values over random roads: how long these must be, what they lack, and what they come to."""
+"""Index of r.m.s. values over random roads: length of the roads, out-of-band contributions, and the mean."""
 
 from __future__ import annotations
 
@@ -74,16 +74,16 @@ class OnRoads:
 
     @property
     def outputs(self) -> tuple[str, ...]:
-        """What the index is made of."""
+        """Names of the outputs of the index."""
         return tuple(output.output for output in self.question.outputs)
 
     @property
     def weights(self) -> Array:
-        """Of the outputs' r.m.s. values in the index."""
+        """Factor of each output's r.m.s. value in the index."""
         return np.array([abs(output.weight) for output in self.question.outputs])
 
     def runs(self, first: int, stop: int, pool: Executor) -> list[Ran]:
-        """The realisations `first`, ..., `stop` - 1."""
+        """Results of the realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
         return mapped(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
@@ -91,7 +91,7 @@ class OnRoads:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What the lines of a road lack: mean squares to add to those of the outputs, and how well they are known."""
+    """Contribution missing from the lines of a road: mean squares to add to the outputs', and their uncertainty."""
 
     power: Array
     unseen: float = 0.0  # share of the mean squares that may be missing, or too much
@@ -135,7 +135,7 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Re
 
 
 def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
-    """Whether a period of the motion stands for a long road, or whether that of no road would."""
+    """Whether the period is long enough for the motion, or no period would be."""
     if design.way.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
         return True
     settled = all(ran.status.ok for ran in found)
@@ -145,7 +145,7 @@ def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
 
 
 def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
-    """What the counterpart of the motion that was `found` has of the road beyond the lines of these roads.
+    """Contribution missing from the lines of these roads, by the equivalent linear model of the motion `found`.
 
     Its squared norms less its mean squares on the lines.
     """
@@ -222,7 +222,7 @@ def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array,
 
 
 def _cubic(angle: Array, there: Array) -> Array:
-    """What a line of this angle has at the angle `there`: itself, or one of its images."""
+    """Spectral amplitude at the angle `there` of a line of `angle` interpolated by cubics: itself or an image."""
     values = -6.0 * np.sin(there) / there**3 - 12.0 * (np.cos(there) - 1.0) / there**4
     slopes = (2.0 * np.cos(there) + 4.0) / there**3 - 6.0 * np.sin(there) / there**4
     near = np.abs(there) < 0.1  # where these two would cancel
@@ -243,7 +243,7 @@ def _mostly_beyond(share: float) -> Status:
 
 
 def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, pool: Executor) -> Estimate:
-    """The index over `wanted` roads, or over as many as a relative standard error asks for."""
+    """Estimate over `wanted` roads, or over as many as the relative standard error requires."""
     design, found, lacking = long_enough(design, pool)
     while True:
         estimate = _averaged(design, found, lacking)
@@ -275,7 +275,7 @@ def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
 
 
 def _errors(lacking: Rest, found: Sequence[Ran], outputs: int) -> list[ErrorSource]:
-    """What a value on such roads may be off by, sampling apart: half of what its mean squares are."""
+    """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
     jumps = together([ran.jumps[:outputs] for ran in found])
     return [
         ErrorSource("time step", _STEPPED + jumps),
@@ -286,7 +286,7 @@ def _errors(lacking: Rest, found: Sequence[Ran], outputs: int) -> list[ErrorSour
 
 
 def _with_error_reached(estimate: Estimate, relative_error: float | None) -> Estimate:
-    """The estimate, inaccurate if its standard error is more than was asked for."""
+    """Estimate with status inaccurate if its standard error exceeds the one requested."""
     error = estimate.standard_error or 0.0
     if not estimate.status.ok or relative_error is None or error <= relative_error * estimate.value:
         return estimate
@@ -295,7 +295,7 @@ def _with_error_reached(estimate: Estimate, relative_error: float | None) -> Est
 
 
 def _enough(values: Array, relative_error: float) -> int:
-    """How many realisations will do, from the scatter of those that there are."""
+    """Number of realisations expected to suffice, from the scatter of the present values."""
     scatter, mean = float(np.std(values, ddof=1)), float(np.mean(values))
     if scatter / np.sqrt(values.size) <= relative_error * mean or values.size >= MOST_ROADS:
         return values.size

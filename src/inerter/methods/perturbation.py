@@ -1,4 +1,4 @@
-"""What friction does to first order: the linear motion decides where it slips, and its force changes that motion.
+"""First-order effect of friction: the linear motion determines the sign of the friction force, which perturbs it.
 
 With the friction's force f sgn(v) of the frictionless velocity v as an input, an output y changes by dy, its mean
 square by 2 <y, dy> and a sum of weighted r.m.s. values by the sum of w <y, dy> / r.m.s.(y). This costs two Fourier
@@ -58,14 +58,14 @@ class FirstOrder:
 
     @property
     def _times(self) -> int:
-        """Of a period: a power of two."""
+        """Number of time samples per period, a power of two."""
         lines = int(self.velocities.shape[0])
         return 1 << (_TIMES * lines - 1).bit_length()
 
 
 @lru_cache(maxsize=1024)
 def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
-    """The slow lines of a realisation."""
+    """Complex amplitudes of the lowest `count` spectral lines of a realisation."""
     return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 

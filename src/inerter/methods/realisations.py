@@ -1,4 +1,4 @@
-"""Random roads laid out once, and what designs do on them: the same roads for every design."""
+"""Random roads that all designs share, and the response of a design to them."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 @dataclass(frozen=True)
 class Drive:
-    """How random sources drive a mechanism: how they arrive at each input, and for how long.
+    """Random excitation of a mechanism: input paths of each input, and duration.
 
     Each is the velocity of a road: a white force or acceleration is as much, in its own unit.
     """
@@ -48,23 +48,23 @@ class Drive:
 
     @property
     def delays(self) -> tuple[float, ...] | None:
-        """When one road reaches each road input, where that is all that moves."""
+        """Delay of the road at each road input [s]; None if the excitation is more than one road."""
         if not _one_road(self.reached, self.roads):
             return None
         return tuple(one[0].delay for one in self.reached[: self.roads])
 
     @property
     def sources(self) -> tuple[str, ...]:
-        """Their names."""
+        """Names of the sources."""
         return tuple(dict.fromkeys(arrival.source for one in self.reached for arrival in one))
 
     def signal(self, seed: int, source: int = 0) -> Harmonics:
-        """A source as a road, in one realisation, before it is held."""
+        """Realisation of a source as a road, before the hold."""
         own = seed if source == 0 else int(np.random.SeedSequence([seed, source]).generate_state(1, np.uint64)[0])
         return multisine(self.road, own, lowest=1.0 / self.period)
 
     def moved(self, seed: int) -> list[Harmonics | None]:
-        """What the inputs do in one realisation: displacements of roads, and forces."""
+        """Inputs in one realisation: displacements of roads, and forces; None for an input at rest."""
         signals = {name: self.signal(seed, i) for i, name in enumerate(self.sources)}
         return [
             self._sum(arrivals, signals, velocity=i >= self.roads) if arrivals else None
@@ -80,7 +80,7 @@ class Drive:
 
 
 def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
-    """What an arrival makes of the lines of its source [rad/s]."""
+    """Complex gain of an input path at `omega` [rad/s]."""
     passed: Any = 1.0 if arrival.filter is None else arrival.filter.response(omega)
     if arrival.excess is not None:
         passed = passed * arrival.excess.factor(omega)
@@ -96,7 +96,7 @@ def _one_road(reached: Sequence[Sequence[Arrival]], roads: int) -> bool:
 
 @dataclass(frozen=True)
 class Ran:
-    """One period of the steady state on one road."""
+    """Mean squares over one period of the steady state on one road."""
 
     power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
     status: Status
@@ -105,7 +105,7 @@ class Ran:
 
 
 def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:
-    """How `question` drives the mechanism of `system`, in realisations of the usual length or of another `period` [s].
+    """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.
     """
@@ -119,7 +119,7 @@ def drive(system: PiecewiseSystem, question: Question, conventions: Conventions,
 
 
 def table(way: Drive, seed: int) -> InputTable:
-    """One period of a realisation along the knots of an integration."""
+    """Input table over one period of a realisation."""
     return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
 
 
@@ -148,7 +148,7 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
 def run(
     system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
 ) -> Ran:
-    """One period of the steady state on the road of a realisation's seed; the first outputs pass through filters."""
+    """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
     most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))

@@ -1,4 +1,4 @@
-"""The methods that files know by their names."""
+"""Registry of the methods, by the names in files."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ DEFAULT = Norm.name  # judges the designs of a study that names no method
 
 
 def is_blind(name: str) -> bool:
-    """Whether the method sees neither friction nor gaps."""
+    """Whether the method models neither friction nor gaps."""
     return _kind(name).sees is Sees.NEITHER
 
 
 def refuses_gaps(name: str) -> bool:
-    """Whether it has no answer where something has play."""
+    """Whether the method does not support gaps."""
     return _kind(name).sees is Sees.FRICTION
 
 
@@ -39,39 +39,39 @@ def needs_amplitude(name: str) -> bool:
 
 
 def searches(name: str) -> bool:
-    """Whether optimisers can use it."""
+    """Whether the method supports optimisation."""
     return bool(_kind(name).searches)
 
 
 def words_of(name: str) -> str:
-    """What its values are, to go after "Values are"."""
+    """Description of the method's values, to follow "Values are"."""
     return str(_kind(name).words)
 
 
 def brief_words_of(name: str) -> str:
-    """What it is in a word or two, to go after "by": its `brief`, or else its name."""
+    """Method in one or two words, to follow "by": its `brief`, or else its name."""
     return str(getattr(_kind(name), "brief", name))
 
 
 def what_is_seen(name: str) -> Sees:
-    """What it sees of a design that is not linear."""
+    """Nonlinearities that the method models."""
     return Sees(_kind(name).sees)
 
 
 def averages(name: str) -> bool:
-    """Whether its values are means over random inputs, as many as it is asked for."""
+    """Whether the values of the method are means over a number of random inputs."""
     return "realisations" in _settings(_kind(name))
 
 
 def without_roads(name: str, *, has_play: bool) -> str:
-    """A quick method that sees as much as the given one, as far as it can without averaging over random inputs."""
+    """Given method unless it averages; else statistical linearisation, or the norm if blind or if `has_play`."""
     if not averages(name):
         return name
     return DEFAULT if is_blind(name) or has_play else StatisticalLinearisation.name
 
 
 def deciding(name: str, message: str) -> str:
-    """Words on the method that can decide what this one does not, to go after the message of its status."""
+    """Clause on the method that can decide an uncertain result, to follow the message of its status."""
     others = [other for other in METHODS if what_is_seen(other) is Sees.BOTH]
     if what_is_seen(name) is Sees.BOTH or not others or any(other in message for other in others):
         return ""
@@ -84,7 +84,7 @@ def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
 
 
 def with_gradients(conventions: str) -> tuple[Method, ...]:
-    """The methods whose objectives have gradients, under these conventions if they have any; first what sees most.
+    """Methods whose objectives have gradients, under these conventions; those that model most first.
 
     They are quick, and so the first look at a search of what is not.
     """
@@ -99,13 +99,13 @@ def method_settings(name: str) -> tuple[Field, ...]:
 
 
 def missing_settings(name: str, given: Container[str]) -> list[Field]:
-    """Those of its own settings that it cannot do without, and that are not `given` by their keys."""
+    """Required settings of the method whose keys are not in `given`."""
     bare = {f.name for f in dataclasses.fields(_kind(name)) if f.default is f.default_factory is dataclasses.MISSING}
     return [field for field in method_settings(name) if field.name in bare and field.key not in given]
 
 
 def make_method(name: str, shared: Mapping[str, Any], own: Mapping[str, float]) -> Method:
-    """The method of that name, with those of the `shared` settings that it has and that are not None, and its `own`."""
+    """Method of that name, with its `own` settings and those `shared` settings that it has and that are not None."""
     kind = _kind(name)
     given = {key: shared[key] for key in _settings(kind) & set(shared) if shared[key] is not None}
     given |= {field.name: own[field.key] for field in method_settings(name) if field.key in own}

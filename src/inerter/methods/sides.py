@@ -1,4 +1,4 @@
-"""One half of a mechanism in the place of the whole, where one source drives both sides alike or against each other."""
+"""Half model of a symmetric mechanism, where one source excites both sides in phase or in antiphase."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from inerter.vehicle.symmetry import alike_half, opposed_half
 
 
 def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mechanism, tuple[Arrival, ...]] | None:
-    """The half that moves as the whole does, and what arrives there; None if there is none.
+    """Half model that moves as the whole does, and its input paths; None if there is none.
 
     The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
     """
@@ -35,14 +35,14 @@ def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mech
 
 
 def _sign(one: Arrival, other: Arrival) -> float:
-    """How an arrival follows from another: 1 or -1 times it; 0 if it does not."""
+    """Sign of the ratio of two input paths, 1 or -1; 0 if they are not proportional."""
     if replace(one, input=other.input, lever=other.lever) != other or abs(one.lever) != abs(other.lever):
         return 0.0
     return 1.0 if one.lever == other.lever else -1.0
 
 
 def _by_displacement(arrival: Arrival) -> Arrival:
-    """The same by the displacement of the road, where that stays bounded: no state is then left that only it moves."""
+    """Input path by the displacement of the road where it stays bounded, so that no drifting state remains."""
     shape = arrival.filter
     if arrival.displacement or shape is None or len(shape.numerator) < 2 or shape.numerator[-1] != 0.0:
         return arrival

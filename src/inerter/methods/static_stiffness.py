@@ -1,4 +1,4 @@
-"""The static stiffness of a strut or tyre: what force holds it at a displacement, when everything has come to rest."""
+"""Static stiffness of a strut or tyre: force over displacement at rest."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class StaticStiffness:
         return []
 
     def per_output(self, split: object, vehicle: Vehicle) -> list[StaticStiffness]:
-        """Itself."""
+        """List of the index alone, as it has a single output."""
         return [self]
 
     def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
@@ -96,10 +96,10 @@ class _Stiffness:
         return float(np.broadcast_to(value, (1,))[0]), np.broadcast_to(gradient, (point.size, 1))[:, 0].copy()
 
     def active(self, point: Array) -> None:
-        """None: it is smooth."""
+        """None: the stiffness is a smooth function."""
 
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """It has none."""
+        """Not available: a static stiffness is one smooth function."""
         raise AssertionError("a static stiffness is one smooth function")
 
     def _told(self, points: Array) -> tuple[Array, Array]:

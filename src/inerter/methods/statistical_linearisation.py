@@ -1,4 +1,4 @@
-"""`StatisticalLinearisation`: dry friction as the damper that it resembles most under the motion that results."""
+"""`StatisticalLinearisation`: dry friction replaced by equivalent dampers for the resulting motion."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class StatisticalLinearisation:
         return Norm(self.conventions).estimate(vehicle, index) if closure is None else closure.estimate()
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
-        """The indices (designs, indices) at many values of the free values; nan where one cannot be told."""
+        """Indices (designs, indices) at many values of the design variables; nan where not accurate."""
         return np.column_stack([self._many(vehicle, index, points) for index in indices])
 
     def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:
@@ -83,7 +83,7 @@ class StatisticalLinearisation:
         self._closure(vehicle, index)
 
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
-        """The compiled code that it calls; a search of a design without friction calls that of `Norm`."""
+        """Compiled functions of the method; a search of a design without friction uses those of `Norm`."""
         if question.is_peak:
             return (*(kernels_of(question) if search else ()), harmonic.gains)
         return kernels_of(question)

@@ -1,4 +1,4 @@
-"""Mean squares of a periodic motion, of outputs that may pass through filters, and what samples of it lack."""
+"""Mean squares of a periodic motion, of outputs with optional filters, and their sampling error."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Squares(NamedTuple):
 
 
 def unsettled(found: Sequence[Repetition], peaks: float) -> ErrorSource:
-    """What r.m.s. values may be off by because motions have not settled for good; `peaks` are some times larger."""
+    """Error source of a periodic steady state not fully reached; `peaks` scales it from r.m.s. values."""
     return ErrorSource("periodic steady state", 3.0 * peaks * max((one.left for one in found), default=0.0))
 
 
@@ -83,7 +83,7 @@ def _none(count: int, status: Status, steady: Repetition) -> Squares:
 
 
 def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
-    """By how much each output jumps at most (elements, outputs) where one of the nonlinear elements turns.
+    """Largest jump of each output (elements, outputs) at an event of each nonlinear element.
 
     That is what a friction adds to it one way less what it adds the other way, while all others are as they are. Forces
     of gaps do not jump but by their dampers, which is left out.
@@ -109,7 +109,7 @@ def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
 
 
 def missed_by_samples(integration: Integration, outputs: Sequence[str], sizes: Array) -> Array:
-    """What samples may miss of r.m.s. values of these `sizes`, relative to them, where outputs jump between them.
+    """Relative sampling error of r.m.s. values of these `sizes` (outputs,), from jumps between samples.
 
     Of an output that passes through a filter, the size is the mean square over the r.m.s. value after a second one.
     """
@@ -117,7 +117,7 @@ def missed_by_samples(integration: Integration, outputs: Sequence[str], sizes: A
 
 
 def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
-    """By how much r.m.s. values scatter, in their units, because outputs jump between samples.
+    """Standard deviation of r.m.s. values (outputs,), in their units, from jumps between samples.
 
     A jump of J anywhere between two samples h apart moves the sum of squares by 2 y J h u with u between -1/2 and 1/2,
     independently of all others: N of them in a period T change a r.m.s. value by (h / T) sqrt(N / 12) J, as one

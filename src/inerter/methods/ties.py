@@ -1,4 +1,4 @@
-"""Which of several values is the least, where those that their accuracy cannot tell apart are equal."""
+"""Selection of the least of several values, with ties where their accuracy does not separate them."""
 
 from __future__ import annotations
 

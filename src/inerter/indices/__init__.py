@@ -1,1 +1,1 @@
-"""What is asked of a suspension."""
+"""Performance indices of a suspension, and the excitations on which they are defined."""

@@ -1,4 +1,4 @@
-"""The index of how much tyre loads vary beside what they carry at rest."""
+"""Index of the dynamic load coefficient: r.m.s. dynamic tyre load over static load."""
 
 from __future__ import annotations
 

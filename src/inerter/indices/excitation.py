@@ -1,4 +1,4 @@
-"""What drives a mechanism in an index: a road, a force, the ground, one of these through a filter, or one input alone.
+"""Excitations of a mechanism in an index: road, force, ground, each with an optional filter, or a single input.
 
 An excitation says which mechanism it drives, and how its sources, independent white noises of one intensity, arrive at
 the inputs of that mechanism. Methods know no more of it than that, so that a new one is a class with a few lines.
@@ -26,7 +26,7 @@ _VELOCITY, _ACCELERATION = "m/s", "m/s^2"
 
 
 class Excitation(Protocol):
-    """What drives a mechanism."""
+    """Excitation of a mechanism by one or more sources."""
 
     @property
     def size(self) -> float:
@@ -40,15 +40,15 @@ class Excitation(Protocol):
 
     @property
     def is_random(self) -> bool:
-        """Whether its sources are white noises; else it is one input, of which gains are asked."""
+        """Whether the sources are white noises; else the excitation is one input, for gains."""
         ...
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The mechanism that it drives: the same, or the same seen from ground that moves."""
+        """Mechanism as excited: unchanged, reduced by symmetry, or in coordinates relative to moving ground."""
         ...
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """How its sources reach the inputs; raises `PerformanceIndexError` if the mechanism has none for it."""
+        """Input paths of the sources; raises `PerformanceIndexError` if the mechanism has none for it."""
         ...
 
 
@@ -66,11 +66,11 @@ class RoadVelocity:
         return self.road.velocity_intensity
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same; where both tracks are alike with both sides on one, and one half of it if both sides are alike."""
+        """Mechanism on one track, halved if symmetric, without a coherence; unchanged with one."""
         return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at each road input; with a coherence two, from the mean of the tracks and half of their difference."""
+        """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
         if self.road.coherence is not None and any(r.track for r in mechanism.roads):
@@ -119,11 +119,11 @@ class WhiteForce:
         return math.sqrt(self.intensity)
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same."""
+        """Mechanism as given."""
         return mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at the force."""
+        """Input path at the force."""
         return (Arrival(_force(mechanism, self.name), self.name),)
 
 
@@ -150,11 +150,11 @@ class GroundAcceleration:
         return math.sqrt(self.intensity)
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same seen from the ground."""
+        """Mechanism in coordinates relative to the ground."""
         return mechanism.on_moving_ground()
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at all masses together."""
+        """Input path at the ground acceleration, which acts on all masses."""
         if all(coordinate.angle for coordinate in mechanism.coordinates):
             raise PerformanceIndexError("Ground acceleration acts on masses, and this mechanism has none.")
         return (Arrival(GROUND_ACCELERATION, "ground"),)
@@ -184,17 +184,17 @@ class Shaped:
 
     @property
     def size(self) -> float:
-        """That of the sources."""
+        """Root of the two-sided spectral density of each source, before the filter."""
         return self._of.size
 
     @property
     def unit(self) -> str:
-        """That of the sources."""
+        """Unit of a source, before the filter."""
         return self._of.unit
 
     @property
     def is_random(self) -> bool:
-        """It is."""
+        """True: only random excitations can be filtered."""
         return True
 
     @property
@@ -202,11 +202,11 @@ class Shaped:
         return as_excitation(self.excitation, "A shaping filter")
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """As what is shaped."""
+        """Mechanism as excited by the unfiltered excitation."""
         return self._of.driven(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """As what is shaped, each through the filter behind its own."""
+        """Input paths of the unfiltered excitation, each with the filter in series after its own."""
         shape = as_filter(self.filter)
         assert shape is not None
         return tuple(
@@ -214,13 +214,13 @@ class Shaped:
         )
 
     def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
-        """As those of what is shaped."""
+        """Error sources of approximations in the unfiltered excitation."""
         return stand_ins_of(self._of, mechanism)
 
 
 @dataclass(frozen=True)
 class OneInput:
-    """One input alone, of which gains are asked: a force, a road's displacement, or `<road>_velocity`."""
+    """Single input, for gains: a force, a road's displacement, or `<road>_velocity`."""
 
     name: str
     size = 1.0
@@ -228,11 +228,11 @@ class OneInput:
     is_random = False
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """The same."""
+        """Mechanism as given."""
         return mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """One at the input."""
+        """Input path at the input."""
         for road in mechanism.roads:
             if self.name == f"{road.name}_velocity":
                 return (Arrival(road.name, self.name),)
@@ -274,7 +274,7 @@ def road_of(excitation: Excitation) -> Any:
 
 
 def stand_ins_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
-    """Errors of r.m.s. values by what stands in for the excitation that is meant, such as a filter for a coherence.
+    """Error sources of r.m.s. values from approximations of the excitation, such as a filter for a coherence.
 
     An excitation with such errors has a method `stand_ins(mechanism)` of them.
     """

@@ -25,7 +25,7 @@ _BUTTERWORTH = math.sqrt(0.5)
 
 @dataclass(frozen=True)
 class Weighting:
-    """The parameters of a weighting: frequencies [Hz] and quality factors, and what it is for."""
+    """Parameters of a weighting: frequencies [Hz], quality factors, and purpose."""
 
     name: str
     purpose: str
@@ -35,7 +35,7 @@ class Weighting:
 
     @property
     def sections(self) -> tuple[Filter, ...]:
-        """Filters of second order, one behind the other, each with a gain of one where it passes."""
+        """Second-order filters in series, each with unit gain in its pass band."""
         f1, f2 = map(_rate, self.band)
         found = [
             Filter((1.0, 0.0, 0.0), (1.0, f1 / _BUTTERWORTH, f1**2)),
@@ -72,7 +72,7 @@ ROTATIONS = {"roll": 0.63, "pitch": 0.4}  # [m/rad] by what rotations of a seat 
 
 
 def check_weighting(name: object) -> str:
-    """`name`; raises `PerformanceIndexError` unless there is a weighting of this name."""
+    """Name of a weighting, as given; raises `PerformanceIndexError` unless there is a weighting of this name."""
     if not isinstance(name, str) or name not in WEIGHTINGS:
         raise PerformanceIndexError(
             f"There is no weighting {name!r} (of ISO 2631-1 there are: {', '.join(WEIGHTINGS)})."
@@ -105,7 +105,7 @@ def iso2631(name: str) -> LinearSystem:
 
 
 def _blocks(sections: tuple[Filter, ...]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-    """A, B, C, D of sections one behind the other, each in the units of its own frequency."""
+    """Matrices A, B, C, D of second-order sections in series, each in the units of its own frequency."""
     A, B, C, D = np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.eye(1)
     for one in sections:
         a, b, c, d, rate = _companion(one)
@@ -115,7 +115,7 @@ def _blocks(sections: tuple[Filter, ...]) -> tuple[Matrix, Matrix, Matrix, Matri
 
 
 def _companion(one: Filter) -> tuple[Matrix, Matrix, Matrix, Matrix, float]:
-    """A, B, C, D of a filter of second order over its own frequency, and that [rad/s]."""
+    """Matrices A, B, C, D of a second-order filter in units of its frequency, and the frequency [rad/s]."""
     rate, top, bottom = (np.asarray(part, dtype=float) for part in one.scaled)
     a = np.array([[0.0, 1.0], -bottom[:2] / bottom[2]])
     d = top[2] / bottom[2]

@@ -1,4 +1,4 @@
-"""A measured road as what drives an index: white velocity through a filter that gives it the measured waviness."""
+"""Measured road as an excitation: white velocity through a filter with the measured waviness."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _SLOPES = (0.0, 4.0)  # of wavinesses that a filter of this kind can have, witho
 
 @dataclass(frozen=True)
 class MeasuredRoad:
-    """A road with a waviness of its own between two wavenumbers, as an excitation; at another speed it is the same.
+    """Road with fitted waviness between two spatial frequencies, as an excitation; valid at any speed.
 
     `road` is the one of waviness 2 that has the same density at 0.1 cycle/m.
     """
@@ -40,27 +40,27 @@ class MeasuredRoad:
 
     @property
     def shape(self) -> RoadShape:
-        """How the measured density lies about the line, or how far that goes."""
+        """Ratio of the measured density to the fitted one over spatial frequency, or the fitted range alone."""
         return self.road.shape or RoadShape((self.lowest, self.highest), (1.0, 1.0))
 
     @property
     def speed(self) -> float:
-        """Of the vehicle on it [m/s]."""
+        """Vehicle speed [m/s]."""
         return self.road.speed
 
     @property
     def filter(self) -> Filter:
-        """What gives the white velocity of the road its waviness, at its speed."""
+        """Filter that gives the white velocity of the road its waviness, at the vehicle speed."""
         return _of_waviness(self.waviness, self.lowest, self.highest, self.road.speed)
 
     @property
     def size(self) -> float:
-        """That of the road."""
+        """Root of the two-sided spectral density of the white velocity [m/s per root of Hz]."""
         return self._shaped.size
 
     @property
     def unit(self) -> str:
-        """That of the road."""
+        """Unit of the source."""
         return self._shaped.unit
 
     @property
@@ -68,15 +68,15 @@ class MeasuredRoad:
         return Shaped(self.road, self.filter)
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
-        """As the road does."""
+        """Mechanism as excited by a road."""
         return self._shaped.driven(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """As those of the road, each through the filter."""
+        """Input paths of a road, each with the filter."""
         return self._shaped.arrivals(mechanism)
 
     def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
-        """Those of the road, and that of the filter, whose density deviates from the line by `DEVIATION` at most."""
+        """Error sources of the road, and of the filter, whose density deviates from the line by at most `DEVIATION`."""
         return *stand_ins_of(self._shaped, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
 
 

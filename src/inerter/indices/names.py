@@ -1,4 +1,4 @@
-"""What files call indices: by their symbols, such as J1, or by words, such as ride-comfort."""
+"""Names of indices in files: symbols, such as J1, or words, such as ride-comfort."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an index is, and the question that it puts to a mechanism: outputs, filters, how they combine, excitation.
+"""Indices and their definition for a mechanism: outputs, filters, combination, excitation.
 
 A method reads a `Question` and never asks which index it came from.
 """
@@ -25,7 +25,7 @@ Given = Filter | LinearSystem | None
 
 
 class Combination(Enum):
-    """How the outputs make one number."""
+    """Combination of the outputs into one number."""
 
     SUM_OF_RMS = auto()  # r.m.s. values of the weighted outputs, added up
     ROOT_OF_SQUARES = auto()  # the root of the sum of their squares
@@ -34,7 +34,7 @@ class Combination(Enum):
 
 @dataclass(frozen=True)
 class Question:
-    """An index put to one mechanism.
+    """Index definition for one mechanism.
 
     A filter is a `Filter` or a `LinearSystem` with one input and one output.
 
@@ -64,38 +64,38 @@ class Question:
 
     @property
     def filters(self) -> tuple[Filter | None, ...]:
-        """Of each output."""
+        """Filter of each output, None without one."""
         return cast(tuple[Filter | None, ...], self.filter)
 
     @property
     def drive(self) -> Excitation:
-        """The excitation."""
+        """Excitation of the mechanism."""
         return cast(Excitation, self.excitation)
 
     @property
     def is_peak(self) -> bool:
-        """Whether it asks for a peak gain; else for r.m.s. values."""
+        """Whether the index is a peak gain; else it is made of r.m.s. values."""
         return self.combination is Combination.PEAK_GAIN
 
     def combined(self, rms: Array, weights: Array) -> Array:
-        """What r.m.s. values (..., outputs) make together, with these weights."""
+        """Index from r.m.s. values (..., outputs) and weights (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
             return np.asarray(np.sqrt(rms**2 @ weights**2))
         return np.asarray(rms @ weights)
 
     def slopes(self, rms: Array, weights: Array) -> Array:
-        """The derivative of that over each of the r.m.s. values (outputs,)."""
+        """Derivatives of the combined index with respect to the r.m.s. values (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
             return np.asarray(weights**2 * rms / max(float(self.combined(rms, weights)), 1e-300))
         return weights
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        """How the sources reach the inputs of the mechanism that is driven, in the order in which they do."""
+        """Input paths of the excitation in the order of their delays; `mechanism` is the excited one."""
         return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
 
 
 class Index(Protocol):
-    """An index: a symbol, a title, a unit, and the question that it is for a given mechanism."""
+    """Index: symbol, title, unit, and its definition for a given mechanism."""
 
     @property
     def symbol(self) -> str:
@@ -114,42 +114,42 @@ class Index(Protocol):
 
     @property
     def response(self) -> str:
-        """What its frequency response is, in words."""
+        """Frequency response of the index, in words."""
         ...
 
     def question(self, mechanism: Mechanism) -> Question:
-        """What it asks of `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
+        """Definition for `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
         ...
 
 
 @dataclass(frozen=True)
 class OfIndex:
-    """What is made of an index: it has that one's names and unit, but what it says otherwise."""
+    """Base of composed indices with the symbol, unit and frequency response of one index."""
 
     index: Any
 
     @property
     def symbol(self) -> str:
-        """That of the index."""
+        """Symbol of the index."""
         return str(self.index.symbol)
 
     @property
     def unit(self) -> str:
-        """That of the index."""
+        """Unit of the index."""
         return str(self.index.unit)
 
     @property
     def response(self) -> str:
-        """That of the index."""
+        """Frequency response of the index, in words."""
         return str(self.index.response)
 
 
 class OnRoad(Index, Protocol):
-    """An index that is asked on a road."""
+    """Index with a road or random excitation as an argument."""
 
     @property
     def road(self) -> Road | Excitation:
-        """The road that all wheels pass, or what is random in its place."""
+        """Road at all wheels, or a random excitation in its place."""
         ...
 
 
@@ -161,7 +161,7 @@ def on_road(
     filter: Given | tuple[Given, ...] = None,
     combination: Combination = Combination.SUM_OF_RMS,
 ) -> Question:
-    """The question of an index of r.m.s. values on a road, which are added up if nothing else is said.
+    """Definition of an index of r.m.s. values on a road; the values are summed by default.
 
     Raises `PerformanceIndexError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
     """

@@ -52,7 +52,7 @@ _EXCITED = Formed(
 
 @made_of_rows
 def index_settings() -> dict[str, Field]:
-    """The settings of all indices, by their keys; indices that have the same key share it.
+    """Settings of all indices by key; indices with the same key share the setting.
 
     Raises `RowError` if two of them have it in unlike units.
     """
@@ -73,7 +73,7 @@ def index_choices(symbol: str) -> tuple[TextChoice, ...]:
 
 
 def index_forms(symbol: str) -> tuple[Formed, ...]:
-    """The settings of an index that have a form of their own; one that is `needed` must be given.
+    """Settings of an index that have value types other than quantities and texts; a `needed` one is required.
 
     An index on a road has its excitation among them, which is the road if nothing else is given.
     """
@@ -91,13 +91,13 @@ def needed_settings(symbol: str) -> tuple[TextChoice | Formed, ...]:
 
 
 def amplitude_of(symbol: str) -> Field | Formed | None:
-    """The setting of an index that is the amplitude of its sinusoidal input; None if it has none."""
+    """Setting of an index that is the amplitude of its sinusoidal input; None if the index has none."""
     stated: list[Field | Formed] = [*fields_of(INDICES[symbol]), *index_forms(symbol)]
     return next((one for one in stated if one.name == _AMPLITUDE), None)
 
 
 def excitation_of(symbol: str) -> Formed | None:
-    """The setting of an index that is its excitation, the road if it is not given; None if it has none."""
+    """Setting of an index that is its excitation, by default the road; None if the index has none."""
     return next((one for one in index_forms(symbol) if one.form == _EXCITATION), None)
 
 

@@ -58,7 +58,7 @@ class RideComfort:
         return on_road(self, mechanism, outputs, where, filters, Combination.ROOT_OF_SQUARES)
 
     def _felt(self, mechanism: Mechanism, output: Weighted) -> tuple[Weighted, Filter] | None:
-        """An acceleration as it is felt, with the filter that it passes; None if it does not count."""
+        """Acceleration with its factor in ISO 2631-1 and its weighting filter; None if the standard ignores it."""
         assert self.weighting is not None
         moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)
         if moving is None:
@@ -74,7 +74,7 @@ class RideComfort:
 
 
 def _lever(rotating: Coordinate) -> float:
-    """What the standard multiplies a rotation by [m/rad]."""
+    """Multiplying factor of ISO 2631-1 for a rotation [m/rad]."""
     if rotating.name not in ROTATIONS:
         raise PerformanceIndexError(
             f"ISO 2631-1 weighs pitch and roll, and does not know the rotation {rotating.name!r}. Name the coordinate "

@@ -1,4 +1,4 @@
-"""What people feel of a motion that is known over time: the weighted values of ISO 2631-1."""
+"""Frequency-weighted accelerations over time, and the values of ISO 2631-1 for them."""
 
 from __future__ import annotations
 

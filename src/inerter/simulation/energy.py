@@ -15,7 +15,7 @@ Matrix = NDArray[np.float64]
 
 
 def energy_of(integration: Integration) -> Energy:
-    """Where the energy went since the integration began."""
+    """Energy balance since the start of the integration [J]."""
     system, table = integration.system, integration.table
     names = [*(r.name for r in system.mechanism.roads), *(f.name for f in system.mechanism.forces)]
     sums = integration.motion.energy

@@ -54,7 +54,7 @@ _GAUSS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 @dataclass
 class Integration:
-    """One integration under way: the modes met so far, the state now and what has been recorded."""
+    """State of an event-driven integration: contact states reached so far, motion, and recorded samples."""
 
     system: PiecewiseSystem
     table: InputTable
@@ -73,7 +73,7 @@ class Integration:
     warning: Status = OK  # of a run that went to its end
 
     def advance(self, stop: int) -> None:
-        """Integrate up to knot `stop`, or until something is wrong, which `status` then tells.
+        """Integrate up to knot `stop`, or until an error occurs, which `status` then states.
 
         Raises `CancelledError` in a thread of `threads` whose work is not wanted any more.
         """
@@ -121,7 +121,7 @@ class Integration:
 
     @property
     def events(self) -> int:
-        """How many there were."""
+        """Number of events."""
         return int(self.motion.place["events"][0])
 
     @property
@@ -136,7 +136,7 @@ class Integration:
 
     @property
     def ending(self) -> Ending:
-        """What to go on with."""
+        """Final contact state and scales, from which a further simulation continues."""
         mode = self.modes.state[self.motion.place["mode"][0]]
         scale = np.maximum(self.motion.scale, np.abs(self.state))
         return Ending(self.system.mechanism, tuple(mode.tolist()), scale)
@@ -148,7 +148,7 @@ class Integration:
 
     @property
     def seen(self) -> slice:
-        """Rows of the maps that hold the state as the mode sees it."""
+        """Rows of the maps with the state after its projection onto the mode."""
         return slice(self.mechanics.rows.seen, self.mechanics.rows.seen + self.system.order)
 
     @property
@@ -175,7 +175,7 @@ class Integration:
         return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
 
     def _too_stiff(self) -> str:
-        """Which elements relax too fast for the step, by the power that they take in the fastest motion of the mode."""
+        """Message on the elements that relax too fast for the step, by their power in the fastest motion."""
         n, na, branches = self.system.order, self.system.motions[0].shape[1], self.system.graph.branches
         maps = self.modes.maps[self.motion.place["mode"][0]]
         poles, motions = np.linalg.eig(maps[:n, :n])
@@ -202,7 +202,7 @@ class Integration:
 
 
 def _code(states: NDArray[np.int64]) -> int:
-    """Number of a combination of states of the elements, among all that there are."""
+    """Number of a combination of states of the elements, in base 3."""
     code = 0
     for state in states.tolist():
         code = 3 * code + state + 1
@@ -375,7 +375,7 @@ def _account(system: PiecewiseSystem, wanted: bool) -> Account:
 
 
 def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
-    """Which of the knot numbers matter: none of an input at rest, and of a road most often not its height."""
+    """Numbers of the knot values in use: none of an input at rest, and heights of a road only where needed."""
     n, roads = system.order, len(system.mechanism.roads)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     mechanics = system.mechanics

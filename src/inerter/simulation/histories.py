@@ -1,4 +1,4 @@
-"""Many histories: each run's outputs over time, in a file of its own that the process which made it writes."""
+"""Simulation of many runs with their outputs over time, each written to a separate file by its worker process."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _write(names: Sequence[str], same: dict[str, Any], item: tuple[Vehicle, dict
 
 
 def _empty(folder: str | Path) -> Path:
-    """The folder by its whole path, made if it is not there."""
+    """Absolute path of an empty folder, created if missing; raises `SimulationError` if the folder holds a file."""
     place = Path(folder).resolve()
     try:
         place.mkdir(parents=True, exist_ok=True)

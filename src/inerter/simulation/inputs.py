@@ -53,7 +53,7 @@ class InputTable:
 
 
 class Driven(TypedDict, total=False):
-    """What drives a run, and from where, as keywords of `simulate`."""
+    """Keywords of `simulate` for the excitation and the initial state."""
 
     road: Signal | Mapping[str, Signal] | None
     forces: Signal | Mapping[str, Signal] | None
@@ -63,7 +63,7 @@ class Driven(TypedDict, total=False):
 
 
 class DrivenMany(TypedDict, total=False):
-    """What drives the runs of `simulate_many`, as keywords: the j-th of each sequence drives the j-th run.
+    """Keywords of `simulate_many` for the excitation: the j-th entry of each sequence excites the j-th run.
 
     All have one speed and one initial state.
     """
@@ -235,7 +235,7 @@ def tabulate(
 
 
 def parts_of(interval: float, delays: Sequence[float]) -> int:
-    """Into how many steps to part an interval so that all delays are whole numbers of them; one if 20 do not do.
+    """Number of steps per interval for which all delays are whole numbers of steps; 1 if none up to 20 suffices.
 
     Signals that are held for `interval` then jump where steps join, which is much faster than between.
     """
@@ -258,7 +258,7 @@ def just_before(signals: Sequence[Signal | None], delays: Sequence[float], time:
 
 
 def _breaks(signal: Signal, delay: float, first: float, last: float, step: float, joined: bool) -> Matrix:
-    """The times after `first` (`joined`: from it on) and up to `last`, included, at which a delayed signal breaks."""
+    """Times [s] at which a delayed signal breaks: after `first` (from `first` if `joined`), up to `last`, included."""
     begin = first - 0.5 * step if joined else first
     times = signal.breaks(begin - delay, last - delay + 0.5 * step) + delay
     return times[(times >= first - _SAME * step) & (times <= last + _SAME * step)]

@@ -1,4 +1,4 @@
-"""From an integration to the trajectory that its user sees."""
+"""Trajectory of an integration: outputs and events from its recorded samples."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def trajectory_of(integration: Integration, steady: Repetition | None, label: st
 
 
 def _named(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
-    """For each friction and gap of the kernels the elements that it stands for: their labels, and names of its states.
+    """Labels and state names of the elements of each friction and gap of the kernels.
 
     A friction whose ends are turned slips down when the others slip up.
     """

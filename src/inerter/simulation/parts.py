@@ -41,12 +41,12 @@ class Reaction:
 
     @property
     def even(self) -> bool:
-        """Whether it is a friction of one size in both directions."""
+        """Whether the reaction is a friction with equal limits in both directions."""
         return not self.gap and -self.lower == self.upper
 
     @property
     def acts(self) -> bool:
-        """Whether it has play, or can stick."""
+        """Whether the limits differ: a gap with backlash, or a friction that can stick."""
         return self.lower < self.upper
 
 
@@ -142,7 +142,7 @@ def _stack(rows: tuple[Branch, ...] | tuple[Reaction, ...], nodes: int, roads: i
 
 
 def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
-    """One for each gap, and one for each set of even frictions between the same ends; none for a friction of zero."""
+    """Reactions: one for each gap, and one for all even frictions between the same ends; zero frictions have none."""
     found: list[Reaction] = []
     for i, branch in enumerate(branches):
         if branch.element.switch is None:
@@ -190,7 +190,7 @@ def check_gaps(parts: Parts) -> None:
 
 
 def unit_rows(rows: Matrix) -> Matrix:
-    """Rows of length 1; empty ones stay so."""
+    """Rows scaled to length 1; zero rows are unchanged."""
     length = np.linalg.norm(rows, axis=1, keepdims=True)
     return np.asarray(rows / np.where(length > 0.0, length, 1.0))
 

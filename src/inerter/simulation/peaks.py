@@ -50,7 +50,7 @@ def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterat
 
 
 def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
-    """What to say of the spans of one tyre."""
+    """Sentence on the intervals of wheel lift-off of one tyre."""
     count, total = len(found), sum(one.end - one.begin for one in found)
     times = "once" if count == 1 else f"{count} times, {total:.3g} s together"
     return (
@@ -61,5 +61,5 @@ def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
 
 
 def _crossing(time: Matrix, over: Matrix, i: int) -> float:
-    """When a line between the samples i and i + 1 passes zero."""
+    """Time [s] at which linear interpolation between the samples i and i + 1 is zero."""
     return float(time[i] + (time[i + 1] - time[i]) * over[i] / (over[i] - over[i + 1]))

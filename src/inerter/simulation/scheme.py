@@ -35,7 +35,7 @@ CALM = 0.03  # how fast a node that springs alone hold returns to balance: 1 is 
 
 @dataclass(frozen=True)
 class StepPlaces:
-    """Where the numbers of a step stand: first what it knows at its start, then what it finds."""
+    """Positions of the quantities of a step in its vector: known at its start, then unknown."""
 
     d: slice  # displacements [m]
     p: slice  # momenta [N s]
@@ -51,7 +51,7 @@ class StepPlaces:
 
     @property
     def inputs(self) -> slice:
-        """What a step is given: roads, growths, mean forces, rates at both ends."""
+        """Slice of the inputs of a step: roads, increments, mean forces, rates at both ends."""
         return slice(self.z.start, self.rate1.stop)
 
 
@@ -185,7 +185,7 @@ def _reaction_matrix(parts: Parts, inverse: Matrix, loose: Matrix) -> Matrix:
 
 
 def _aims(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix, Matrix]:
-    """At which mean rate a friction sticks and a gap is in its middle; combinations Z of reactions, and theirs.
+    """Mean rates for sticking frictions and for gaps in mid-position, combinations Z of reactions, and their rates.
 
     A friction whose rate inertia carries sticks when the rate at the end of the step is zero: the mean is then half
     the rate at the start. Others stick when the mean is zero, unless inertia carries a combination of several, as in
@@ -231,7 +231,7 @@ def _observed(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matr
 
 
 def _law(parts: Parts, loose: Matrix, h: float) -> Matrix:
-    """Kind and limits of each reaction; a gap's as the rates at which it is crossed from zero in one step."""
+    """Kind and limits of each reaction; those of a gap are rates that close it from zero in one step."""
     law = np.zeros((ROWS, len(parts.reactions) + loose.shape[1]))
     law[KIND], law[HELD] = TIED, -1.0
     for i, reaction in enumerate(parts.reactions):
@@ -244,6 +244,6 @@ def _law(parts: Parts, loose: Matrix, h: float) -> Matrix:
 
 
 def _friction(reaction: Reaction) -> float:
-    """The larger of the two forces of a friction, if it is finite; zero for a gap."""
+    """Largest finite limit of a friction in size [N]; zero for a gap."""
     forces = [abs(force) for force in (reaction.lower, reaction.upper) if isfinite(force)]
     return 0.0 if reaction.gap else max(forces, default=0.0)

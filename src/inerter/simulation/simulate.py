@@ -36,7 +36,7 @@ _REPORTS = 100  # of progress
 
 @dataclass(frozen=True)
 class RunSettings:
-    """How `simulate` is to integrate: its keywords of the same names."""
+    """Integration settings, as the keywords of `simulate`."""
 
     duration: float | None = None  # [s]
     step: float = 2e-4  # [s]
@@ -58,7 +58,7 @@ class _Plan:
 
     @property
     def is_periodic(self) -> bool:
-        """Whether the steady state is asked for."""
+        """Whether the periodic steady state is requested."""
         return isinstance(self.initial, str) and self.initial == "periodic"
 
     @property
@@ -154,7 +154,7 @@ def _plan(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> _Plan:
 
 
 def _length(duration: float | None, period: float | None, periodic: bool) -> float:
-    """How long to simulate: `duration`, or a period where that is all there is to see."""
+    """Simulated time [s]: `duration`, or one period by default."""
     if duration is None:
         assert period is not None
         return period

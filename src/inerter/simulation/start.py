@@ -1,4 +1,4 @@
-"""Where a simulation starts: given, at the end of another one, or at rest."""
+"""Initial state of a simulation: given, at the end of another run, or at rest."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
 
 
 def ending_of(initial: Initial) -> Ending | None:
-    """How the event-driven run ended that this one goes on from, if there is one and it tells."""
+    """Final contact state of the event-driven run from which this one continues; None if there is none."""
     ending = initial._ending if isinstance(initial, Trajectory) else None
     return ending if isinstance(ending, Ending) else None
 

@@ -27,7 +27,7 @@ _ROUNDING = 1e-13
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """Where everything is at rest; friction carries nothing, or as little as it can."""
+    """Static equilibrium, in which friction carries no force, or the least possible."""
 
     elongation: Matrix  # (branches,) of springs and gaps [m]; zero for others
     displacement: Matrix  # (nodes,) [m]
@@ -46,7 +46,7 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilib
     ways = [[side for side in (0, 1, -1) if not side or np.isfinite(_end(parts, int(i), side))] for i in loose]
 
     def closed_and_far(sides: tuple[int, ...]) -> tuple[int, float]:
-        """How many gaps are closed, and by how much further out they are than at their other ends."""
+        """Number of closed gaps, and the sum by which their elongations exceed those at the nearer ends."""
         ends = [(abs(_end(parts, int(i), side)), parts.ends[i]) for i, side in zip(loose, sides, strict=True) if side]
         return len(ends), sum(at - np.abs(both).min() for at, both in ends)
 
@@ -104,12 +104,12 @@ def own_forces(system: PiecewiseSystem) -> Matrix:
 
 
 def _end(parts: _Parts, gap: int, side: int) -> float:
-    """Elongation of a gap at one of its ends; of one without play, that which it has."""
+    """Elongation of a gap at its upper (`side` >= 0) or lower end [m]."""
     return float(parts.ends[gap, 0 if side < 0 else 1])
 
 
 def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
-    """The equilibrium with these gaps, and no others, at their upper (1) or lower (-1) ends; None if there is none."""
+    """Equilibrium with exactly these gaps at their upper (1) or lower (-1) ends; None if there is none."""
     rigid = [i for i in parts.gaps if i in closed or not parts.ends[i, 0] < parts.ends[i, 1]]
     held, open_ = [*parts.springs, *rigid], [i for i in parts.gaps if i not in rigid]
     elongation = np.zeros(parts.offset.size)
@@ -139,7 +139,7 @@ def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
 
 
 def _forces(parts: _Parts, held: list[int], load: Matrix, given: Matrix) -> Matrix | None:
-    """Forces in the held branches that balance `load`, where their strains and `given` elongations fit together.
+    """Forces in the held branches that balance `load`, with strains compatible with `given`; None if there are none.
 
     The stiffest branches carry the load; each other one closes a loop with them, around which a force is in balance.
     """

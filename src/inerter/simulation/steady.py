@@ -47,7 +47,7 @@ def common_period(signals: Sequence[Signal | None]) -> float:
 
 
 def repeating(table: InputTable) -> InputTable:
-    """The same period with its own end before it, so that inputs may jump where it begins anew."""
+    """Table of one period preceded by its own end, so that inputs may jump where the period starts again."""
     before, slope = table.value_before.copy(), table.slope_before.copy()
     before[0], slope[0] = before[-1], slope[-1]
     special = table.special

@@ -26,7 +26,7 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Stepped:
-    """How a run by time stepping ended, for another one of the same mechanism."""
+    """Final state of a run by time stepping, from which another run of the same mechanism continues."""
 
     mechanism: Mechanism
     stop: Stop
@@ -84,7 +84,7 @@ def _table(
     duration: float,
     step: float,
 ) -> StepTable:
-    """Roads and forces at every step; what has no signal stays at zero."""
+    """Roads and forces at every step; inputs without a signal are zero."""
     count = whole_steps(duration, step)
     check_steps(signals, step, begin + duration)
     value, slope = np.zeros((2, len(signals), count + 1))

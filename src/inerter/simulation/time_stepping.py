@@ -68,7 +68,7 @@ class Start:
 
 @dataclass(frozen=True, eq=False)
 class Stop:
-    """Where a march ended, as the next one takes it: more than motions of nodes tell.
+    """Final state of a run by time stepping, from which the next one continues.
 
     Displacements of massless nodes, momenta, elongations where all displacements are zero, and what reactions did.
     """
@@ -153,7 +153,7 @@ def _offsets(parts: Parts, table: StepTable, start: Start) -> Matrix:
 
 
 def _initial(parts: Parts, scheme: Scheme, table: StepTable, start: Start | Stop, offsets: Matrix) -> Matrix:
-    """What the first step knows: displacements, momenta and inputs, and a one."""
+    """Vector of the first step's known quantities: displacements, momenta, inputs, and a one."""
     at, inertia = scheme.at, parts.inertia
     known = np.zeros(at.total)
     known[at.inputs] = _inputs(table, 0, 1)[0]
@@ -202,7 +202,7 @@ def _touching(parts: Parts, elongation: Matrix) -> Matrix:
 
 
 def _inputs(table: StepTable, first: int, last: int) -> Matrix:
-    """What steps `first` to `last` - 1 are given, one row each: roads, growths, mean forces, rates at both ends."""
+    """Inputs of the steps `first` to `last` - 1 (steps, inputs): roads, increments, mean forces, rates at both ends."""
     h = float(table.time[-1] - table.time[0]) / (table.time.size - 1)
     z0, z1 = table.road[:, first:last], table.road[:, first + 1 : last + 1]
     rates = {
@@ -223,7 +223,7 @@ def _inputs(table: StepTable, first: int, last: int) -> Matrix:
 
 
 def _march(scheme: Scheme, table: StepTable, known: Matrix, law: Matrix, every: int) -> tuple[Matrix, int, int]:
-    """All samples, how the march ended, and the step that it reached; `known` and `law` are then those of the end."""
+    """Samples, the code of the end of the march, and the step reached; updates `known` and `law` in place."""
     steps, count, shared = table.time.size - 1, scheme.G.shape[0], sum(scheme.Z.shape)
     samples = np.zeros((steps // every + 1, scheme.starts.shape[0]))
     scratch = Scratch(

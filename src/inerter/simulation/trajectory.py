@@ -38,7 +38,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Energy:
-    """Where the energy went [J]: what the inputs put in is stored, or dissipated in dampers or in friction."""
+    """Energy balance [J]: work of the inputs, change in stored energy, and dissipation in dampers and friction."""
 
     inputs: Mapping[str, float]  # work of each road and force
     stored: float  # gained by masses, inerters and springs
@@ -52,7 +52,7 @@ class Energy:
 
     @property
     def residual(self) -> float:
-        """What the account is short of [J]."""
+        """Residual of the energy balance [J]."""
         return self.put_in - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
 
     @property
@@ -65,7 +65,7 @@ class Energy:
 
 @dataclass(frozen=True)
 class Repetition:
-    """How well a periodic response repeats: over how many periods it settled, and what is left."""
+    """Convergence of a periodic response: period, number of periods, and remaining change per period."""
 
     period: float  # [s]
     periods: int
@@ -73,7 +73,7 @@ class Repetition:
 
     @property
     def left(self) -> float:
-        """How far the state may be from what it settles at, relative to its largest value.
+        """Estimated distance of the state from its limit, relative to its largest value.
 
         Changes that have become so small over so many periods, each as much smaller than the last, add up to that.
         """
@@ -84,7 +84,7 @@ class Repetition:
 
 @dataclass(frozen=True, eq=False)
 class Ending:
-    """What a simulation of the same mechanism needs, beside the state, to go on as if nothing had been between."""
+    """Contact state and scales with which, besides the state, another simulation of the mechanism continues exactly."""
 
     mechanism: Mechanism
     mode: tuple[int, ...]  # states of friction and gaps
@@ -145,7 +145,7 @@ class Trajectory:
 
     @cached_property
     def _weighed(self) -> tuple[dict[str, float], str]:
-        """The static loads, and why there are none."""
+        """Static loads of the tyres [N], and the reason if they are unknown."""
         try:
             return ({} if self._mechanism is None else static_tyre_loads(self._mechanism)), ""
         except MechanismError as problem:
@@ -163,7 +163,7 @@ class Trajectory:
 
     @cached_property
     def lift_offs(self) -> tuple[LiftOff, ...]:
-        """Where a tyre pulls by more than its static load, so that a real one would have lifted off; by time."""
+        """Intervals of wheel lift-off, in which a tyre pulls by more than its static load, in the order of time."""
         found = [
             one
             for tyre, static in self.static_loads.items()
@@ -173,7 +173,7 @@ class Trajectory:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is to be said of the motion, one sentence each: tyres that would have lifted off."""
+        """Notes on the motion: a sentence for each tyre that would lift off."""
         static, unknown = self._weighed
         if unknown:
             return (f"Whether a tyre would lift off cannot be told. {unknown}",)

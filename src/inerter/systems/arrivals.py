@@ -1,4 +1,4 @@
-"""How sources reach the inputs of a mechanism: with a lever, late, through a filter; several may reach one input.
+"""Input paths from sources to the inputs of a mechanism: gain, delay, and filter; several may reach one input.
 
 A filter b(s)/a(s) before an input is an equation more: with the solution z of a(d/dt) z = w for the source w, the input
 gets b(d/dt) z. The states are z and its derivatives but the highest, which is an unknown. What reaches an input is an
@@ -28,7 +28,7 @@ Chain = tuple[int, Filter]  # the number of a column, and a filter behind it
 
 @dataclass(frozen=True)
 class Arrival:
-    """A source at an input: `lever` times the source, `delay` seconds late, through `filter`.
+    """Input path from a source to an input: `lever` times the source, `delay` seconds late, through `filter`.
 
     An input that is a road gets its velocity, or with `displacement` its displacement. Where the filter only stands in
     for a density, `excess` tells by what part that exceeds it; all arrivals of a source have the same.
@@ -44,12 +44,12 @@ class Arrival:
 
     @property
     def plain(self) -> bool:
-        """Whether it is the source itself, perhaps late."""
+        """Whether the path transmits the source unchanged but for a delay."""
         return self.lever == 1.0 and self.filter is None and not self.displacement
 
     @property
     def whole(self) -> tuple[Polynomial, Polynomial] | None:
-        """What it makes of the source, as a fraction of whole polynomials, the lowest power first; None: nothing."""
+        """Transfer function without delay as integer polynomials, lowest power first; None for the source itself."""
         if self.plain:
             return None
         lever = Fraction(self.lever)
@@ -64,7 +64,7 @@ def inputs_of(arrivals: Sequence[Arrival]) -> tuple[str, ...]:
 
 
 def excesses_of(arrivals: Sequence[Arrival]) -> dict[str, Excess]:
-    """By the name of each source whose filter only stands in for a density, by what part that exceeds it."""
+    """Relative excess of the true density over that of the filter, by source; only where the filter is approximate."""
     return {arrival.source: arrival.excess for arrival in arrivals if arrival.excess is not None}
 
 
@@ -179,8 +179,9 @@ class _Wired:
 
 
 def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
-    """The descriptor with the displacements of some roads in the place of their velocities: what follows the road's
-    velocity with a weight of its own becomes the rest of itself.
+    """Descriptor with the displacements of some roads as inputs in place of their velocities.
+
+    States that follow the velocity of the road with some weight become their remainder.
     """
     columns = [i for i, name in enumerate(d.inputs) if name in names]
     if not columns:

@@ -15,7 +15,7 @@ from inerter.vehicle.mechanism import GROUND_ACCELERATION
 
 
 def balance(frame: Frame) -> tuple[Long, Long]:
-    """S, -R and -F of `systems.descriptor` beside each other (1 + values, eta, eta + x + u), and the same in sizes.
+    """S, -R and -F of `systems.descriptor` side by side (1 + values, eta, eta + x + u), and the sizes of their terms.
 
     Rows are the balances of forces on R, U, Y and Z, of momentum on U, and of how fast forces change on Z.
 
@@ -39,7 +39,7 @@ def balance(frame: Frame) -> tuple[Long, Long]:
 
 
 def _pushed(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, float, Matrix]]:
-    """A force by the slices in which it stands: that of moving ground is on each mass as large as it is."""
+    """Slices, factors and rows of a force; ground acceleration acts on each mass in proportion to the mass."""
     if name != GROUND_ACCELERATION or not frame.mechanism.ground_moves:
         yield 0, 1.0, row
         return
@@ -50,7 +50,7 @@ def _pushed(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, float, 
 
 
 def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
-    """Each mass and element: how it acts on the rows of the balance, and what its value multiplies."""
+    """Masses and elements, each with its rows of the balance and the rows of the quantity its value multiplies."""
     at = frame.slots
     masses = [
         Branch(coordinate.element, coordinate.name, row, np.zeros(0))
@@ -71,7 +71,7 @@ def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
 
 
 def _on_forces(frame: Frame, row: Matrix) -> Matrix:
-    """How an external force acts on the rows of the balance."""
+    """Rows of the force balance on which an external force acts (eta,)."""
     at, force = frame.slots, np.zeros(frame.unknowns)
     force[at.a1], _, force[at.y], force[at.z] = frame.split.rate(row)
     if at.settles and np.any(force[at.z]):

@@ -99,7 +99,7 @@ def _combination(span: BranchRows, shape: tuple[int, int], rows: bytes, target: 
 
 @lru_cache(maxsize=512)
 def _found(span: BranchRows, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
-    """The coordinates, or the number of a node that is held by nothing; remembered for all designs of a layout."""
+    """Coordinates of a graph, or the number of an unconstrained node; cached for all designs of a layout."""
     n, roads = matrices[0][0][1], matrices[3][0][1]
     given = [np.frombuffer(data).reshape(shape) for shape, data in matrices]
     inertia, damping, forces = rationals.exact(given[0]), span.meant(given[1]), span.meant(given[4])

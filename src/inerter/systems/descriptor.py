@@ -182,7 +182,7 @@ def is_held_by_springs(mechanism: Mechanism) -> bool:
 def _joined(
     frame: Frame, balanced: tuple[Long, Long], observed: Sequence[Observed], order: Sequence[str]
 ) -> Descriptor:
-    """All arrays, with the states that outputs are behind the others and inputs in the order asked for."""
+    """Descriptor from all arrays, with additional output states last and inputs in the order of `order`."""
     columns = [frame.inputs.index(name) for name in order]
     extra = [one for one in observed if one.state is not None]
     X_eta, X_x, X_u = _rates(frame, extra)
@@ -215,7 +215,7 @@ def _joined(
 
 
 def _rates(frame: Frame, extra: Sequence[Observed]) -> tuple[Matrix, Matrix, Matrix]:
-    """How states change, over eta, all states and inputs."""
+    """Rates of the states over eta, all states and inputs."""
     at, n = frame.slots, frame.states + len(extra)
     X_eta, X_x, X_u = np.zeros((n, frame.unknowns)), np.zeros((n, n)), np.zeros((n, len(frame.inputs)))
     X_eta[at.a, at.a1] = np.eye(at.a.stop)
@@ -227,7 +227,7 @@ def _rates(frame: Frame, extra: Sequence[Observed]) -> tuple[Matrix, Matrix, Mat
 
 
 def _balance_stacks(frame: Frame, terms: Long, extra: int, columns: Sequence[int]) -> list[Any]:
-    """Stacks over eta, over all states, and over the inputs in the order asked for."""
+    """Stacks of the balance over eta, over all states, and over the inputs `columns`."""
     S, R, F = np.split(terms, [frame.unknowns, frame.unknowns + frame.states], axis=2)
     later = np.zeros((*terms.shape[:2], extra), terms.dtype)
     return [S, np.concatenate([R, later], axis=2), F[:, :, columns]]

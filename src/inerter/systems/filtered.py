@@ -56,7 +56,7 @@ def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descri
 
 
 def _with_equations(stacks: EquationStacks, places: Filtered, states: int, sizes: bool = False) -> EquationStacks:
-    """The stacks with an equation for each filter, a(d/dt) z = y, and b(d/dt) z in the place of y; or their sizes."""
+    """Stacks with an equation a(d/dt) z = y for each filter, and output b(d/dt) z in place of y; or their sizes."""
     S, R, F, Y_eta, Y_x, Y_u = stacks
     _, e, n = R.shape
     both, q = (1.0, len(places)) if sizes else (-1.0, len(places))

@@ -104,7 +104,7 @@ class Filter:
         return float(rate), np.array(numbers[0]), np.array(numbers[1])
 
     def then(self, other: Filter) -> Filter:
-        """The filter that it is with another one behind it, without rounding."""
+        """Filter in series with another one after it, without rounding."""
         pairs = ((self.numerator, other.numerator), (self.denominator, other.denominator))
         return Filter(*(_convolved(*pair) for pair in pairs))
 
@@ -151,7 +151,7 @@ def _convolved(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> lis
 
 
 def _coefficients(name: str, given: object) -> tuple[Coefficient, ...]:
-    """As numbers, without leading zeros."""
+    """Coefficients as numbers, without leading zeros."""
     try:
         listed = list(given) if not isinstance(given, str) else []  # type: ignore[call-overload]
         numbers = tuple(c if isinstance(c, Fraction) else _real(c) for c in listed)
@@ -223,6 +223,6 @@ def _log2(number: int) -> float:
 
 
 def _long(number: Fraction) -> Any:
-    """In extended precision."""
+    """Number in extended precision."""
     high = float(number)
     return np.longdouble(high) + np.longdouble(float(number - Fraction(high)))

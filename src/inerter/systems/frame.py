@@ -32,7 +32,7 @@ RowBlocks = tuple[Matrix, Matrix, Matrix]  # on eta, x and u
 
 @dataclass(frozen=True)
 class Slots:
-    """Where things stand among the unknowns eta and the states x."""
+    """Slices of the coordinates in the unknowns eta and the states x."""
 
     a1: slice
     u1: slice
@@ -89,7 +89,7 @@ class Frame:
 
     @property
     def lost(self) -> str:
-        """Why elongations lose their digits, in words; nothing where they do not."""
+        """Message on elongations lost to rounding; empty if none is."""
         shares = self.split.G
         lost = is_lost(shares, np.hstack(self.split.rates))
         return lost_in(shares, [branch.label for branch in self.springs]) if lost else ""
@@ -102,11 +102,11 @@ class Frame:
 
     @cached_property
     def spring_number(self) -> dict[int, int]:
-        """Which of the springs a branch is, by its identity."""
+        """Number of each spring by the identity of its branch."""
         return {id(branch): i for i, branch in enumerate(self.springs)}
 
     def slice_of(self, element: Element) -> tuple[int, float]:
-        """The slice of a stack over the free values in which an element's value stands, and its factor there."""
+        """Number of the slice, in a stack over the free values, of an element's value, and its factor there."""
         if isinstance(element.value, Free):
             return 1 + list(self.free).index(str(element.value.name)), element.gain
         return 0, element.coefficient
@@ -146,7 +146,7 @@ class Frame:
         return eta, x, u
 
     def across(self, branch: Branch) -> RowBlocks:
-        """What the value of an element multiplies: its acceleration, velocity or elongation."""
+        """Rows of the quantity that an element's value multiplies: its acceleration, velocity or elongation."""
         match branch.element.linear:
             case Linear.MASS:
                 return self.acceleration(branch.nodes)
@@ -159,13 +159,13 @@ class Frame:
         return self.blank()
 
     def displacement(self, nodes: Matrix, roads: Matrix) -> Matrix | None:
-        """The combination of spring elongations that is this displacement whatever moves, if there is one."""
+        """Combination of spring elongations equal to a displacement for every motion; None if there is none."""
         springs = np.hstack([self.spring_rows, self.spring_roads])
         return combination(self.split.span, springs, np.hstack([nodes, roads[self.road_columns]]))
 
 
 def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Sequence[str] = ()) -> Frame:
-    """The frame for these inputs, roads first, and for outputs that may ask how fast springs settle.
+    """Frame for these inputs, roads first, and for outputs that may need the rate at which springs settle.
 
     Raises `MechanismError` for an inerter on the road itself, and for a node that is held by nothing.
     """
@@ -199,7 +199,7 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
 
 
 def _forces(mechanism: Mechanism, graph: Graph, names: Sequence[str]) -> Matrix:
-    """Rows of external forces, and of forces beside elements, over nodes."""
+    """Rows over nodes of external forces, and of forces in parallel with elements."""
     beside = {force_of(branch.label): -branch.nodes for branch in graph.branches}
     given = {force.name: row for force, row in zip(mechanism.forces, ports(mechanism, graph), strict=True)}
     rows = beside | given

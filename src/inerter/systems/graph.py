@@ -57,7 +57,7 @@ _last: tuple[Mechanism, Graph] | None = None  # several questions about one desi
 
 
 def linear_graph(mechanism: Mechanism) -> Graph:
-    """The graph that linear analysis sees: friction left out, gaps closed, both told in `notes`.
+    """Graph of the linear model: neglects friction and treats gaps as closed, as `notes` states.
 
     What is left has the labels that it has in `full_graph`.
 
@@ -102,13 +102,13 @@ def full_graph(mechanism: Mechanism) -> Graph:
 
 
 def _other_meanings(linear: Graph, full: Graph) -> frozenset[str]:
-    """Labels of parts that stand for an element in linear analysis, but not, or with other values, in simulation."""
+    """Labels of parts that represent an element in the linear model but not, or with other values, in simulation."""
     parts = {branch.label: branch.element for branch in full.branches}
     return frozenset(b.label for b in linear.branches if b.label not in full.groups and parts.get(b.label) != b.element)
 
 
 def switching(mechanism: Mechanism) -> Mechanism:
-    """The mechanism with what simulation takes in the place of its elements; itself, if that is what they are.
+    """Mechanism with the elements that simulation uses; the same object if none differs.
 
     Raises `DesignError` where that depends on a free value.
     """
@@ -123,7 +123,7 @@ def switching(mechanism: Mechanism) -> Mechanism:
 
 
 def switching_parts(element: Element) -> Iterator[Element]:
-    """The elements that simulation takes in the place of one; a free value may be at its upper bound there."""
+    """Elements that simulation uses in place of one; a free value may be at its upper bound in them."""
     return expand_elements(element, _shaped).elements()
 
 

@@ -1,4 +1,4 @@
-"""What follows from which elements are where in a mechanism and from which of their values are zero, and nothing else.
+"""Kinematics of a mechanism, determined by its topology and by which element values are zero.
 
 Node velocities v = R a + N w + V z' split into those that inertia carries (a), those that nothing but other motions
 resists (w, massless), and what roads impose through inerters (V). Positions g are as many independent elongations of
@@ -77,13 +77,13 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
 
 
 def with_elements(graph: Graph, elements: Sequence[Element]) -> Graph:
-    """The same graph with other elements on its branches."""
+    """Graph with other elements on its branches."""
     pairs = zip(elements, graph.branches, strict=True)
     return replace(graph, branches=tuple(Branch(element, b.label, b.nodes, b.roads) for element, b in pairs))
 
 
 def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
-    """All that the kinematics depend on."""
+    """Key of all properties of a mechanism on which its kinematics depend."""
     mounts = []
     for mount in mechanism.mounts():
         ends = (mount.upper, mount.lower) if isinstance(mount, Strut) else (mount.port, {mount.road: None})
@@ -148,7 +148,7 @@ _remembered = lru_cache(maxsize=256)(_found)
 
 
 def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
-    """What switches: frictions between the same two ends as one, with 1 or -1 for each by how its ends are turned."""
+    """Groups of frictions and gaps: frictions with the same ends together, with 1 or -1 for their orientation."""
     groups: list[dict[int, int]] = []
     for i, branch in enumerate(branches):
         if branch.element.switch is not None:

@@ -1,4 +1,4 @@
-"""What levers were meant to be: fractions in which a travel that depends on others up to rounding depends on them.
+"""Exact levers: rows that depend on others up to rounding are replaced by rational combinations of them.
 
 Levers of a vehicle are doubles, and whoever wrote them had to round: 0.1 + 0.2 and 0.3 are one lever, though two
 doubles, and an anti-roll strut whose lever is a sum depends on the struts at the wheels but for the last digit. Taken
@@ -39,7 +39,7 @@ class BranchRows:
 
     @staticmethod
     def of(graph: Graph, roads: Sequence[int]) -> BranchRows:
-        """That of a graph, over the roads of these numbers."""
+        """Branch rows of a graph over its nodes and the roads of these numbers."""
         on_nodes, on_roads = stacked(sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph)
         rows = np.hstack([on_nodes, on_roads[:, list(roads)]])
         return BranchRows(rows.shape, rows.tobytes(), len(graph.nodes))
@@ -51,7 +51,7 @@ class BranchRows:
 
 @dataclass(frozen=True, eq=False)
 class _Basis:
-    """The first independent rows, and columns in which they differ most, with the inverse of what stands there."""
+    """First independent rows, columns in which they differ most, and the inverse of this submatrix."""
 
     rows: FractionRows
     columns: tuple[int, ...]
@@ -80,7 +80,7 @@ def _simple(share: Fraction) -> Fraction:
 
 @lru_cache(maxsize=256)
 def _basis(span: BranchRows) -> _Basis | None:
-    """None where levers are whole numbers: these are not rounded."""
+    """Basis of the rows of a graph's branches; None if all levers are integers, which are exact."""
     rows = np.frombuffer(span.data).reshape(span.shape)
     nodes = rows[:, : span.nodes]
     if np.array_equal(nodes, np.round(nodes)):
@@ -108,7 +108,7 @@ def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
 
 
 def lost_in(shares: Matrix, labels: Sequence[str]) -> str:
-    """What is wrong, in words, with travels for which `is_lost` holds; `labels` are of the elements that travel."""
+    """Message on travels for which `is_lost` holds; `labels` are those of the elements."""
     worst = int(np.argmax(np.abs(shares).max(axis=1)))
     return (
         f"The travel of {labels[worst]!r} depends on those of others but for a billionth to a millionth of its size, "

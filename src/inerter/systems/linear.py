@@ -24,7 +24,7 @@ class Fine:
 
 @dataclass(frozen=True, eq=False)
 class Origin:
-    """What a mechanism's matrices A, B, C, D were rounded from.
+    """Exact origin of a mechanism's rounded matrices A, B, C, D.
 
     `functions` gives the transfer functions from named inputs to named outputs without rounding.
     """
@@ -116,7 +116,7 @@ class LinearSystem:
     def select(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
     ) -> LinearSystem:
-        """The same system with only the named inputs and outputs, in that order; None keeps all.
+        """Subsystem with only the named inputs and outputs, in that order; None keeps all.
 
         Raises `LinearSystemError` for a name that is not there.
         """
@@ -134,7 +134,7 @@ class LinearSystem:
         )
 
     def delayed(self, source: str, delays: Sequence[float]) -> LinearSystem:
-        """The same system with all its inputs driven by one `source`, each with its delay [s]."""
+        """System with all inputs driven by one `source`, each with its delay [s]."""
         return replace(self, sources=(source,) * len(self.inputs), delays=np.asarray(delays, dtype=float))
 
     def __repr__(self) -> str:
@@ -151,7 +151,7 @@ def check_system(system: object) -> None:
 
 
 def check_names(what: str, names: object) -> tuple[str, ...]:
-    """`names` as a tuple of texts, one text alone being one name; raises `LinearSystemError` if it is neither."""
+    """Names as a tuple of texts, a single text as one name; raises `LinearSystemError` if it is neither."""
     given = (names,) if isinstance(names, str) else tuple(names) if isinstance(names, Sequence) else (names,)
     if not all(isinstance(name, str) for name in given):
         raise LinearSystemError(f"The {what} of a system are given by name, such as 'road', got {names!r}.")

@@ -1,4 +1,4 @@
-"""What an output is made of, in the coordinates of a system: rows over its unknowns, states and inputs."""
+"""Outputs in the coordinates of a system: rows over its unknowns, states and inputs."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def add(rows: RowBlocks, more: Iterable[Matrix]) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Observed:
-    """An output as stacks over the free values, and their sizes; with a state of its own if it is that."""
+    """Output as stacks over the free values, with the sizes of their terms, and with its rate if it is a state."""
 
     name: str
     rows: OutputStacks
@@ -83,7 +83,7 @@ def observe(frame: Frame, name: str) -> Observed:
 
 
 def observed_by_default(frame: Frame) -> list[str]:
-    """Names of what is asked for by default: motions and mounts, as far as they need no state of their own."""
+    """Names of the default outputs: motions and mounts that need no additional state."""
     return [name for name in main_outputs(frame.mechanism) if not _drifts(frame, frame.known[name])]
 
 

@@ -36,7 +36,7 @@ def _none() -> Matrix:
 
 @dataclass(frozen=True, eq=False)
 class Output:
-    """One output: the sum of its rows times what they are rows over. An empty row is a row of zeros."""
+    """Output: the sum of its rows times the quantities they refer to. An empty row is a row of zeros."""
 
     name: str
     unit: str
@@ -85,7 +85,7 @@ def input_names(mechanism: Mechanism) -> list[str]:
 
 
 def force_of(label: str) -> str:
-    """The name of an element's force, and of a force beside it."""
+    """Name of an element's force, and of a force in parallel with the element."""
     return f"{label}_force"
 
 
@@ -112,7 +112,7 @@ def _of_inputs(mechanism: Mechanism) -> list[Output]:
 
 
 def _motions(mechanism: Mechanism, coordinate: Coordinate | Point) -> tuple[str, ...]:
-    """What is known of a coordinate's own motion: on moving ground no more than the acceleration of a mass."""
+    """Motions of a coordinate available as outputs; on moving ground only the acceleration of a mass."""
     if mechanism.ground_moves and not coordinate.angle:
         return tuple(what for what in _MOTIONS if what not in _OVER_GROUND)
     return tuple(_MOTIONS)
@@ -205,7 +205,7 @@ def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
 
 
 def _of_still(mechanism: Mechanism) -> list[Output]:
-    """Of struts that nothing moves: zero, by every name that they may have."""
+    """Zero outputs of struts that do not move, under each of their names."""
     found: list[Output] = []
     for strut in mechanism.still:
         force, travel = of_mount(strut)
@@ -231,7 +231,7 @@ def check_inputs(
 
 
 def unit_of(mechanism: Mechanism, names: Sequence[str]) -> str:
-    """The unit that these outputs have; empty for unlike ones, which weights make alike, and for unknown ones.
+    """Common unit of these outputs; empty for different or unknown units.
 
     Beside motions in m, those of angles are weighted by levers in m.
     """
@@ -274,7 +274,7 @@ def check_element(mechanism: Mechanism, label: object, called: Callable[[str], s
 
 
 def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -> Output:
-    """The output of this name; raises `error`, with the names that come close, if there is none."""
+    """Output of that name; raises `error`, with the names that come close, if there is none."""
     if isinstance(name, str) and name in known:
         return known[name]
     close = get_close_matches(str(name), known, n=3)

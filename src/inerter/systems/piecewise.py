@@ -88,7 +88,7 @@ class PiecewiseSystem:
 
     @property
     def nonlinear_elements(self) -> tuple[Element, ...]:
-        """One of each nonlinear group."""
+        """First element of each nonlinear group."""
         return tuple(self.graph.branches[next(iter(group))].element for group in self.nonlinear)
 
 
@@ -109,7 +109,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
 
 
 def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
-    """The same system with other values of some elements and coordinates' inertias, by label.
+    """System with other values of some elements and inertias, by label.
 
     Far quicker than `piecewise`: for those who simulate one layout thousands of times. What was zero must stay zero.
     `mechanism` has the new inertias, but its networks are the old ones; `graph` has the new elements.
@@ -220,14 +220,14 @@ def _mechanics(
 
 
 def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
-    """What each branch of a group has of its force: frictions side by side share it by their sizes."""
+    """Share of the force of a group for each of its branches; frictions in parallel share it by their sizes."""
     sizes = {i: graph.branches[i].element.coefficient for i in group}
     whole = sum(sizes.values())
     return {i: turned * (sizes[i] / whole if len(group) > 1 else 1.0) for i, turned in group.items()}
 
 
 def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
-    """Between which forces or elongations the guard of a group stays in its middle state; those of several are even."""
+    """Limits of the force or elongation in the middle state of a group; sums over its elements."""
     return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
 
 
@@ -274,7 +274,7 @@ class _Frame:
         return eta, x, u
 
     def displacement(self, over_g: Matrix, over_z: Matrix) -> RowBlocks:
-        """What positions and heights of roads make up."""
+        """Rows of a displacement from those over positions and over heights of roads."""
         eta, x, u = self.blank()
         x[self.system.motions[0].shape[1] :], u[self._roads(0)] = over_g, over_z
         return eta, x, u
@@ -324,7 +324,7 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
 
 
 def _displaced(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
-    """A displacement over positions and heights of roads; positions tell those of massless nodes that are asked for."""
+    """Rows of a displacement over positions and over heights of roads, for massless nodes too."""
     count = len(system.mechanism.coordinates)
     if not np.any(nodes[count:]):
         over_g, over_z = (nodes[:count] @ part for part in system.displacements)

@@ -31,7 +31,7 @@ def primitive(p: Polynomial) -> Polynomial:
 
 
 def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
-    """The product."""
+    """Product of two polynomials."""
     result = [0] * max(len(p) + len(q) - 1, 0)
     for i, a in enumerate(p):
         if a:
@@ -41,7 +41,7 @@ def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
 
 
 def add(p: Polynomial, q: Polynomial) -> Polynomial:
-    """The sum."""
+    """Sum of two polynomials."""
     short, long = sorted((p, q), key=len)
     return trimmed([a + b for a, b in zip(short, long, strict=False)] + long[len(short) :])
 
@@ -52,7 +52,7 @@ def scaled(p: Polynomial, factor: int) -> Polynomial:
 
 
 def derivative(p: Polynomial) -> Polynomial:
-    """The derivative."""
+    """Derivative of a polynomial."""
     return [i * c for i, c in enumerate(p)][1:]
 
 
@@ -239,7 +239,7 @@ class TransferFunctions:
     numerators: tuple[tuple[Polynomial, ...], ...]
 
     def filtered(self, filters: Sequence[Fractions]) -> TransferFunctions:
-        """Each output times a fraction, or none: all over the product of the fractions' denominators."""
+        """Transfer functions with each output times a fraction (None for 1), over one common denominator."""
         bottoms = list(dict.fromkeys(tuple(one[1]) for one in filters if one is not None))
         rows = []
         for row, one in zip(self.numerators, filters, strict=True):
@@ -254,7 +254,7 @@ class TransferFunctions:
         return TransferFunctions(denominator, tuple(rows))
 
     def fed(self, sums: Sequence[Sequence[tuple[int, Fractions]]]) -> TransferFunctions:
-        """With sums of its inputs, numbered, each times a fraction or none, in the place of the inputs."""
+        """Transfer functions from new inputs, each a sum of old inputs, by number, times fractions (None for 1)."""
         terms = [term for one in sums for term in one]
         by_input = TransferFunctions(
             self.denominator, tuple(tuple(row[i] for row in self.numerators) for i, _ in terms)

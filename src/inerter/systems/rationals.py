@@ -45,13 +45,13 @@ def product(left: FractionRows, right: FractionRows, columns: int) -> FractionRo
 
 
 class Basis:
-    """Rows that are independent, reduced as they come, each with what it is made of."""
+    """Independent rows, reduced one by one, each with the combination it results from."""
 
     def __init__(self) -> None:
         self.reduced: list[tuple[int, Row]] = []  # the place of the leading one, and the row
 
     def rest(self, row: Sequence[Fraction]) -> Row:
-        """What is left of `row` when what the basis spans is taken out: zero if that is all."""
+        """Remainder of `row` after subtraction of its part in the span of the basis; zero if the row lies in it."""
         rest = list(row)
         for place, known in self.reduced:
             factor = rest[place]
@@ -101,7 +101,7 @@ def null_space(rows: FractionRows, columns: int) -> FractionRows:
 
 
 def weights(rows: FractionRows, targets: FractionRows) -> list[Row | None]:
-    """For each target the numbers with which the rows add up to it; None where they cannot."""
+    """Coefficients with which the rows sum to each target; None where the target is not in their span."""
     count, zero = len(rows), Fraction(0)
     basis = Basis()
     for i, row in enumerate(rows):

@@ -35,7 +35,7 @@ def transfer_functions(
     inputs: Sequence[str],
     wanted: Sequence[str],
 ) -> TransferFunctions:
-    """From road velocities and forces named `inputs` to the outputs named `wanted`, at `values` of the free values."""
+    """Transfer functions from road velocities and forces `inputs` to the outputs `wanted`, at these free `values`."""
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted]
     mechanism = mechanism.with_masses(values)
@@ -169,7 +169,7 @@ class _Nodal:
     def assembled(
         self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_OutputRow]
     ) -> TransferFunctions:
-        """With what all have in common taken out, and 1/s where a road is given by its velocity."""
+        """Transfer functions with common factors cancelled, and with 1/s for inputs that are road velocities."""
         force = self.lever_unit << self.value_bits
         factors = [
             (1 if row.forces or row.external else 1 << self.value_bits) * (1 if road is not None else force)
@@ -221,7 +221,7 @@ def _coefficient(element: Element, values: Mapping[str, float]) -> Fraction:
 
 
 def _bits(value: float | Fraction) -> int:
-    """How many times `value` must be doubled to be whole."""
+    """Number of doublings after which `value` is an integer."""
     return value.as_integer_ratio()[1].bit_length() - 1
 
 

@@ -1,4 +1,4 @@
-"""How a delayed white noise is correlated with the state: exactly, or as a Pade approximant would have it.
+"""Covariance of a delayed white noise with the state: exact, or for a Padé approximant of the delay.
 
 If x' = A x + B1 w(t) + B2 w(t - tau) with white w, the delayed noise meets a state that already knows it: their
 covariance is exp(A tau) B1. A delay replaced by an all-pass filter D(s) of unit gain, as a diagonal Pade approximant

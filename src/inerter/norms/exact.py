@@ -25,13 +25,13 @@ EXACT = 1e-12  # relative error of what is found here: digits in which results a
 
 
 def undamped(frequencies: Sequence[float]) -> Status:
-    """What makes a norm infinite where motions at these frequencies [rad/s] last."""
+    """Status of an infinite norm due to undamped modes at these frequencies [rad/s]."""
     where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
     return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {where} rad/s")
 
 
 def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:
-    """The H2 norm of each output, and why it is infinite or unknown where it is."""
+    """H2 norm of each output, and the reason if it is infinite or unknown."""
     functions = _functions(system)
     squares, direct, status = np.zeros(len(system.outputs)), [], OK
     for i, (name, row) in enumerate(zip(system.outputs, functions.numerators, strict=True)):
@@ -86,7 +86,7 @@ def _functions(system: LinearSystem) -> TransferFunctions:
 def _by_source(
     denominator: Polynomial, row: Sequence[Polynomial], system: LinearSystem, pade_order: int | None
 ) -> list[Transfer]:
-    """One output's response to each source, with what arrives at one time added up."""
+    """Transfer of one output from each source, with simultaneous input paths added; zero ones are left out."""
     found = []
     for source in dict.fromkeys(system.sources):
         arrivals: dict[float, Polynomial] = {}
@@ -101,7 +101,7 @@ def _by_source(
 
 
 def _approximated(response: Transfer, order: int) -> Transfer:
-    """With a Pade approximant for the time between one arrival and the next: they become one."""
+    """Transfer with Padé approximants of the delays between input paths, combined into one numerator."""
     denominator, total, factor = response.denominator, response.numerators[0], [1]
     for (before, time), numerator in zip(pairwise(response.times), response.numerators[1:], strict=True):
         bottom = _pade(time - before, order)

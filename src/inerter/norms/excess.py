@@ -50,7 +50,7 @@ _EPS = float(np.finfo(float).eps)
 
 
 def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | None = None) -> tuple[Array, Array]:
-    """What is to be added to the squared norm of each output of `system`, and what that may be off by.
+    """Corrections of the squared norms of the outputs of `system` for true densities, and their uncertainties.
 
     `excesses` has the functions of the sources that have one; the system has the filters that stand in for them.
     """
@@ -114,7 +114,7 @@ def _in_parts(panels: Sequence[Array]) -> list[Array]:
 
 
 def _panels(poles: NDArray[np.complex128], low: float, high: float) -> Array:
-    """Panels (n, 2) from `low` to `high` that are twice as far from each pole as they are wide at most."""
+    """Panels (n, 2) from `low` to `high`, with the centre of each at least one panel width from every pole."""
     edges = low * 2.0 ** np.arange(np.ceil(np.log2(high / low)) + 1.0)
     open_, closed = np.column_stack([edges[:-1], edges[1:]]), []
     while len(open_):

@@ -30,7 +30,7 @@ ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
 
 @dataclass(frozen=True, eq=False)
 class H2:
-    """The norm of each output, and why it is infinite, or nan because it is not known, where it is.
+    """H2 norm of each output, infinite or nan (unknown) with the reason as status.
 
     `error` is the largest relative error of any of them by rounding.
     """
@@ -103,7 +103,7 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
 
 
 def _merged_direct(system: LinearSystem) -> Matrix:
-    """D with inputs of one source and one delay added up: they are one input."""
+    """Direct term D with the columns of inputs of the same source and delay added."""
     arrivals = list(zip(system.sources, system.delays.tolist(), strict=True))
     unique = list(dict.fromkeys(arrivals))
     merge = np.array([[arrival == other for other in unique] for arrival in arrivals], dtype=float)
@@ -116,7 +116,7 @@ def _drifting(A: Matrix) -> NDArray[np.bool_]:
 
 
 def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
-    """What each input column becomes when all columns of its source arrive at once: a drift cancels if it is zero."""
+    """Input columns summed over all columns of the same source, as without delays; a drift cancels if zero."""
     same = np.array([[a == b for b in system.sources] for a in system.sources], dtype=float)
     return np.asarray(B @ same)
 

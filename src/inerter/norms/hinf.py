@@ -30,7 +30,7 @@ class GainPeak:
 
 @dataclass(frozen=True)
 class HInfinity:
-    """The largest gain, every local maximum of the gain (highest first), and why it is infinite if it is.
+    """Peak gain, all local maxima of the gain (highest first), and a status if the gain is infinite.
 
     `error` is the largest relative error of the gain by rounding, nan where it has no bound.
     """
@@ -87,7 +87,7 @@ def _largest(stable: LinearSystem) -> tuple[float, list[GainPeak]]:
 
 
 def _sharpness(A: Matrix, peaks: list[GainPeak]) -> Status:
-    """Whether rounding leaves the damping of the resonance under the highest peak certain."""
+    """Status on whether the damping of the resonance at the highest peak is lost to rounding."""
     if A.size == 0 or not peaks or not np.isfinite(peaks[0].omega):
         return OK
     rates, errors = pole_rates(A)
@@ -156,7 +156,7 @@ def _peaks(gain: Gain, grid: Matrix, D: Matrix) -> list[GainPeak]:
 
 
 def _without_level_steps(grid: Matrix, values: Matrix) -> tuple[Matrix, Matrix]:
-    """Points of equal gain count once, or the top of a peak between two of them would be lost."""
+    """Grid and gains without points whose gain equals that before, which would hide a peak between them."""
     kept = [0]
     for i, value in enumerate(values.tolist()):
         if abs(value - values[kept[-1]]) > _RISE * value:

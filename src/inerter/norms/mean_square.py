@@ -39,14 +39,14 @@ class UnknownError(ArithmeticError):
 
 @dataclass(frozen=True)
 class Transfer:
-    """One output over one source: numerators over one denominator, each with the time at which it arrives [s]."""
+    """Transfer from one source to one output: numerators over one denominator, with the delay of each [s]."""
 
     denominator: Polynomial
     numerators: tuple[Polynomial, ...]
     times: tuple[float, ...]
 
     def reduced(self) -> Transfer:
-        """Without the roots that all share."""
+        """Transfer with the roots common to numerators and denominator cancelled."""
         common = shared(self.denominator, *self.numerators)
         if len(common) == 1:
             return self
@@ -115,7 +115,7 @@ def _square(a: Polynomial, numerators: Sequence[Polynomial], times: Sequence[flo
 
 
 def _drifting(response: Transfer) -> Decimal:
-    """As `_square`, with a pole at zero that the sum over all arrivals has not, as a tyre's share of the road has.
+    """Mean square with a pole at zero that cancels in the sum over all input paths, as in a tyre's share of the road.
 
     With p/(s a) = r/s + h/a, each arrival adds a step r to the decaying rest; the steps add up to zero in the end.
     """
@@ -145,7 +145,7 @@ def _modulo(a: tuple[int, ...], digits: int) -> _Modulo:
 
 
 class _Modulo:
-    """Polynomials modulo a(s), whose roots all lie to the left: numbers that stand for values at its roots."""
+    """Ring of polynomials modulo a(s), all of whose roots have negative real parts."""
 
     def __init__(self, a: Sequence[int]) -> None:
         self.whole, self.leading = a, Decimal(a[-1])

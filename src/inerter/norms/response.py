@@ -34,7 +34,7 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
 def modal_response(
     system: LinearSystem, omega: ArrayLike, pade_order: int | None = None, within: float = _MODAL
 ) -> Complex:
-    """As `frequency_response`, to ten times `within` of the largest value, and much quicker for many frequencies.
+    """Frequency response by modes, within ten times `within` of the largest value; fast for many frequencies.
 
     A sum over modes; by elimination where eigenvectors are so nearly parallel that it would lose more digits, which is
     looked at where it would show: at both ends, and at the frequencies next to the poles.

@@ -1,4 +1,4 @@
-"""Which part of a system decays, and whether the part that does not can be seen at all."""
+"""Decaying and lasting parts of a system, and visibility of the lasting part in the outputs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _VISIBLE = 1e-10  # relative size below which rounding, not mechanics, connects 
 
 @dataclass(frozen=True, eq=False)
 class Subsystem:
-    """Matrices of a part of a system, in coordinates of its own."""
+    """Matrices of a part of a system, in separate coordinates."""
 
     A: Matrix
     B: Matrix
@@ -35,7 +35,7 @@ class Split:
     rate: float = 0.0  # size of the whole system's rates [1/s]
 
     def visible(self, B: Matrix | None = None) -> NDArray[np.bool_]:
-        """For each output, whether the lasting part connects it to the inputs (or to other input columns `B`).
+        """True for outputs to which the lasting part connects the inputs, or other input columns `B` (outputs,).
 
         Its Markov parameters C A^k B tell, relative to what sizes of rows and columns could make of them.
         """
@@ -54,7 +54,7 @@ class Split:
 
     @property
     def status(self) -> Status:
-        """What the lasting poles are, in words."""
+        """Status of the lasting poles: unstable or marginal."""
         worst = self.poles[int(np.argmax(self.poles.real))]
         if worst.real > 0.0 and not _is_marginal(worst, self.rate):
             return Status(StatusKind.UNSTABLE, f"the system is unstable: a pole at {_pole(worst)} rad/s")

@@ -1,4 +1,4 @@
-"""What a paper is to all that does not know it: one row, whose work is loaded when it is wanted."""
+"""Papers as registry entries, whose code is imported only when it is used."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class PaperResults(Protocol):
-    """What was recomputed of a paper, of which only the studies are looked into by others."""
+    """Recomputed results of a paper, of which other modules use only the studies."""
 
     @property
     def studies(self) -> Mapping[str, StudyResult]:
@@ -24,7 +24,7 @@ class PaperResults(Protocol):
 
 @dataclass(frozen=True)
 class Paper:
-    """A paper whose results can be recomputed.
+    """Paper whose results can be recomputed.
 
     `recompute`, `write`, `data` and `text` name functions, as "package.module:function", of the module that does it, so
     that the row itself loads nothing.
@@ -42,7 +42,7 @@ class Paper:
     text: str
 
     def reproduce(self, folder: Path, *, only: Sequence[str] = (), **settings: Any) -> PaperResults:
-        """Recompute it, or some of its parts, into `folder`, with tables, figures and a page.
+        """Recompute the paper, or some of its parts, into `folder`, with tables, figures and a page.
 
         `settings` are `jobs`, `resume`, `force` and `progress`, as `run_study` takes them, but that `progress` is told
         the name of the piece of work, steps done, and all steps.
@@ -57,12 +57,12 @@ class Paper:
         return found
 
     def as_data(self, found: PaperResults) -> dict[str, Any]:
-        """What was recomputed as plain rows."""
+        """Recomputed results as rows for JSON, by table."""
         tables: dict[str, Any] = _loaded(self.data)(found)
         return tables
 
     def as_text(self, found: PaperResults) -> str:
-        """What was recomputed as text of 80 columns."""
+        """Recomputed results as text of 80 columns."""
         return str(_loaded(self.text)(found))
 
 

@@ -1,4 +1,4 @@
-"""All papers that can be reproduced. A new one is a folder beside the others, and its row here."""
+"""Registry of all papers that can be reproduced. A new one is a subpackage, and its entry here."""
 
 from __future__ import annotations
 

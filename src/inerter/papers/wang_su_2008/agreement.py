@@ -1,4 +1,4 @@
-"""The methods beside each other: they must agree to first order where friction is small, and part where it is not."""
+"""Comparison of the methods, which must agree to first order for small friction and differ for large friction."""
 
 from __future__ import annotations
 

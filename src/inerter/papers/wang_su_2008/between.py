@@ -22,7 +22,7 @@ Found = Mapping[str, Mapping[str, Any]]
 
 
 def names(figure11: xr.Dataset) -> list[str]:
-    """What claims ask for: index, two layouts, and the number of the swept value before a crossing, or the place."""
+    """Names of the points to compute: index, two layouts, and number of the stiffness before a crossing, or "there"."""
     asked = []
     for index, one, other in _PAIRS:
         first, second = (figure11["value"].sel(layout=layout, index=index).values for layout in (one, other))
@@ -61,5 +61,5 @@ def crossings(found: Found, index: str, one: str, other: str) -> list[float]:
 
 
 def excess_there(found: Found, index: str, one: str, other: str) -> float:
-    """How much worse `one` is than `other` at the place, relative."""
+    """Relative excess of `one` over `other` at the fixed stiffness."""
     return float(found[f"{index} {one} {other} {_THERE}"]["excess"])

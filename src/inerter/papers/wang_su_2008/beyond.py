@@ -1,4 +1,4 @@
-"""What the paper did not do: designs that are best with friction, and how much of what is real a design can bear."""
+"""Results beyond the paper: optimal designs with friction, and break-even friction, backlash and compliance."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _BUDGETS: dict[str, tuple[str, str, tuple[float, float], Method, tuple[str, ...]
 
 
 def optimum_names() -> list[str]:
-    """The designs to be found: index and layout."""
+    """Names of the designs to optimise: index and layout."""
     return [f"{index} {layout}" for index, layouts in _OPTIMA.items() for layout in layouts]
 
 
 def compute_optimum(name: str) -> dict[str, object]:
-    """The design that is best with friction, and how much better it is than the best linear one with friction."""
+    """Best design with friction, and its improvement over the best linear design, evaluated with friction [%]."""
     index, layout = name.split()
     source = study("friction1")
     found = optimise(source.design(layout), index_of(index, source), _ROADS, seed=source.seed, starts=_STARTS)
@@ -51,7 +51,7 @@ def compute_optimum(name: str) -> dict[str, object]:
 
 
 def budget_names() -> list[str]:
-    """The budgets to be found: index, layout and what it is about."""
+    """Names of the break-even values to compute: index, layout and nonlinearity."""
     return [
         f"{index} {layout} {what}"
         for what, (_, _, _, _, indices) in _BUDGETS.items()
@@ -85,7 +85,7 @@ def compute_budget(name: str) -> dict[str, object]:
 
 
 def _printed(index: str, layout: str, kind: str) -> Vehicle:
-    """The printed design of Table 1 for an index, with what is asked of it."""
+    """Printed design of Table 1 for an index, with the elements of `kind`."""
     twin = "-soft" if kind in ("-soft", "-gap") and layout != "S1" else ""
     row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, index, layout + twin))
     source = study("table1" if kind in ("", "-soft") else "friction1")

@@ -9,7 +9,7 @@ from inerter.papers.wang_su_2008.table_claims import claim_12, quarter_car_claim
 
 
 def judge(evidence: Evidence) -> list[Claim]:
-    """Every claim for which there is evidence."""
+    """Claims of the paper for which results are available, with their verdicts."""
     found: list[Claim] = []
     if evidence.figure11 is not None:
         found += elastic_claims(Curves(evidence.figure11), evidence.between)

@@ -249,7 +249,7 @@ def claim_13(evidence: Evidence) -> Claim:
 
 
 def _against(gap: Measured) -> str:
-    """How a quantity compares, in per cent, with the half-width of its 95 % confidence interval."""
+    """Difference [%] with the half-width of its 95 % confidence interval, and "worse" or "better", as text."""
     scatter = f" ± {gap.half_width():.2f}" if gap.error else ""
     return f"{abs(gap.value):.2f}{scatter} % {'worse' if gap.value > 0.0 else 'better'}"
 

@@ -35,7 +35,7 @@ def linear_twin(layout: str) -> str:
 
 
 def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
-    """One point of a curve: the linear optimum's parameters, `optima`, with friction."""
+    """Value and scatter of one point of a curve: the linear optimum's parameters, `optima`, with friction."""
     layout, index, point = name.split()
     source = study("friction1")
     (swept,) = source.sweeps
@@ -53,7 +53,7 @@ def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
 
 
 def dataset(found: dict[str, dict[str, Any]], figure11: xr.Dataset) -> xr.Dataset:
-    """The curves as a dataset beside those of Figure 11: value, standard error, improvement over S1, status.
+    """Dataset of the curves and those of Figure 11: value, standard error, improvement over S1, status.
 
     `deviation` holds what each realisation adds to the mean, and `unsampled_error` what of the standard error does not
     come from them; both are zero for linear designs.

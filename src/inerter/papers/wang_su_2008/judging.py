@@ -28,7 +28,7 @@ _DETECTED = 0.9  # of differences as large as the power that is stated
 
 
 class ClaimVerdict(StrEnum):
-    """What the evidence says of a statement."""
+    """Verdict of the evidence on a statement."""
 
     SHOWN = "shown"
     CONTRADICTED = "contradicted"
@@ -69,11 +69,11 @@ class Measured:
         return _quantile(1.0 - 0.5 * _RISK / comparisons, self.freedom) * self.error
 
     def detectable(self, comparisons: int = 1) -> float:
-        """How far from the end of a range the true value has to lie to be told from it in nine of ten cases."""
+        """Distance of a true value from the end of a range that is detected in nine of ten cases."""
         return self.half_width(comparisons) + _quantile(_DETECTED, self.freedom) * self.error
 
     def minus(self, other: Measured) -> Measured:
-        """The difference of two that scatter independently."""
+        """Difference of two independent quantities."""
         return Measured(
             self.value - other.value,
             hypot(self.error, other.error),
@@ -82,7 +82,7 @@ class Measured:
         )
 
     def times(self, factor: float) -> Measured:
-        """The same in another unit."""
+        """Quantity times a factor, as for another unit."""
         return replace(self, value=factor * self.value, error=abs(factor) * self.error)
 
 
@@ -117,13 +117,13 @@ def somewhere_above(found: Sequence[Measured], level: float) -> ClaimVerdict:
 
 
 def about(printed: float, step: float) -> tuple[float, float]:
-    """The range of values that may be told as `printed`, where numbers go in such steps."""
+    """Range of values that round to `printed`, in multiples of `step`."""
     return printed - 0.5 * step, printed + 0.5 * step
 
 
 @dataclass(frozen=True)
 class Statement:
-    """One statement within a claim: what was found, the verdict on it, and that on the number that the paper gives.
+    """Statement of a claim: the finding, the verdict on it, and the verdict on the printed number.
 
     `power` is the least difference that would have been told, in words; empty where nothing scatters.
     """
@@ -135,7 +135,7 @@ class Statement:
 
     @property
     def text(self) -> str:
-        """What was found, with the verdicts."""
+        """Finding and verdicts as text."""
         number = f"; printed number {self.number}" if self.number is not None else ""
         power = f"; detectable: {self.power}" if self.power else ""
         return f"{self.found} [{self.verdict}{number}{power}]"
@@ -160,7 +160,7 @@ def statement(
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and what became of its statements."""
+    """Claim of the paper, with the verdicts on its statements."""
 
     number: int
     statement: str
@@ -169,12 +169,12 @@ class Claim:
 
     @property
     def verdict(self) -> ClaimVerdict:
-        """Of all statements together."""
+        """Verdict on all statements together."""
         return all_of(part.verdict for part in self.parts)
 
     @property
     def printed_numbers(self) -> ClaimVerdict | None:
-        """Of the numbers that the paper gives, where what has them is shown; None where there are none."""
+        """Verdict on the printed numbers of all statements; None if no number is printed or shown."""
         found = [part.number for part in self.parts if part.number is not None]
         return all_of(found) if found else None
 
@@ -188,13 +188,13 @@ class Claim:
 
     @property
     def evidence(self) -> str:
-        """What was found, statement by statement, each with its verdict."""
+        """Findings and verdicts of all statements as text."""
         return "; ".join(part.text for part in self.parts) + "." + (f" {self.note}" if self.note else "")
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What claims are judged by; None or empty where that part was not computed."""
+    """Results by which claims are judged; None or empty where not computed."""
 
     figure11: xr.Dataset | None = None
     between: Found = field(default_factory=dict)  # its swept values; there if Figure 11 is
@@ -203,7 +203,7 @@ class Evidence:
     linear: dict[tuple[int, str], float] = field(default_factory=dict)  # exact norms, the same
 
     def has_tables(self, *tables: int) -> bool:
-        """Whether the simulated rows of these tables are there."""
+        """Whether simulated rows of each of these tables are available."""
         return all(any(table == key[0] for key in self.rows) for table in tables)
 
     def improvement(self, table: int, index: str, case: int) -> Measured:

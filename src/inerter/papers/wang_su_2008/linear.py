@@ -16,7 +16,7 @@ STUDIES = ("table1", "table2", "figure11")
 
 @dataclass(frozen=True)
 class ComparedRow:
-    """A printed row beside the value of the same design under both conventions."""
+    """Printed row with the value of the same design under both conventions."""
 
     row: PrintedRow
     unit: str
@@ -36,7 +36,7 @@ class ComparedRow:
 
 @dataclass(frozen=True)
 class FoundDesign:
-    """The best design that this software finds, beside the printed one."""
+    """Best design found for a printed row."""
 
     row: PrintedRow
     unit: str
@@ -47,13 +47,13 @@ class FoundDesign:
 
     @property
     def gain_percent(self) -> float:
-        """How much lower the found value is than the printed one."""
+        """Reduction of the found value below the printed one [%]."""
         return 100.0 * (1.0 - self.value / float(self.row.printed))
 
 
 @dataclass(frozen=True, eq=False)
 class LinearTables:
-    """Everything linear in the paper's tables, recomputed."""
+    """Recomputed linear results of the paper's tables."""
 
     compared: list[ComparedRow]
     found: list[FoundDesign]

@@ -1,4 +1,4 @@
-"""Where the printed numbers come from: what each convention of 2008 does to them, measured on this reproduction."""
+"""Origins of the printed numbers: effect of each convention of 2008, measured on this reproduction."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from inerter.systems.assemble import assemble
 
 @dataclass(frozen=True)
 class Reason:
-    """One reason why a printed number is what it is, and by how much it matters."""
+    """Cause of a difference from the printed numbers, with its size, as text."""
 
     title: str
     text: str
 
 
 def origins(found: Reproduction) -> list[Reason]:
-    """Every reason for which there are numbers."""
+    """Causes of differences from the printed numbers, as far as the results quantify them."""
     result: list[Reason] = []
     rows = list(found.rows.values())
     if found.linear is not None:
@@ -177,7 +177,7 @@ def _below_print(rows: list[SimulatedRow]) -> Reason:
 
 
 def _root_of_the_road() -> Reason:
-    """Eq. (17) as it is printed, put to S1 of Table 1 by its linear response."""
+    """Effect of eq. (17) as printed on S1 of Table 1, by its linear response."""
     row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, "J1", "S1"))
     question = row.asks().question(row.design().mechanism())
     assert isinstance(question.drive, RoadVelocity)

@@ -31,7 +31,7 @@ class Curves:
 
     @property
     def step(self) -> float:
-        """Between swept stiffnesses [N/m]: what can be read off a figure."""
+        """Distance of the swept stiffnesses [N/m], the resolution of a figure."""
         return float(np.diff(self.k).max())
 
     def of(self, layout: str, index: str) -> Array:
@@ -39,11 +39,11 @@ class Curves:
         return np.asarray(self.data["value"].sel(layout=layout, index=index).values)
 
     def excess(self, one: str, other: str, index: str) -> Array:
-        """How much higher `one` is than `other`, relative."""
+        """Relative excess of `one` over `other` (k,)."""
         return np.asarray(self.of(one, index) / self.of(other, index) - 1.0)
 
     def measured(self, one: str, other: str, index: str) -> list[Measured]:
-        """How much higher `one` is than `other`, relative, at each stiffness.
+        """Relative excess of `one` over `other` with its uncertainty, at each stiffness.
 
         Realisation by realisation, since both were driven by the same ones: what those do to both alike cancels.
         """
@@ -55,7 +55,7 @@ class Curves:
         ]
 
     def mean_measured(self, one: str, other: str, index: str, at: Flags) -> Measured:
-        """How much higher `one` is than `other`, relative, in the mean where `at` holds.
+        """Mean relative excess of `one` over `other` with its uncertainty, over the stiffnesses where `at` is True.
 
         The realisations are the same at every stiffness, so their deviations are averaged before they are squared.
         """
@@ -95,18 +95,18 @@ class Curves:
         return np.asarray(self.data[name].sel(layout=layout, index=index).values) if name in self.data else None
 
     def _deviations(self, layout: str, index: str) -> Array:
-        """What each realisation adds to the mean (k, realisations); zero for a linear design."""
+        """Deviation of each realisation from the mean (k, realisations); zero for a linear design."""
         found = self._at("deviation", layout, index)
         return np.zeros((self.k.size, 1)) if found is None else np.nan_to_num(found)
 
     def _scatter(self, one: str, other: str, index: str) -> Array:
-        """The same of `excess` (k, realisations), to first order."""
+        """Deviation of `excess` in each realisation (k, realisations), to first order."""
         first, second = self.of(one, index)[:, None], self.of(other, index)[:, None]
         a, b = self._deviations(one, index), self._deviations(other, index)
         return np.asarray(a / second - first / second**2 * b)
 
     def _rest(self, one: str, other: str, index: str) -> Array:
-        """What is unsure of `excess` beside the realisations: harmonics that are missed, smoothing."""
+        """Uncertainty of `excess` (k,) not due to the realisations: unresolved harmonics, smoothing."""
         base, zero = self.of(other, index), np.zeros(self.k.size)
         parts = [self._at("unsampled_error", layout, index) for layout in (one, other)]
         return np.asarray(np.hypot(*(zero if part is None else np.nan_to_num(part) for part in parts)) / base)

@@ -1,4 +1,4 @@
-"""The whole paper: its parts as lists of small tasks, spread over processes, kept as they are done, put together."""
+"""Reproduction of the whole paper: its parts as lists of small tasks, spread over processes and kept in a journal."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class PaperItem:
-    """One small piece of work: a row of a table, a point of a curve, a crossing, an optimum, a budget."""
+    """Task of the reproduction: a row of a table, a point of a curve, a crossing, an optimum, or a break-even value."""
 
     part: str
     name: str
@@ -59,7 +59,7 @@ class PaperItem:
 
     @property
     def key(self) -> tuple[str, str]:
-        """What tells it from others."""
+        """Part and name, unique among all tasks."""
         return self.part, self.name
 
 
@@ -92,7 +92,7 @@ def _numbers(task: PaperItem) -> Numbers:
 
 @dataclass(frozen=True, eq=False)
 class Reproduction:
-    """What was computed; what was not asked for is None or empty."""
+    """Results of the reproduction; None or empty where not requested."""
 
     parts: tuple[str, ...]
     studies: dict[str, StudyResult] = field(default_factory=dict)
@@ -107,7 +107,7 @@ class Reproduction:
 
     @property
     def figure11(self) -> xr.Dataset | None:
-        """Figure 11's data."""
+        """Dataset of Figure 11."""
         return _figure11(self.studies)
 
 
@@ -161,7 +161,7 @@ def reproduce(
 
 
 def _result_names() -> tuple[str, ...]:
-    """What a folder of results may hold."""
+    """Names of files and folders that a result folder may hold."""
     studies = (f"{folder}/{name}" for folder in linear.STUDIES for name in ("", *result_names()))
     return (JOURNAL, f"{FIGURES}/", REPORT, *(f"{name}.csv" for name in TABLES), *studies)
 
@@ -229,7 +229,7 @@ def _curve(name: str, studies: dict[str, StudyResult]) -> PaperItem:
 
 
 def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:
-    """The numbers of all tasks; each is in the journal as soon as it is there."""
+    """Numbers of all tasks, by their keys; each is written to the journal as soon as it is computed."""
     journal = Journal(results.place / JOURNAL, {"paper": PAPER.name})
     before = journal.read() if results.resume else ()
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}

@@ -32,7 +32,7 @@ _ARRAYS = ("omega", "gain", "phase", "coherence", "band", "phase_band", "average
 
 @dataclass(frozen=True)
 class Found:
-    """A parameter beside the printed one."""
+    """Identified parameter, with the printed value."""
 
     name: str
     unit: str
@@ -43,7 +43,7 @@ class Found:
 
     @property
     def difference(self) -> float:
-        """From the printed value, relative; nan where there is none."""
+        """Relative difference from the printed value; nan if that is zero."""
         return self.value / self.printed - 1.0 if self.printed else float("nan")
 
 

@@ -30,7 +30,7 @@ VERDICTS = EQUAL, WITHIN, STARTED, EITHER, OTHER_PEAK, DIFFERS = (
 
 @dataclass(frozen=True)
 class SimulatedRow:
-    """A printed row beside its values under both conventions."""
+    """Printed row with its simulated values under both conventions."""
 
     row: PrintedRow
     unit: str
@@ -51,7 +51,7 @@ class SimulatedRow:
 
     @property
     def score(self) -> float | None:
-        """That difference in standard errors, if the printed mean of four runs scatters alike; None without scatter."""
+        """Difference of `paper2008` from the printed mean of four runs, in standard errors; None without scatter."""
         if not self.paper2008_error > 0.0:
             return None
         return (self.paper2008 - self.row.value) / (sqrt(2.0) * self.paper2008_error)
@@ -63,7 +63,7 @@ class SimulatedRow:
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """Verdict on the agreement with the printed value, as text."""
         if abs(self.paper2008 - self.row.value) <= 1.000001 * self.row.last_digit:
             return EQUAL
         if self.score is not None:
@@ -83,7 +83,7 @@ class SimulatedRow:
 
     @property
     def candidates(self) -> tuple[GainPeak, ...]:
-        """Those of them whose gains can be told apart in print: which one the printed value follows is open."""
+        """Peaks among `compatible` whose gains differ in print."""
         found: list[GainPeak] = []
         for peak in self.compatible:
             if all(abs(peak.gain - other.gain) > self.row.last_digit for other in found):
@@ -92,7 +92,7 @@ class SimulatedRow:
 
 
 def names(table: int) -> list[str]:
-    """What tells the rows of a table apart."""
+    """Names of the rows of a table: index and case."""
     return [f"{row.index} {row.case}" for row in simulated_rows(table)]
 
 

@@ -1,4 +1,4 @@
-"""What the paper prints, as data: its tables, and its designs as study files."""
+"""Printed tables of the paper as data, and its designs as study files."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class PrintedRow:
 
     @property
     def last_digit(self) -> float:
-        """One unit of the last printed digit."""
+        """Value of one unit of the last printed digit."""
         mantissa, _, exponent = self.printed.partition("e")
         decimals = len(mantissa.partition(".")[2])
         return 10.0 ** (int(exponent or 0) - decimals)
@@ -75,18 +75,18 @@ class PrintedRow:
         return vehicle
 
     def asks(self) -> Index:
-        """Its index."""
+        """Index of the row, with the settings of its study."""
         return index_of(self.index, study(self.study))
 
 
 def index_of(symbol: str, source: Study) -> Index:
-    """An index as the paper asks it: J5 with its force on a design that is not linear."""
+    """Index as defined in the paper: J5 with the amplitude of its force, others with the settings of the study."""
     return LoadCarrying(amplitude=_FORCE[source.model]) if symbol == "J5" else source.index(symbol)
 
 
 @cache
 def study(name: str) -> Study:
-    """One of the studies `table1`, `table2`, `figure11`, `friction1` and `friction2`."""
+    """Study of that name: `table1`, `table2`, `figure11`, `friction1` or `friction2`."""
     with as_file(_DATA / f"{name}.toml") as path:
         return load_study(path)
 

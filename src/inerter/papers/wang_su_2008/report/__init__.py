@@ -1,1 +1,1 @@
-"""How the reproduction is shown: its tables, its text, its figures and its page."""
+"""Report of the reproduction: tables, text, figures and page."""

@@ -83,7 +83,7 @@ def csv_text(rows: list[dict[str, Any]]) -> str:
 
 
 def reason(r: SimulatedRow) -> str:
-    """Why a row is not the printed one, as far as can be told; empty where scatter or rounding explains it."""
+    """Reason for the difference of a row from the printed value; empty if scatter or rounding explains it."""
     if r.verdict == OTHER_PEAK:
         peak = r.compatible[0]
         return (

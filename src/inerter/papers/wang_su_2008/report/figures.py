@@ -68,12 +68,12 @@ def draw_figure_12(road: Road, folder: Path) -> list[Path]:
 
 
 def draw_figure_13(results: xr.Dataset, folder: Path) -> list[Path]:
-    """The same as Figure 11 with friction, by Method 1."""
+    """Optimal indices and improvements over the static stiffness, with friction, by Method 1."""
     return _draw(_values_and_improvements(results, {"": "ideal", "-10N": "10 N", "-20N": "20 N"}), folder, FIGURE_13)
 
 
 def draw_figure_14(results: xr.Dataset, folder: Path) -> list[Path]:
-    """Both effects, S2 on the left, S3 on the right."""
+    """Effects of friction and elasticity together, S2 on the left, S3 on the right."""
     with styled():
         figure, axes = new_figure(2 * results.sizes["index"], 2, height=2.15)
         for row, index in enumerate(indices(results)):

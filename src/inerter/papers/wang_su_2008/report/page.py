@@ -69,7 +69,7 @@ def write_reproduction(found: Reproduction, folder: Path, executor: Executor | P
 
 
 def _figures(found: Reproduction, folder: Path) -> list[Drawing]:
-    """The figures for which there are numbers, as calls that draw them; those that take longest first."""
+    """Drawing functions of the figures with results, the slowest first."""
     figures: list[Drawing] = []
     if found.rig is not None:
         figures.append(partial(drawn.draw_rig, found.rig, folder))
@@ -122,7 +122,7 @@ def _page(found: Reproduction, folder: Path) -> str:
 
 
 def _summary(found: Reproduction) -> list[str]:
-    """What was found, in a few sentences."""
+    """Summary of the reproduction in a few sentences."""
     lines = [agreement_of(found.linear.compared)] if found.linear else []
     rows = list(found.rows.values())
     if rows:

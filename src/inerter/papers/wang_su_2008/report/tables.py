@@ -16,7 +16,7 @@ _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 
 
 def _unbroken(title: str) -> str:
-    """A title whose numbers stay on the line of their unit."""
+    """Title with no-break spaces between numbers and their unit."""
     return re.sub(r"(?<=\d) (?=N\b)", _NO_BREAK_SPACE, title)
 
 

@@ -21,7 +21,7 @@ _SIGNS = dict(zip(VERDICTS, "=~<?^!", strict=True))
 
 
 def reproduction_text(found: Reproduction) -> str:
-    """Everything as plain text of at most 80 columns."""
+    """Reproduction as plain text of at most 80 columns."""
     lines = [*wrap(PAPER.title, WIDTH), ""]
     if found.rig is not None:
         lines += [*wrap(SIMULATED, WIDTH), "", *(_rig_line(p) for p in found.rig.parameters), ""]
@@ -46,7 +46,7 @@ def reproduction_text(found: Reproduction) -> str:
 
 
 def rig_value(p: Found) -> tuple[str, str]:
-    """What was identified of a parameter, and its interval."""
+    """Identified value of a parameter and its confidence interval, as texts."""
     low, high = p.interval
     if p.value == p.value:
         return format_with_interval(p.value, low, high, p.unit)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import scipy
 
 import inerter as it
 from inerter.errors import RecordError
-from inerter.roads.spectrum import SAMPLING, _folding
+from inerter.roads.spectrum import SAMPLING, _folding, _freedom
 
 
 def made(seed, unevenness, waviness, length=4000.0, interval=0.1):
@@ -144,3 +145,15 @@ def test_noise_whose_shorter_waves_have_no_end_has_a_line_too():
     found = it.road_spectrum(profile)
     assert np.isfinite([found.standard, found.unevenness, found.waviness, found.scatter]).all()
     assert it.road_spectrum(profile, sampling="filtered").waviness == pytest.approx(0.0, abs=0.1)
+
+
+@pytest.mark.parametrize("segments", [2, 3, 6])
+@pytest.mark.parametrize("lines", [1, 4])
+def test_degrees_of_freedom_are_those_of_the_scatter_of_welchs_method(segments, lines):
+    """A mean over neighbouring lines of white noise scatters as chi squared with them: variance over squared mean."""
+    size, draws = 128, 3000
+    noise = np.random.default_rng(segments).normal(size=(draws, segments * size))
+    density = scipy.signal.welch(noise, nperseg=size, window="hann", detrend=False)[1]
+    means = density[:, 20 : 20 + lines].mean(axis=1)
+    expected = 2.0 / float(_freedom(segments * size, size, np.array(float(lines))))
+    assert np.var(means) / np.mean(means) ** 2 == pytest.approx(expected, rel=0.12)

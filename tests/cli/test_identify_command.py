@@ -200,12 +200,12 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
     assert call(["identify", *arguments]) == 1
     out, err = capsys.readouterr()
     first = " ".join(out.partition("\n\n")[0].split())
-    assert first.startswith("Not to be relied on: the model leaves ")
+    assert first.startswith("Not to be relied on: the residual is ")
     assert "the displacement is delayed by 4" in first
     assert "the displacement is delayed by 4" in err
     assert max(map(len, out.splitlines())) <= 80
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.index("Not to be relied on:") < page.index("the displacement is late") < page.index("Parameters")
+    assert page.index("Not to be relied on:") < page.index("the displacement is delayed") < page.index("Parameters")
     data = json.loads((folder / "fit.json").read_text())
     assert data["status"].startswith("inaccurate")
     assert "delay" in [e["name"] for e in data["explanations"][:2]]

@@ -144,7 +144,7 @@ def test_a_model_that_is_not_the_device_says_so():
         [record], it.Spring(it.free(1e3, 1e6, name="k")) | it.Damper(it.free(1, 1e4, name="c")), seed=0, starts=8
     )
     assert not fit.status.ok
-    assert "explains" in fit.status.message
+    assert "explained" in fit.status.message
     assert all(math.isnan(p.value) for p in fit.parameters.values())
 
 

@@ -165,10 +165,11 @@ def _saturation(record: Record) -> list[Finding]:
     share = float(np.mean(saturated_samples(record)))
     if share == 0.0:
         return []
-    extremes = [(plateau.value, plateau.longest) for plateau in plateaus(record)]
-    where = {"limit": record.force_range} if record.force_range is not None else {"extremes": extremes}
-    numbers = {"share": share, **where}
-    return [Finding(RecordFinding.SATURATION, "warning", "force", numbers)]
+    if record.force_range is not None:
+        where: dict[str, object] = {"limit": record.force_range}
+    else:
+        where = {"extremes": [(plateau.value, plateau.longest) for plateau in plateaus(record)]}
+    return [Finding(RecordFinding.SATURATION, "warning", "force", {"share": share, **where})]
 
 
 def _steps(record: Record) -> list[Finding]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.errors import Status, StatusKind
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
     criteria,
     criterion_unit,
@@ -233,7 +233,7 @@ def _answer(layout: str, found: Front, method: str) -> FrontAnswer:
         layout=layout,
         values=found.values.tolist(),
         parameters=list(found.parameters),
-        statuses=[_text(status) for status in found.statuses],
+        statuses=list(map(str, found.statuses)),
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
         status=found.status.kind.value,
@@ -245,10 +245,6 @@ def _without(layout: str, status: str, message: str) -> FrontAnswer:
     return FrontAnswer(
         layout=layout, values=[], parameters=[], statuses=[], jumps=[], knee=None, status=status, message=message
     )
-
-
-def _text(status: Status) -> str:
-    return f"{status.kind.value}: {status.message}" if status.message else status.kind.value
 
 
 def _told_points(data: xr.Dataset, layout: str) -> list[tuple[str, int]]:

@@ -82,7 +82,7 @@ class StudyResult:
             yield f"{' '.join(names)}: {status.values[tuple(place)]}"
         for answer in self.answers:
             if not answer.ok:
-                yield f"{answer.name}: {answer.status}: {answer.message}"
+                yield f"{answer.name}: {answer.status_text}"
 
 
 def run_study(

@@ -1,8 +1,8 @@
 """Tasks: analyses of the best designs of a study, in parts that are computed one by one.
 
-All of a task is in one file: the keys that ask for it, its parts, how one is answered, what is known of one that
-failed, and how answers are written as CSV, on a terminal, on a page. The journal, processes, executors, progress,
-`--json` and exit codes are the same for all.
+All of a task is in one file: its parts, how one is answered, what is known of one that failed, and how answers are
+written as CSV, on a terminal, on a page. The keys that ask for it are with its row, or with those of [study]. The
+journal, processes, executors, progress, `--json` and exit codes are the same for all.
 """
 
 from __future__ import annotations

@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from inerter import units
 from inerter.errors import UnitError
+from inerter.frequent_units import FREQUENT
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, shown
 
@@ -287,9 +289,10 @@ def test_shown_is_one_short_line(value):
     assert len(shown(value).splitlines()) == 1
 
 
-def test_pint_is_loaded_by_the_first_quantity_only():
+def test_pint_is_loaded_by_the_first_unit_that_is_not_frequent():
     before, after = (f"assert 'pint' {state} sys.modules" for state in ("not in", "in"))
-    code = f"import sys, inerter.units as u; {before}; u.parse_quantity('1 N', 'N'); {after}"
+    frequent, other = (f"inerter.units.parse_quantity('1 {unit}', 'N')" for unit in ("kN", "lbf"))
+    code = f"import sys, inerter.units; {frequent}; {before}; {other}; {after}"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
@@ -328,3 +331,13 @@ def test_a_mass_where_a_force_is_meant(text, unit, meant):
     with pytest.raises(UnitError, match=f'Did you mean "{re.escape(meant)}"'):
         parse_one_of(text, {"N/m": "spring", "N s/m": "damper"}, "N/m")
     assert parse_quantity(meant, unit) > 0.0
+
+
+@pytest.mark.parametrize("unit", FREQUENT)
+def test_frequent_units_are_those_of_pint(unit: str) -> None:
+    """Factors to the last digit; and two of them are of one kind for pint where they are in the table."""
+    registry, (base, up, down) = units._registry(), FREQUENT[unit]
+    one, other = registry.parse_units(unit), registry.parse_units(base)
+    assert (registry.convert(1.0, one, other), registry.convert(1.0, other, one)) == (up, down)
+    for name, (others, _, _) in FREQUENT.items():
+        assert (registry.parse_units(name).dimensionality == one.dimensionality) == (others == base), name

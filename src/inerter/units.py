@@ -1,4 +1,4 @@
-"""Quantities as text: "120 kN/m" to a number in SI units and back. Pint lives here alone and loads on first use."""
+"""Quantities as text: "120 kN/m" to a number in SI units and back. Pint is used here alone, and loads on first use."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from inerter.errors import UnitError
+from inerter.frequent_units import FREQUENT
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -59,7 +60,7 @@ def parse_quantity(text: str, unit: str) -> float:
     number, given = _split(text, expected, unit, example)
     if unit == _ROUGHNESS and (form := _density_form(given)) is not None:
         return _converted(text, number, given, "m^3") * _KAPPA_OVER[form]
-    if _dimension(given) != _dimension(unit):
+    if not _are_of_one_kind(given, unit):
         problem = f"{_described(given)} is a unit of another kind"
         like = f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}"
         _fail(text, problem, expected, example or like)
@@ -78,9 +79,8 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = 
     ('N s/m', 3200.0)
     """
     number, given = _split(text, f"one of {', '.join(units)}", example)
-    kind = _dimension(given)
     for unit in units:
-        if _dimension(unit) == kind:
+        if _are_of_one_kind(given, unit):
             _check_density(text, given, unit)
             return unit, _converted(text, number, given, unit)
     known = ", ".join(f"{unit} ({what})" for unit, what in units.items())
@@ -99,6 +99,8 @@ def unit_in(text: str) -> str:
 
 def is_unit(unit: str) -> bool:
     """Whether that is a unit, which quantities can be read in."""
+    if unit in FREQUENT:
+        return True
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         return False
     try:
@@ -119,7 +121,9 @@ def is_unit_for(given: str, unit: str) -> bool:
 
 def _density_form(given: str) -> int | None:
     """The power of radians in a unit of displacement spectral density, as ISO 8608 has them; None for other units."""
-    if _dimension(given) != _dimension("m^3"):
+    if given in FREQUENT:
+        return 0 if FREQUENT[given][0] == "m^3" else None
+    if not _are_of_one_kind(given, "m^3"):
         return None
     base = _registry().get_base_units(_registry().parse_units(given))[1]
     power = next((n for n in _KAPPA_OVER if base == _registry().parse_units("m^3") * _registry().radian ** n), None)
@@ -132,7 +136,7 @@ def are_alike(unit: str, other: str) -> bool:
     >>> are_alike("km/h", "m/s"), are_alike("kg", "N/m")
     (True, False)
     """
-    return bool(_dimension("" if unit == PURE else unit) == _dimension("" if other == PURE else other))
+    return _are_of_one_kind("" if unit == PURE else unit, "" if other == PURE else other)
 
 
 def product(one: str, sign: str, other: str) -> str:
@@ -335,7 +339,7 @@ def _number_of(text: object) -> str:
 def _as_force(given: str, units: Iterable[str]) -> str:
     """`given` with forces for its masses ("lbf/in" for "lb/in"), if that is a unit of the kind of one of `units`."""
     force = _MASS.sub(lambda mass: _FORCES[mass[0]], given)
-    return force if force != given and any(_dimension(force) == _dimension(unit) for unit in units) else ""
+    return force if force != given and any(_are_of_one_kind(force, unit) for unit in units) else ""
 
 
 def _prefixed(given: str, unit: str) -> str:
@@ -357,9 +361,17 @@ def _converted(text: str, number: str, given: str, unit: str) -> float:
 
 @cache
 def _factors(given: str, unit: str) -> tuple[float, float]:
+    if given in FREQUENT and FREQUENT[given][0] == unit:
+        return FREQUENT[given][1:]
     registry = _registry()
     one, other = registry.parse_units(given), registry.parse_units(unit)
     return float(registry.convert(1.0, one, other)), float(registry.convert(1.0, other, one))
+
+
+def _are_of_one_kind(unit: str, other: str) -> bool:
+    if unit in FREQUENT and other in FREQUENT:
+        return FREQUENT[unit][0] == FREQUENT[other][0]
+    return bool(_dimension(unit) == _dimension(other))
 
 
 @cache

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
@@ -10,7 +11,7 @@ from inerter.errors import UnitError
 from inerter.files.common.roads import remark
 from inerter.files.common.toml import as_toml
 from inerter.files.study.study import Study
-from inerter.units import parse_quantity
+from inerter.units import is_unit_for, parse_quantity, unit_in
 
 
 def texts_of(tables: Mapping[str, Any]) -> tuple[str, ...]:
@@ -38,10 +39,9 @@ def as_written(study: Study, value: float, unit: str) -> str | None:
 def _values(texts: tuple[str, ...], unit: str) -> dict[float, str]:
     found: dict[float, str] = {}
     for text in texts:
-        try:
-            found.setdefault(parse_quantity(text, unit), text)
-        except UnitError:
-            continue
+        with suppress(UnitError):
+            if is_unit_for(unit_in(text), unit):
+                found.setdefault(parse_quantity(text, unit), text)
     return found
 
 

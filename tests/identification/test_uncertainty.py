@@ -54,13 +54,13 @@ def test_of_errors_that_stay_for_a_stroke_there_are_as_many_as_strokes() -> None
 
 @pytest.mark.parametrize("draws", [3, 5, 12])
 def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Student's prediction interval: where the next one lies with 95 %."""
+    """Student's prediction interval, where scatter and curvature contradict each other; the prior is one draw more."""
     table = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=0)
     experiment = experiment_of(table.run(it.cosine(1e-3, 3.0), duration=1.0))
     rig = it.Rig(it.Inerter(it.free(10.0, 500.0, name="b")) | it.Friction(10.0))
     problem = FitProblem(rig, space_of(rig), [experiment], [uniform_whitening(experiment.kept, 0.12)])
     optimum = replace(best_fit_of(problem, problem.space.coordinates_of({"b": 113.0})), widening=np.ones(1))
-    scatter = np.random.default_rng(draws).normal(0.0, 5.0 * optimum.errors, (draws, 1))
+    scatter = np.random.default_rng(draws).normal(0.0, 50.0 * optimum.errors, (draws, 1))
     left = iter(scatter)
 
     def improve(*arguments: Any) -> tuple[Any, ...]:
@@ -68,8 +68,21 @@ def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypat
 
     monkeypatch.setattr(bootstrapping, "improve", improve)
     found = bootstrapping.bootstrap(problem, optimum, seed=0, draws=draws)
-    expected = t.ppf(0.975, draws - 1) * np.std(scatter, axis=0, ddof=1) * np.sqrt(1.0 + 1.0 / draws)
-    assert norm.ppf(0.975) * found.optimum.errors == pytest.approx(expected, rel=1e-6)
+    expected = t.ppf(0.975, draws) * np.std(scatter, axis=0, ddof=0) * np.sqrt(1.0 + 1.0 / draws)
+    assert norm.ppf(0.975) * found.optimum.errors == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("draws", [5, 12])
+def test_intervals_of_scatter_and_curvature_cover_95_percent(draws: int) -> None:
+    """Of ratios drawn from the prior; half of them are 1, where more than 98 % would be too wide."""
+    random, count = np.random.default_rng(draws), 200_000
+    larger = np.exp(random.exponential(2.0, count))  # with density r^-1.5 / 2 above 1
+    ratio = np.where(random.random(count) < 0.5, 1.0, larger)
+    scatter = ratio * random.chisquare(draws - 1, count) / (draws - 1)
+    error = np.sqrt(ratio) * random.standard_normal(count)
+    covered = np.abs(error) < norm.ppf(0.975) * np.sqrt(bootstrapping.predictive_widening(scatter, draws))
+    assert covered.mean() == pytest.approx(0.95, abs=2e-3)
+    assert 0.95 < covered[ratio == 1.0].mean() < 0.98
 
 
 @dataclass

@@ -15,15 +15,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
-from scipy.stats import t as student
+from scipy.optimize import brentq
+from scipy.stats import chi2, norm
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.intervals import ROBUST, BestFit, steps_of
+from inerter.identification.intervals import LEVEL, ROBUST, BestFit, steps_of
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
@@ -32,22 +32,25 @@ from inerter.work.progress import counter
 Matrix = NDArray[np.float64]
 DRAWS = 12
 _EVALUATIONS = 5
+_SIGNIFICANT = 2.0  # standard errors of the mean of drawn fits, beyond which it is a bias
+_RATIOS = np.geomspace(1e-3, 1e5, 161)  # of variances, at which their predictive widening is computed
 
 
 @dataclass(frozen=True, eq=False)
 class Bootstrap:
     """Result of a parametric bootstrap: the fit with wider intervals, its bias, and its predictability."""
 
-    optimum: BestFit  # the same, with intervals at least as wide as they scatter
-    bias: Matrix  # of the drawn fits against the generating device, in coordinates; at most two standard errors
+    optimum: BestFit  # the same, with intervals widened by their scatter
+    bias: Matrix  # of the drawn fits against the generating device, in coordinates, where it is significant
     predicted: float  # share of the variance of the force that encoder noise does not change
 
 
 def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRAWS) -> Bootstrap:
     """Draw records from the best fit, and fit them.
 
-    Their scatter replaces the curvature, which assumes independent errors; autocorrelation of the residuals is added to
-    it. Where residuals exceed the sensor noise, the scatter is scaled by the same factor.
+    Their scatter and the residuals' autocorrelation widen the intervals by curvature, which assumes independent errors,
+    for the same reason: noise that passes through the model. The larger of the two counts (`predictive_widening`).
+    Where residuals exceed the sensor noise, the scatter is scaled by the same factor.
     """
     random = np.random.default_rng([seed, 2])
     lower, upper = problem.space.bounds
@@ -65,12 +68,46 @@ def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRA
     shares = [_unchanged_share(source.forces, force, problem.experiments) for force in forces]
     moved = np.array(points) - optimum.point
     unexplained = max(optimum.cost / max(float(np.median(costs)), 1e-300), 1.0)
-    few = student.ppf(0.975, draws - 1) / norm.ppf(0.975)
-    square = np.var(moved, axis=0, ddof=1) * (1.0 + 1.0 / draws) * unexplained * few**2
-    ratio = np.clip(square / np.maximum(np.diag(optimum.covariance), 1e-300), 1.0, 1e4)
-    wider = replace(optimum, widening=optimum.widening + ratio - 1.0)
-    bias = np.clip(np.mean(moved, axis=0), -2.0 * wider.errors, 2.0 * wider.errors)
+    ratio = np.var(moved, axis=0, ddof=1) * unexplained / np.maximum(np.diag(optimum.covariance), 1e-300)
+    mean = np.mean(moved, axis=0)
+    biased = np.abs(mean) > _SIGNIFICANT * np.std(moved, axis=0, ddof=1) / np.sqrt(draws)
+    of_mean = np.where(biased, 1.0 + 1.0 / draws, 1.0)  # a mean that is subtracted scatters too
+    wider = replace(optimum, widening=np.maximum(optimum.widening, of_mean * predictive_widening(ratio, draws)))
+    bias = np.where(biased, np.clip(mean, -2.0 * wider.errors, 2.0 * wider.errors), 0.0)
     return Bootstrap(wider, np.asarray(bias), float(np.median(shares)))
+
+
+def predictive_widening(ratio: Matrix, draws: int) -> Matrix:
+    """Factor of a variance by curvature with which a 95 % interval covers, from a sample variance over it.
+
+    A priori the true ratio is 1, with probability one half, or above it with density r^-1.5 / 4; given the sample
+    variance of `draws` normal values over that by curvature, the interval has the predictive probability of 95 %
+    (Gelman et al. 2013, chapter 3, for a scaled inverse chi-square likelihood). So few draws that agree with the
+    curvature widen it hardly, and those that contradict it by the factor of about Student's t.
+    """
+    larger = np.maximum(ratio, 1.0)
+    return larger * np.interp(np.log(np.maximum(ratio, 1e-300)), np.log(_RATIOS), _widening_table(draws))
+
+
+@cache
+def _widening_table(draws: int) -> Matrix:
+    """Predictive widening over the larger of one and the ratio, at `_RATIOS`."""
+    freedom = draws - 1
+    step = np.linspace(0.0, np.log(1e7), 2001)  # of the logarithm of the true ratio
+    true = np.append(1.0, np.exp(step))
+    prior = np.append(0.5, 0.25 * np.exp(-0.5 * step) * step[1])
+    quantile = norm.ppf(0.5 + 0.5 * LEVEL)
+
+    def widening(ratio: float) -> float:
+        likelihood = chi2.logpdf(freedom * ratio / true, freedom) - np.log(true)
+        weight = prior * np.exp(likelihood - likelihood.max())
+
+        def missed(factor: float) -> float:
+            return float(2.0 * weight @ norm.sf(factor * quantile / np.sqrt(true)) / weight.sum() - (1.0 - LEVEL))
+
+        return float(brentq(missed, 0.5, 1e4) ** 2)
+
+    return np.array([widening(float(ratio)) / max(float(ratio), 1.0) for ratio in _RATIOS])
 
 
 def _refit(

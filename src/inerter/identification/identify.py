@@ -47,7 +47,7 @@ def identify(
     The model follows the smoothed displacement of the record, and its force is compared; no measured motion is
     differentiated twice. Points of a Sobol' sequence, and an initial estimate without simulation for devices that are a
     chain, are improved by least squares; residuals are weighted and whitened by simulated sensor noise; intervals are
-    from profile likelihoods at 95 %, at least as wide as the scatter of a parametric bootstrap. A parameter that is not
+    from profile likelihoods at 95 %, widened by the scatter of a parametric bootstrap. A parameter that is not
     identifiable has the value nan, with the reason in `fit.identifiable`.
 
     Where the residual exceeds sensor noise (`fit.misfit`; that of the record where it is stated, such as

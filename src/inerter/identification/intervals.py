@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.stats import t as student
 
-from inerter.identification.noise import OPTIMISM
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.search import improve
 from inerter.work.progress import counter
@@ -64,7 +63,7 @@ def best_fit_of(
 
 def _best_fit(problem: FitProblem, point: Matrix, cost: float, residual: Matrix, jacobian: Matrix) -> BestFit:
     samples = sum(int((w.weight > 0.0).sum()) for w in problem.whitenings)
-    variance = OPTIMISM * 2.0 * cost / max(samples - point.size, 1)
+    variance = 2.0 * cost / max(samples - point.size, 1)
     information = jacobian.T @ jacobian
     covariance = np.asarray(np.linalg.pinv(information, rcond=1e-14, hermitian=True) * variance)
     return BestFit(

@@ -14,7 +14,6 @@ Matrix = NDArray[np.float64]
 _LEAST = 1.0 / 3.0  # of the level: smallest error
 _BANDS, _LINES = 6, 20  # of the spectrum of residuals: in an octave, and the fewest lines in each
 _NEAR = 2  # samples before and after, whose errors are averaged
-OPTIMISM = (1.0 + 1.0 / _LINES) ** 2  # by which weights from the residuals themselves make variances too small
 
 
 @dataclass(frozen=True, eq=False)

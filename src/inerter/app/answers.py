@@ -161,7 +161,7 @@ def optimum(
         found[case] = run_case(asked, case)
     tell(len(found), len(every), "")
     return {
-        "designs": [_told(study, outcome) for outcome in found.values()],
+        "designs": [_describe_outcome(study, outcome) for outcome in found.values()],
         "at_speeds": asdict(_at_speeds(asked, found)),
     }
 
@@ -177,7 +177,7 @@ def _at_speeds(study: Study, found: Mapping[Case, Outcome]) -> SpeedSentences:
     return speed_sentences(dataset(there, found))
 
 
-def _told(study: Study, outcome: Outcome) -> Answer:
+def _describe_outcome(study: Study, outcome: Outcome) -> Answer:
     """Outcome of a design for an answer, with its values as texts that are read back exactly."""
     return {
         **outcome.to_json(),

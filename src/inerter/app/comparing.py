@@ -31,7 +31,7 @@ _VEHICLE, _DIGITS = "vehicle", 5
 
 
 @dataclass(frozen=True)
-class _Judged:
+class _IndexResult:
     """Design with its estimate of one index by one method."""
 
     design: Design
@@ -45,7 +45,7 @@ class _Judged:
         value, status = self.estimate.value, self.estimate.status
         return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
 
-    def beside(self, other: _Judged) -> Comparison | None:
+    def beside(self, other: _IndexResult) -> Comparison | None:
         """Comparison with another design on the same roads.
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
@@ -66,13 +66,16 @@ def indices(study: Study, body: Body) -> Answer:
     """Indices of all designs, compared with the baseline, and the state of their limits."""
     designs = designs_of(study, body)
     baseline = baseline_of(study, body, designs)
-    asked = _asked(study, body)
-    base = [None if baseline is None else _judged(baseline, *each) for each in asked]
+    asked = _index_method_pairs(study, body)
+    base = [None if baseline is None else _evaluate_design(baseline, *each) for each in asked]
     return {
         "designs": [
             {
                 **design.told(),
-                "results": [_told(_judged(design, *each), one) for each, one in zip(asked, base, strict=True)],
+                "results": [
+                    _describe_result(_evaluate_design(design, *each), one)
+                    for each, one in zip(asked, base, strict=True)
+                ],
                 "limits": limits_at(study, design, asked[0][1]),
             }
             for design in designs
@@ -94,11 +97,11 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
     designs = _of_studies(study, body)
     if not _FEWEST <= len(designs) <= _MOST:
         raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
-    asked = _asked(study, body)
-    found: list[list[_Judged]] = []
+    asked = _index_method_pairs(study, body)
+    found: list[list[_IndexResult]] = []
     for i, design in enumerate(designs):
         tell(i, len(designs), design.name)
-        found.append([_judged(design, *each) for each in asked])
+        found.append([_evaluate_design(design, *each) for each in asked])
     tell(len(designs), len(designs), "")
     best = [_best(column) for column in zip(*found, strict=True)]
     return {
@@ -108,7 +111,7 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
                 "network": LayoutCodec().dump(one[0].design.study.layouts[one[0].design.layout]),
                 "numbers": _numbers(one[0].design),
                 "results": [
-                    {**_told(each, base), "best": i in least}
+                    {**_describe_result(each, base), "best": i in least}
                     for each, base, least in zip(one, found[0], best, strict=True)
                 ],
             }
@@ -147,17 +150,17 @@ def _numbers(design: Design) -> dict[str, str]:
     return found
 
 
-def _asked(study: Study, body: Body) -> list[tuple[str, str]]:
+def _index_method_pairs(study: Study, body: Body) -> list[tuple[str, str]]:
     """Pairs of each requested index and each requested method."""
     indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
     return [(index, method) for index in indices for method in methods]
 
 
-def _judged(design: Design, index: str, method: str) -> _Judged:
-    return _Judged(design, index, method, valued(design.vehicle, design.asked(index), design.study.method(method)))
+def _evaluate_design(design: Design, index: str, method: str) -> _IndexResult:
+    return _IndexResult(design, index, method, valued(design.vehicle, design.asked(index), design.study.method(method)))
 
 
-def _best(found: Sequence[_Judged]) -> list[int]:
+def _best(found: Sequence[_IndexResult]) -> list[int]:
     """Numbers of the designs that do not differ significantly from the best one.
 
     None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
@@ -172,7 +175,7 @@ def _best(found: Sequence[_Judged]) -> list[int]:
     return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_tie)]
 
 
-def _told(one: _Judged, baseline: _Judged | None) -> Answer:
+def _describe_result(one: _IndexResult, baseline: _IndexResult | None) -> Answer:
     """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
     study, estimate = one.design.study, one.estimate
     two = None if baseline is None else one.beside(baseline)

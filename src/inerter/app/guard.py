@@ -50,7 +50,7 @@ class AccessGuard:
         try:
             self._check(scope, headers)
             limit = self.record_limit if scope["path"] == "/api/records" else self.limit
-            await self.app(scope, _limited(receive, headers, limit), _with_headers(send))
+            await self.app(scope, _limit_body(receive, headers, limit), _with_headers(send))
         except Refused as refused:
             await refuse(refused, send)
 
@@ -83,7 +83,7 @@ async def refuse(refused: Refused, send: Send) -> None:
     await send({"type": "http.response.body", "body": body})
 
 
-def _limited(receive: Receive, headers: list[tuple[bytes, bytes]], limit: int) -> Receive:
+def _limit_body(receive: Receive, headers: list[tuple[bytes, bytes]], limit: int) -> Receive:
     """The body of a request, refused if it says that it is larger than the limit, or turns out to be."""
     told = [value for name, value in headers if name == b"content-length"]
     too_large = Refused(413, f"The body is larger than {limit} bytes, the limit of this server.")

@@ -75,7 +75,7 @@ class Jobs:
             with suppress(OSError, ValueError, KeyError, AttributeError):
                 request = json.loads(path.read_bytes())
                 if _OURS.items() <= request.items():
-                    self.known[path.parent.name] = _left(path.parent, request)
+                    self.known[path.parent.name] = _job_of_earlier_server(path.parent, request)
 
     def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
         """Append a job to the queue; raises `Refused` where too much is kept already."""
@@ -157,7 +157,7 @@ class Jobs:
         job.over.set()
 
 
-def _left(folder: Path, request: Mapping[str, Any]) -> Job:
+def _job_of_earlier_server(folder: Path, request: Mapping[str, Any]) -> Job:
     """Work that an earlier server has left: as it ended, or stopped where it was."""
     events, _ = events_of(folder)
     last = events[-1] if events else {}

@@ -61,11 +61,11 @@ class Lane:
     async def begin(self) -> None:
         """Start the process, and import the modules of its answers."""
         with suppress(Exception):  # should it fail, so does the first request, which says why
-            await (await self._submitted((load, *self.homes)))
+            await (await self._submit((load, *self.homes)))
 
     async def _do(self, mine: Waiting) -> None:
         try:
-            status, body = await self._called(mine)
+            status, body = await self._await_call(mine)
         except BrokenExecutor:
             mine.refuse(Refused(500, "The process of this answer ended unexpectedly; memory may have run out."))
         except TimeoutError:  # nobody waits for it
@@ -80,14 +80,14 @@ class Lane:
             elif not mine.answer.done():
                 mine.answer.set_result(body)
 
-    async def _submitted(self, call: Call) -> asyncio.Future[Any]:
+    async def _submit(self, call: Call) -> asyncio.Future[Any]:
         """Future of the call in the process, which is started if necessary."""
         function, *args = call
         return asyncio.wrap_future(await asyncio.to_thread(partial(self.worker.submit, function, *args)))
 
-    async def _called(self, mine: Waiting) -> tuple[int, Any]:
+    async def _await_call(self, mine: Waiting) -> tuple[int, Any]:
         """Status and body of the call; raises `TimeoutError` if that takes long, and nobody waits for it any more."""
-        future = await self._submitted(mine.call)
+        future = await self._submit(mine.call)
         overtaken = asyncio.create_task(mine.outdated.wait())
         try:
             await asyncio.wait((future, overtaken), return_when=asyncio.FIRST_COMPLETED)

@@ -49,17 +49,17 @@ def application(server: Server, token: str, port: int, limit: int, record_limit:
         async with server.running():
             yield
 
-    routes = [Route(e.path, _routed(server, e), methods=[e.verb]) for e in ENDPOINTS]
+    routes = [Route(e.path, _make_route(server, e), methods=[e.verb]) for e in ENDPOINTS]
     routes.append(Route("/{path:path}", _page, methods=["GET"]))
-    handlers: dict[Any, Any] = {Refused: _refused, 404: _unknown, 405: _unknown, Exception: _fault}
+    handlers: dict[Any, Any] = {Refused: _refusal_response, 404: _unknown, 405: _unknown, Exception: _fault}
     app = Starlette(routes=routes, lifespan=lifespan, exception_handlers=handlers)
     return AccessGuard(app, token, port, limit, record_limit)
 
 
-def _routed(server: Server, endpoint: Endpoint) -> Callable[[Request], Awaitable[Response]]:
+def _make_route(server: Server, endpoint: Endpoint) -> Callable[[Request], Awaitable[Response]]:
     async def route(request: Request) -> Response:
         try:
-            given = () if endpoint.body is None else (_checked(endpoint.body, decoded(await request.body())),)
+            given = () if endpoint.body is None else (_validate_body(endpoint.body, decoded(await request.body())),)
             found = await endpoint.handler(server, request, *given)
         except ClientDisconnect:
             return Response(status_code=400)
@@ -82,7 +82,7 @@ def _files() -> dict[str, Path]:
     return {path.relative_to(WEB).as_posix(): path for path in WEB.rglob("*") if path.is_file()}
 
 
-async def _refused(request: Request, refused: Refused) -> Response:
+async def _refusal_response(request: Request, refused: Refused) -> Response:
     return as_json(encoded(refused.body), refused.status)
 
 
@@ -98,7 +98,7 @@ async def _fault(request: Request, error: Exception) -> Response:
     return as_json(encoded({"sentence": f"This is a fault of the program ({where}). Nothing else is lost."}), 500)
 
 
-def _checked(shape: type[BaseModel], body: Any) -> BaseModel:
+def _validate_body(shape: type[BaseModel], body: Any) -> BaseModel:
     try:
         return shape.model_validate(body)
     except ValidationError as error:

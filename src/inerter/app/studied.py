@@ -33,7 +33,7 @@ def optimise(body: Body, folder: Path, tell: Tell) -> Any:
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
-    return _studied(study_from(body["study"]), folder, tell)
+    return _run_study(study_from(body["study"]), folder, tell)
 
 
 def sweep(body: Body, folder: Path, tell: Tell) -> Any:
@@ -53,10 +53,10 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _studied(replace(study, layouts=layouts), folder, tell)
+    return _run_study(replace(study, layouts=layouts), folder, tell)
 
 
-def _studied(study: Study, folder: Path, tell: Tell) -> Any:
+def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
     """Run a study as `inerter run` does, into the folder of the job; returns the results as data."""
 
     def show(result: StudyResult, into: Path) -> None:

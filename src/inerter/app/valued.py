@@ -29,18 +29,18 @@ def valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     try:
         hash(asked)
     except TypeError:  # a mechanism, or an index with matrices
-        return _valued(*asked)
+        return _estimate_index(*asked)
     return _remembered(*asked)
 
 
-def _valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def _estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     try:
         return evaluate(vehicle, index, method)
     except FAILURES as error:
         return Estimate(nan, index.unit, Status(StatusKind.FAILED, str(error)))
 
 
-_remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most designs as they were
+_remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leaves most designs as they were
 
 
 def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:

@@ -36,7 +36,7 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
     given = {name: str(path) for name, path in tls.items() if path is not None}
     with connected(asked.scheduler, asked.scheduler_file, given) as executor:
         clusters.check(executor)
-        print(f"inerter: {_told(clusters.places(executor))}", file=sys.stderr, flush=True)
+        print(f"inerter: {_describe_workers(clusters.places(executor))}", file=sys.stderr, flush=True)
         yield executor
 
 
@@ -76,7 +76,7 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
         yield client.get_executor(pure=False)
 
 
-def _told(places: Sequence[clusters.Worker]) -> str:
+def _describe_workers(places: Sequence[clusters.Worker]) -> str:
     threads = sum(place.threads for place in places)
     hosts = len({place.host for place in places})
     counts = ((len(places), "worker"), (threads, "thread"), (hosts, "machine"))

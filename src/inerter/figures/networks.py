@@ -155,17 +155,17 @@ def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
         if lead:
             lines += [((x, y), (x, y - lead)) for y in (top, bottom + lead)]
     size = (parts[0].left - xs[0], parts[-1].right + xs[-1], inside + 2.0 * _STUB)
-    return _joined(parts, at, size, lines)
+    return _join_schematics(parts, at, size, lines)
 
 
 def _in_a_column(parts: Sequence[Schematic]) -> Schematic:
     heights = [part.height for part in parts]
     at = [(0.0, -y) for y in accumulate(heights[:-1], initial=0.0)]
     left, right = max(part.left for part in parts), max(part.right for part in parts)
-    return _joined(parts, at, (left, right, sum(heights)))
+    return _join_schematics(parts, at, (left, right, sum(heights)))
 
 
-def _joined(
+def _join_schematics(
     parts: Sequence[Schematic], at: Sequence[Point], size: tuple[float, float, float], lines: Iterable[Line] = ()
 ) -> Schematic:
     there = [part.moved(*point) for part, point in zip(parts, at, strict=True)]

@@ -181,7 +181,7 @@ def _curves(names: Sequence[str]) -> tuple[Curve, ...]:
     return tuple(Curve(name, label, i) for i, (name, label) in enumerate(zip(names, labels, strict=True)))
 
 
-def _shared(names: Sequence[str]) -> list[str]:
+def _shared_words(names: Sequence[str]) -> list[str]:
     """The words that all names have: "tyre" and "load" of `tyre_front_load` and `tyre_rear_load`."""
     words = [name.split("_") for name in names]
     return [word for word in words[0] if all(word in others for others in words)]
@@ -189,12 +189,12 @@ def _shared(names: Sequence[str]) -> list[str]:
 
 def _common(names: Sequence[str]) -> str:
     """Words common to the names of several outputs; else the first name."""
-    return " ".join(_shared(names)) or names[0].replace("_", " ")
+    return " ".join(_shared_words(names)) or names[0].replace("_", " ")
 
 
 def _own(names: Sequence[str]) -> list[str]:
     """Words that distinguish each of several outputs: "front" of `road_front`, or its whole name."""
-    shared = _shared(names)
+    shared = _shared_words(names)
     own = [" ".join(word for word in name.split("_") if word not in shared) for name in names]
     return own if all(own) and len({*own}) == len(own) else [name.replace("_", " ") for name in names]
 

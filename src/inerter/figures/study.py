@@ -216,7 +216,7 @@ def _improvement(results: xr.Dataset) -> Figure:
     return figure
 
 
-def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
+def _has_response(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
     """True for each output of an index with a nonzero response; roll has none where both tracks are equal."""
     gain = results[f"gain_{index}"]
     most = np.asarray(gain.max([name for name in gain.dims if name != f"output_{index}"]).fillna(0.0).values)
@@ -225,12 +225,12 @@ def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
 
 def _still(results: xr.Dataset, index: str) -> str:
     """A sentence on the outputs that a figure leaves out."""
-    names = results[f"output_{index}"].values[~_excited(results, index)].tolist()
+    names = results[f"output_{index}"].values[~_has_response(results, index)].tolist()
     return f" Not excited, and not shown: {listed([name.replace('_', ' ') for name in names])}." if names else ""
 
 
 def _response(results: xr.Dataset, index: str) -> Figure:
-    results = results.isel({f"output_{index}": _excited(results, index)})
+    results = results.isel({f"output_{index}": _has_response(results, index)})
     outputs = results.sizes[f"output_{index}"]
     figure, axes = new_figure(outputs, min(outputs, 2), height=3.0)
     frequency_responses(results, index, axes)

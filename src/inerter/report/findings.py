@@ -237,7 +237,7 @@ def _places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer
 
 
 def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
-    title = f"Best {_called(results, index)}"
+    title = f"Best {_index_label(results, index)}"
     names = best_layouts(results, index)
     if not names:
         return f"{title}: {_none(results, index)}."
@@ -255,7 +255,7 @@ def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
     return f"{'; '.join(parts)}."
 
 
-def _called(results: xr.Dataset, index: str) -> str:
+def _index_label(results: xr.Dataset, index: str) -> str:
     """Title of an index, with its name if it is user-defined."""
     title = index_title(results, index)
     return title if index in INDICES else titled(title, index)
@@ -296,7 +296,7 @@ def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
     results, write = one_method(every), wording.write
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
-    swept, title, baseline = swept_words(results), _called(results, index), results.attrs["baseline"]
+    swept, title, baseline = swept_words(results), _index_label(results, index), results.attrs["baseline"]
     names_there = compared(results) or results["layout"].values.tolist()
     rows = results["improvement" if compared(results) else "value"].sel(index=index)
     found = {name: ends for name in names_there if (ends := extremes(rows.sel(layout=name))) is not None}

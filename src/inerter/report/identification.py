@@ -105,7 +105,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
             sentences=[verdict.sentence for verdict in fit.identifiable.values() if not verdict.plain],
             names=list(fit.parameters),
-            correlation=[[_signed(value) for value in row] for row in fit.correlation.tolist()],
+            correlation=[[_format_correlation(value) for value in row] for row in fit.correlation.tolist()],
             next_experiment=fit.next_experiment,
             elements=elements_block(found),
             records=list(_records(found)),
@@ -188,7 +188,7 @@ def _computation(found: Identified) -> str:
     return text.replace(": -", ": −")
 
 
-def _signed(value: float) -> str:
+def _format_correlation(value: float) -> str:
     """Correlation with its sign, without one if it rounds to zero; empty if not available."""
     if isnan(value):
         return ""

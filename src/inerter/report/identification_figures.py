@@ -95,7 +95,7 @@ def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     measured = MotionCurve("measured", record.time, record.displacement, record.force)
     model = MotionCurve("model", record.time, record.displacement, c.model)
     part = (float(record.time[first]), float(record.time[last]))
-    yield "fit", time_figure(measured, model), f"the model over the measurement, {_checked(c)}."
+    yield "fit", time_figure(measured, model), f"the model over the measurement, {_fitted_part(c)}."
     inside = slice(max(first - 1, 0), last + 2)
     near = [MotionCurve(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
     yield "window", time_figure(near[0], near[1], part), f"{part[0]:.4g} to {part[1]:.4g} s of it."
@@ -123,7 +123,7 @@ def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     )
 
 
-def _checked(c: RecordFit) -> str:
+def _fitted_part(c: RecordFit) -> str:
     if not c.checked.any():
         return "all of it fitted"
     start = float(c.record.time[int(np.flatnonzero(c.checked)[0])])

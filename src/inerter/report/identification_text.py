@@ -29,7 +29,7 @@ def identification_text(found: Identified) -> str:
         _records(found),
         _candidates(found),
         _estimates(found),
-        _identified(found),
+        _identifiability_lines(found),
         _goodness(found),
         _next(found),
         iter(elements_block(found).splitlines()),
@@ -168,7 +168,7 @@ def remarks(found: Identified) -> Iterator[str]:
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
 
-def _identified(found: Identified) -> Iterator[str]:
+def _identifiability_lines(found: Identified) -> Iterator[str]:
     said = [verdict.sentence for verdict in found.fit.identifiable.values() if not verdict.plain]
     if said:
         yield "what is identified, and what is not"

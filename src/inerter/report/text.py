@@ -67,7 +67,7 @@ def summary_table(results: xr.Dataset) -> str:
     blocks = [
         [
             *block(results, index),
-            *_compared(every, index),
+            *_sweep_lines(every, index),
             *limit_lines(every, index, WIDTH),
             *(["", *method_lines(every, index, WIDTH)] if several else []),
         ]
@@ -114,7 +114,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     yield from _lines(["layout", "best"], "worst", table)
 
 
-def _compared(results: xr.Dataset, index: str) -> Iterator[str]:
+def _sweep_lines(results: xr.Dataset, index: str) -> Iterator[str]:
     """Lines on where layouts outperform the baseline over a sweep."""
     if swept_places(results) and compared(results):
         for _, sentence in over_the_sweep(results.sel(index=[index])):
@@ -157,14 +157,14 @@ def _lines(header: list[str], last: str, table: Sequence[_TextRow]) -> Iterator[
         if not cells[0]:
             yield f"  {row.name}"
         first = "  " + "".join(f"{text:<{width}}  " for text, width in zip(cells, widths, strict=True))
-        items = _packed(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
+        items = _pack_items(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
         yield (first + items[0]).rstrip()
         yield from (" " * indent + line for line in items[1:])
         if row.status != "ok":
             yield from wrap(row.status, WIDTH, initial_indent="    ! ", subsequent_indent="      ")
 
 
-def _packed(items: Sequence[str], width: int) -> list[str]:
+def _pack_items(items: Sequence[str], width: int) -> list[str]:
     """The items, separated by commas, on lines of `width`; a line ends between two items where it can."""
     lines: list[str] = []
     for i, item in enumerate(items):

@@ -216,7 +216,7 @@ class Fronts(Task[FrontAnswer]):
                     for name, value in zip(names, values, strict=True)
                 ]
             )
-            better = _bettered(data, layout, baseline) if baseline and layout != baseline else ""
+            better = _dominance_clause(data, layout, baseline) if baseline and layout != baseline else ""
             status = str(data["front_status"].sel(layout=layout).item())
             if status != StatusKind.OK:
                 doubts.append(f"{layout}, {status}")
@@ -282,7 +282,7 @@ def _has(data: xr.Dataset, parameter: str) -> bool:
     return bool(np.isfinite(data["front_parameter"].sel(parameter=parameter)).any())
 
 
-def _bettered(data: xr.Dataset, layout: str, baseline: str) -> str:
+def _dominance_clause(data: xr.Dataset, layout: str, baseline: str) -> str:
     """Clause on how many designs of the baseline's front `layout` strictly dominates; empty without points."""
     ours, theirs = (data["front_value"].sel(layout=name).values for name in (layout, baseline))
     ours, theirs = (values[np.isfinite(values).all(axis=1)] for values in (ours, theirs))

@@ -127,22 +127,22 @@ def run_identification(
     Raises what `identify` raises.
     """
     with running_on(executor):
-        return _identified(readings, request, progress)
+        return _identify(readings, request, progress)
 
 
-def _identified(readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None) -> Identified:
+def _identify(readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None) -> Identified:
     records = [r.used for r in readings]
     settings = dict(request.settings)
     title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
     if request.chooses:
-        return _chosen(title, readings, request, settings, progress)
+        return _select_model(title, readings, request, settings, progress)
     ((name, model),) = request.models().items()
     fit = identify(records, with_mount(model), FitOptions(**settings), progress=progress)
     named = Rig(model).device
     return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
 
 
-def _chosen(
+def _select_model(
     title: str,
     readings: Sequence[Reading],
     request: IdentificationRequest,
@@ -167,7 +167,7 @@ def _with_best(model: Network, fit: Fit) -> Network:
 def responses(found: Identified) -> Responses:
     """Frequency responses of the records, corrected by the fitted gain and delay of the sensors, and of the model."""
     values = {name: p.best for name, p in found.fit.parameters.items()}
-    records = [_corrected(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
+    records = [_correct_force(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
     try:
         measured = frequency_response(records)
     except InerterError as error:
@@ -193,7 +193,7 @@ def model_title(found: Identified) -> str:
     return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
 
 
-def _corrected(comparison: RecordFit, gain: float, delay: float) -> Record:
+def _correct_force(comparison: RecordFit, gain: float, delay: float) -> Record:
     moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
     record = comparison.record.with_notes(force=(comparison.record.force - comparison.offset) / gain - moved)
     return shift_force(record, delay) if delay else record

@@ -86,17 +86,17 @@ class SimulationRequest(SimulationSettings):
     def check(self) -> int:
         """The number of steps; raises what `simulate` would raise before it integrates."""
         settings = RunSettings(**self._settings)
-        return check_simulation(self.design(), self._driven(), settings)
+        return check_simulation(self.design(), self._input_arguments(), settings)
 
     def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Simulate it; raises what `simulate` raises."""
-        return simulate(self.design(), **self._driven(), **self._settings, progress=progress)
+        return simulate(self.design(), **self._input_arguments(), **self._settings, progress=progress)
 
     @property
     def _settings(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("duration", "step", "integrator", "every", "energy")}
 
-    def _driven(self) -> Driven:
+    def _input_arguments(self) -> Driven:
         signals = self.signals()
         signal = signals.get("", signals)
         moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}

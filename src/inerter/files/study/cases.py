@@ -158,15 +158,15 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
         ):
             return _run(study, case, threads)
     except FAILURES as error:
-        return _failed(study, case, str(error))
+        return _failure_outcome(study, case, str(error))
 
 
 def lost_case(study: Study, case: Case) -> Outcome:
     """Outcome of a case whose worker processes ended at every attempt."""
-    return _failed(study, case, ENDED)
+    return _failure_outcome(study, case, ENDED)
 
 
-def _failed(study: Study, case: Case, why: str) -> Outcome:
+def _failure_outcome(study: Study, case: Case, why: str) -> Outcome:
     failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
     return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, why)
 

@@ -69,7 +69,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     if study is _sound:
         return
     problems, every = [], cases(study)
-    tried = _tried(every)
+    tried = _points_to_check(every)
     for number, layout in enumerate(study.layouts):
         for done, point in enumerate(tried, start=number * len(tried)):
             tell(done, len(tried) * len(study.layouts))
@@ -83,7 +83,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     _sound = study
 
 
-def _tried(every: Cases) -> list[int]:
+def _points_to_check(every: Cases) -> list[int]:
     """All of some points; of many the ends, those of the extremes of each sweep, and others evenly between."""
     tried = {*np.linspace(0, every.points - 1, min(every.points, _MOST_TRIED), dtype=int).tolist()}
     if len(tried) < every.points:

@@ -48,7 +48,7 @@ class Gathered:
         self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
         self._parameters = study.free_units
-        self._data = _labelled(study, self._parameters)
+        self._data = _empty_dataset(study, self._parameters)
         self._columns = {name: i for i, name in enumerate(self._parameters)}
         self._arrays = {str(name): by_case(self._data, str(name)) for name in self._data.data_vars}
 
@@ -191,7 +191,7 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
     return array.reshape(data["status"].size, *array.shape[data["status"].ndim :])
 
 
-def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
+def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
     indices = {name: study.asked(name, next(iter(study.layouts))) for name in study.indices}
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}

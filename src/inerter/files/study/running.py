@@ -118,7 +118,7 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
-        gathered, done, computed = _computed(study, results, pool, progress, compiling)
+        gathered, done, computed = _compute_outcomes(study, results, pool, progress, compiling)
         answers = tuple(done[part] for part in parts_of(study))
         data = gathered.dataset()
         write_text(results.draft / RESOLVED, write_resolved(study))
@@ -171,7 +171,7 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
         yield results
 
 
-def _computed(
+def _compute_outcomes(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
 ) -> tuple[Gathered, _Done, int]:
     """All cases and parts of tasks, and how many cases were not in the journal."""

@@ -109,7 +109,7 @@ def _quantities(fields: Iterable[Field]) -> Iterator[str]:
 
 
 def _moved_by_road(kind: type[VehicleModel]) -> bool:
-    return bool(_made(kind).mechanism().roads)
+    return bool(_unit_vehicle(kind).mechanism().roads)
 
 
 def _elements(kind: type[VehicleModel]) -> Iterator[str]:
@@ -150,7 +150,7 @@ def _settings(kind: type[VehicleModel]) -> Iterator[str]:
             yield f"# {as_line(key.name, key.example)}"
 
 
-def _made(kind: type[VehicleModel]) -> VehicleModel:
+def _unit_vehicle(kind: type[VehicleModel]) -> VehicleModel:
     """Vehicle of a model with unit values."""
     network: Network = Spring(1.0) | Damper(1.0)
     values: dict[str, Any] = {field.name: 1.0 for field in fields_of(kind)}
@@ -164,7 +164,7 @@ def _answers(kind: type[VehicleModel], symbol: str) -> bool:
     if bare - {"road"}:
         return False
     try:
-        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_made(kind).mechanism())
+        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_unit_vehicle(kind).mechanism())
     except InerterError:
         return False
     return True

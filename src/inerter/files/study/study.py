@@ -193,7 +193,7 @@ def elements_used(study: Study) -> dict[str, list[str]]:
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
         named = [name for text in struts.struts.values() for name in _names(text)]
-        for element in dict.fromkeys([*named, *(other for name in named for other in _followed(study, name))]):
+        for element in dict.fromkeys([*named, *(other for name in named for other in _tied_names(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
 
@@ -203,7 +203,7 @@ def scattering(study: Study, layout: str) -> set[str]:
     return {name for text in study.layouts[layout].struts.values() for name in _names(text)}
 
 
-def _followed(study: Study, name: str) -> tuple[str, ...]:
+def _tied_names(study: Study, name: str) -> tuple[str, ...]:
     """Names of the elements on which a tied element depends; empty if it is not tied."""
     value = study.elements[name].value if name in study.elements else None
     return value.names if isinstance(value, Tied) else ()

@@ -10,8 +10,8 @@ import numpy as np
 
 from inerter.app.designs import Design, baseline_of, design_of, designs_of
 from inerter.app.documents import study_from
+from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
-from inerter.app.valued import limits_at, valued
 from inerter.errors import DesignError
 from inerter.figures.labels import decimals_of
 from inerter.files.common.layouts import LayoutCodec
@@ -55,7 +55,7 @@ class _IndexResult:
         if not np.isfinite([self.estimate.value, other.estimate.value]).all():
             return None
         first, second = self.design.vehicle, other.design.vehicle
-        asked, method = self.design.asked(self.index), self.design.study.method(self.method)
+        asked, method = self.design.resolve_index(self.index), self.design.study.method(self.method)
         try:
             return compare(first, second, asked, method, known=(self.estimate, other.estimate))
         except FAILURES:
@@ -71,7 +71,7 @@ def indices(study: Study, body: Body) -> Answer:
     return {
         "designs": [
             {
-                **design.told(),
+                **design.describe_values(),
                 "results": [
                     _describe_result(_evaluate_design(design, *each), one)
                     for each, one in zip(asked, base, strict=True)
@@ -80,16 +80,16 @@ def indices(study: Study, body: Body) -> Answer:
             }
             for design in designs
         ],
-        "baseline": None if baseline is None else baseline.told(),
+        "baseline": None if baseline is None else baseline.describe_values(),
     }
 
 
 def side_by_side(study: Study, body: Body) -> Answer:
     """Comparison of two to four designs with the first of them; each may belong to another study."""
-    return compared(study, body, lambda done, total, told: None)
+    return compare_designs(study, body, lambda done, total, told: None)
 
 
-def compared(study: Study, body: Body, tell: Tell) -> Answer:
+def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
     """Comparison of two to four designs with the first of them, with a progress report before each.
 
     What is asked of all, on which road and by which methods, is what `study` says.
@@ -107,7 +107,7 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
     return {
         "designs": [
             {
-                **one[0].design.told(),
+                **one[0].design.describe_values(),
                 "network": LayoutCodec().dump(one[0].design.study.layouts[one[0].design.layout]),
                 "numbers": _numbers(one[0].design),
                 "results": [
@@ -141,9 +141,9 @@ def _put(study: Study, document: object) -> Study:
 
 def _numbers(design: Design) -> dict[str, str]:
     """Numbers of a design's elements and vehicle as texts with units, by their description."""
-    used = {name for name, layouts in elements_used(design.fixed).items() if design.layout in layouts}
+    used = {name for name, layouts in elements_used(design.fixed_study).items() if design.layout in layouts}
     found = {}
-    for label, number in places(design.fixed).items():
+    for label, number in places(design.fixed_study).items():
         place = place_of(label)
         if isinstance(number.value, int | float) and (place.section == _VEHICLE or element_at(place) in used):
             found[number.words] = format_quantity(number.value, number.unit, digits=_DIGITS)
@@ -157,7 +157,9 @@ def _index_method_pairs(study: Study, body: Body) -> list[tuple[str, str]]:
 
 
 def _evaluate_design(design: Design, index: str, method: str) -> _IndexResult:
-    return _IndexResult(design, index, method, valued(design.vehicle, design.asked(index), design.study.method(method)))
+    return _IndexResult(
+        design, index, method, estimate_index(design.vehicle, design.resolve_index(index), design.study.method(method))
+    )
 
 
 def _best(found: Sequence[_IndexResult]) -> list[int]:

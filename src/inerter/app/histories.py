@@ -9,7 +9,7 @@ import numpy as np
 
 from inerter.app.designs import Design
 from inerter.errors import StudyError
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.files.common.roads import road_values
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
@@ -27,14 +27,14 @@ _DURATION, _STEP = 10.0, 5e-4  # [s]
 def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     """The motion of a design over a random road of the study.
 
-    Raises what `simulated` raises, and `simulate`.
+    Raises what `simulation_request` raises, and `simulate`.
     """
-    asked = simulated(study, design, body)
+    asked = simulation_request(study, design, body)
     run, mechanism = asked.run(), design.mechanism
     names = body.get("outputs") or main_outputs(mechanism)
     shaded = _state_intervals(run)
     return {
-        **design.told(),
+        **design.describe_values(),
         "signals": [_signal_curve(run, name) for name in names],
         "motion": _motion(run, mechanism),
         "shaded": shaded,
@@ -48,7 +48,7 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
     }
 
 
-def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
+def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
     """Simulation request of a design over a random road of the study.
 
     Raises `StudyError` for a time that is too long to be looked at, and where there is no road.
@@ -66,7 +66,7 @@ def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> Simulati
         model=study.model,
         vehicle=study.vehicle,
         road=road_values(study.road, study.coherence),
-        elements=design.fixed.elements,
+        elements=design.fixed_study.elements,
         layouts=study.layouts,
         signal=SignalRequest("multisine", "road", {"seed": int(body.get("seed") or 0)}),
         layout=design.layout,
@@ -77,7 +77,7 @@ def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> Simulati
 
 def _signal_curve(run: Trajectory, name: str) -> dict[str, Any]:
     """An output by the lowest and the highest sample of each piece, at their times."""
-    time, values = thinned(run.time, run[name], _MOST)
+    time, values = thin_curve(run.time, run[name], _MOST)
     return {
         "name": name,
         "label": run.outputs[name].title,

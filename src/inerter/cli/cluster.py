@@ -34,14 +34,14 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
         raise StudyError("Got --jobs and a scheduler; leave --jobs out: the cluster has as many processes as it has.")
     tls = {"tls_ca_file": asked.tls_ca_file, "tls_client_cert": asked.tls_cert, "tls_client_key": asked.tls_key}
     given = {name: str(path) for name, path in tls.items() if path is not None}
-    with connected(asked.scheduler, asked.scheduler_file, given) as executor:
+    with cluster_executor(asked.scheduler, asked.scheduler_file, given) as executor:
         clusters.check(executor)
         print(f"inerter: {_describe_workers(clusters.places(executor))}", file=sys.stderr, flush=True)
         yield executor
 
 
 @contextmanager
-def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
+def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
     """Executor on a running cluster, by the address or the file of its scheduler.
 
     `tls` are fields of dask's `Security`.

@@ -31,7 +31,7 @@ from inerter.papers.registry import PAPERS
 from inerter.report.answers import answers
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
-from inerter.report.text import WIDTH, summary_table, wrapped
+from inerter.report.text import WIDTH, summary_table, wrap_text
 
 _MOST = 20  # designs that are told one by one
 
@@ -80,14 +80,14 @@ def run(
             print(text, end="")
     else:
         road = roads_sentence(loaded)
-        head = [*wrapped(loaded.title), *(wrapped(f"{road}.") if road else []), ""]
+        head = [*wrap_text(loaded.title), *(wrap_text(f"{road}.") if road else []), ""]
         print("\n".join([*head, summary_table(result.data)]))
         for task, own in by_task(result.answers).items():
             print("\n".join(task.lines(TaskResults(loaded, result.data, own), WIDTH)))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         told = answers(result.data, loaded, result.answers)
-        print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
+        print("\n".join(["", *(line for text in told for line in wrap_text(text, subsequent_indent="  "))]))
     return _judge(result)
 
 

@@ -9,7 +9,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StudyError, with_article
-from inerter.files.common.keys import ANY_NAME, Key, below, found, keys_of
+from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
@@ -44,7 +44,7 @@ def explain(wanted: str | None) -> int:
     section = wanted.partition(".")[0]
     if kind_with(section) is not None and all(key.place != section for key in keys):
         raise StudyError(_unknown(wanted, keys))
-    told = [list(_describe_key(key, keys)) for key in found(keys, wanted)]
+    told = [list(_describe_key(key, keys)) for key in find_keys(keys, wanted)]
     told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
         raise StudyError(_unknown(wanted, keys))

@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inerter.figures.labels import axis_label, scale
-from inerter.figures.style import add_legend, colour, log_axis, new_figure, styled
+from inerter.figures.style import add_legend, colour, log_axis, new_figure, style_context
 
 Matrix = NDArray[np.float64]
 _BINS, _CELLS = 24, 18  # of a curve, and of the map to either side
@@ -43,7 +43,7 @@ class ResidualSamples:
 
 def misfit_figure(s: ResidualSamples) -> Figure:
     """Residual over time, position, speed and model force, its spectrum, and its mean over position and speed."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(6, 2, height=2.0)
         _over_time(axes[0], s)
         _spectrum(axes[1], s)

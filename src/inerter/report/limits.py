@@ -11,18 +11,18 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
+    format_list,
     index_title,
     indices,
     infeasible,
     layouts,
-    listed,
     one_method,
-    printed,
     swept_places,
     swept_text,
     swept_words,
-    titled,
+    title_with_name,
     typeset,
+    typeset_quantity,
     with_unit,
 )
 from inerter.report.question import of_each
@@ -59,11 +59,11 @@ def _table(results: xr.Dataset, index: str) -> Table:
     limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        told = [_describe_limit(_entry(results, name, index, limit), index, printed) for limit in limits]
+        told = [_describe_limit(_entry(results, name, index, limit), index, typeset_quantity) for limit in limits]
         entry = _entry(results, name, index)
-        told += [_where(entry, _is_infeasible(entry), printed)] if swept else []
+        told += [_where(entry, _is_infeasible(entry), typeset_quantity)] if swept else []
         rows.append(Row(name, [Cell(text or "–", remark.replace(" -", " \N{MINUS SIGN}")) for text, remark in told]))
-    caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
+    caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
     over = f", over {' and '.join(swept_words(results))}" if swept else ""
     return Table(
         f"{caption}{over}",
@@ -121,4 +121,4 @@ def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_un
     ]
     ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
     told = [" to ".join(swept_text(entry, place, end, write) for end in pair) for pair in ends]
-    return f"at {count} of {size} values", f"{words} = {listed(told)}" if len(told) <= _MOST_RANGES else ""
+    return f"at {count} of {size} values", f"{words} = {format_list(told)}" if len(told) <= _MOST_RANGES else ""

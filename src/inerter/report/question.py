@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.fields import Field, fields_of
-from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
+from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of
 from inerter.files.study.places import places
+from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.files.study.ways import ways
-from inerter.files.study.written import as_written
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
@@ -82,7 +82,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
     """Rows on the settings of a user-defined index that have value types other than quantities."""
     known = places(study)
-    for key, form, value in study.own_indices[name].formed if name in study.own_indices else ():
+    for key, form, value in study.own_indices[name].typed_settings if name in study.own_indices else ():
         for words, text in form.told(value):
             yield f"{words} of {name}", text
         for part, _ in form.codec.numbers(value, ""):
@@ -119,14 +119,14 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
     return [(what, ", ".join(told)) for what, told in given.items() if told]
 
 
-def spoken(words: str) -> str:
+def key_in_words(words: str) -> str:
     """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
     return words.replace("-", " ").replace(".", " of ")
 
 
 def of_each(name: str, each: str) -> str:
     """Limited quantity in words, with the part to which the limit applies if to each separately."""
-    return f"{spoken(name)}, {each}," if each else spoken(name)
+    return f"{key_in_words(name)}, {each}," if each else key_in_words(name)
 
 
 def limit_words(study: Study, limit: StudyLimit) -> str:
@@ -158,8 +158,8 @@ def layout_rows(study: Study) -> list[LayoutText]:
 
 def indices_asked(results: xr.Dataset) -> str:
     """The indices in a sentence."""
-    names = [titled(index_title(results, index), index) for index in indices(results)]
-    return f"The {'index is' if len(names) == 1 else 'indices are'} {listed(names)}."
+    names = [title_with_name(index_title(results, index), index) for index in indices(results)]
+    return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
 
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:

@@ -47,7 +47,7 @@ def below(keys: Iterable[Key], section: Key) -> list[Key]:
     return [key for key in keys if key.place.startswith(f"{section.place}.")]
 
 
-def found(keys: Iterable[Key], wanted: str) -> list[Key]:
+def find_keys(keys: Iterable[Key], wanted: str) -> list[Key]:
     """The keys that `wanted` may mean: a place, the end of one, or a place with a name of the author's own in it."""
     parts = wanted.strip().strip("[]").split(".")
     return _merge_equal_keys(key for key in keys if _ends(key, parts))

@@ -17,8 +17,8 @@ from inerter.files.common.codec import (
     REQUIRED,
     Scalar,
     TableCodec,
-    declared,
     key,
+    keyed_dataclass,
     keys_in,
     section,
     table_of,
@@ -54,7 +54,7 @@ def _from_minus_one(value: Any) -> float:
 _LEVELS = Scalar(_from_minus_one, lambda: {"type": "number", "minimum": -1, "maximum": 1})
 
 
-@declared
+@keyed_dataclass
 class CoherenceTable:
     """How alike left and right track are: as on an isotropic surface, everywhere alike, or of first order."""
 
@@ -88,7 +88,7 @@ def _of_one_form(values: dict[str, float]) -> dict[str, float]:
 COHERENCE = table_of(CoherenceTable, make=without_none, check=_of_one_form, about=CoherenceTable.__doc__)
 
 
-@declared
+@keyed_dataclass
 class RoadSource:
     """Source of a roughness that the file does not say: a class, or a measured profile."""
 

@@ -10,7 +10,17 @@ from typing import Any
 from inerter.checks import is_number
 from inerter.errors import RowError, UnitError
 from inerter.fields import fields_of
-from inerter.files.common.codec import Codec, KeyPath, LoadContext, Scalar, TableCodec, declared, key, keys_in, table_of
+from inerter.files.common.codec import (
+    Codec,
+    KeyPath,
+    LoadContext,
+    Scalar,
+    TableCodec,
+    key,
+    keyed_dataclass,
+    keys_in,
+    table_of,
+)
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
 from inerter.files.common.entries import EXPRESSION, TEXT, declaration_of, not_negative, positive, word
 from inerter.files.common.number import Number
@@ -116,7 +126,7 @@ PORT = PortCodec(least=1)
 SOME_PORT = PortCodec()
 
 
-@declared
+@keyed_dataclass
 class StrutTable:
     """Between two ports; without a lower one it is on the ground."""
 
@@ -129,7 +139,7 @@ class StrutTable:
     network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "k | c"', default=None)
 
 
-@declared
+@keyed_dataclass
 class TyreTable:
     """Between a port and a road."""
 
@@ -138,7 +148,7 @@ class TyreTable:
     network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "kt"', default=None)
 
 
-@declared
+@keyed_dataclass
 class RoadPlace:
     """Where the mechanism meets the road."""
 
@@ -146,7 +156,7 @@ class RoadPlace:
     track: str = key(word("a track", TRACKS), "Left or right, where there are two.", 'track = "left"', default="")
 
 
-@declared
+@keyed_dataclass
 class MeasureTable:
     """Which outputs answer the questions of indices."""
 
@@ -166,7 +176,7 @@ class MeasureTable:
     load_output: str | None = key(TEXT, "What it moves.", 'load_output = "body_displacement"', default=None)
 
 
-@declared
+@keyed_dataclass
 class SeatTable:
     """A seat with its occupant, on any vehicle."""
 
@@ -186,7 +196,7 @@ def _parts_of(kind: Any) -> TableCodec:
     return table_of(kind, make=dict, about=(kind.__doc__ or "").partition("\n\n")[0])
 
 
-@declared
+@keyed_dataclass
 class MechanismTable:
     """A vehicle of masses, levers, networks and roads."""
 

@@ -59,7 +59,7 @@ class Responses:
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class IdentificationResult:
     """Identification result with everything that its report contains."""
 
     title: str
@@ -121,7 +121,7 @@ def run_identification(
     request: IdentificationRequest,
     progress: Progress | None = None,
     executor: Executor | None = None,
-) -> Identified:
+) -> IdentificationResult:
     """Fit the model, or choose one, to the records; an `executor` shares the work.
 
     Raises what `identify` raises.
@@ -130,7 +130,9 @@ def run_identification(
         return _identify(readings, request, progress)
 
 
-def _identify(readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None) -> Identified:
+def _identify(
+    readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None
+) -> IdentificationResult:
     records = [r.used for r in readings]
     settings = dict(request.settings)
     title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
@@ -139,7 +141,7 @@ def _identify(readings: Sequence[Reading], request: IdentificationRequest, progr
     ((name, model),) = request.models().items()
     fit = identify(records, with_mount(model), FitOptions(**settings), progress=progress)
     named = Rig(model).device
-    return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
+    return IdentificationResult(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
 
 
 def _select_model(
@@ -148,12 +150,12 @@ def _select_model(
     request: IdentificationRequest,
     settings: dict[str, Any],
     progress: Progress | None,
-) -> Identified:
+) -> IdentificationResult:
     models = request.models()
     given = {name: models[name] for name in VISCOUS} if request.elements else None
     choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
-    return Identified(
+    return IdentificationResult(
         *(title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings),
         candidates=choice.candidates,
         choice=choice.findings,
@@ -164,7 +166,7 @@ def _with_best(model: Network, fit: Fit) -> Network:
     return with_values(model, {name: p.best for name, p in fit.parameters.items()})
 
 
-def responses(found: Identified) -> Responses:
+def responses(found: IdentificationResult) -> Responses:
     """Frequency responses of the records, corrected by the fitted gain and delay of the sensors, and of the model."""
     values = {name: p.best for name, p in found.fit.parameters.items()}
     records = [_correct_force(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
@@ -188,7 +190,7 @@ def responses(found: Identified) -> Responses:
     return Responses(measured, model, linear, tuple(notes))
 
 
-def model_title(found: Identified) -> str:
+def model_title(found: IdentificationResult) -> str:
     """The model in words."""
     return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
 

@@ -111,7 +111,7 @@ class SimulationResult:
         return tuple(found)
 
     @property
-    def unrecorded(self) -> tuple[str, ...]:
+    def unrecorded_elements(self) -> tuple[str, ...]:
         """Frictions and gaps whose events the integrator does not record."""
         known = self.run.states
         return tuple(n for _, n, element in self._elements_by_mount() if element.switch is not None and n not in known)

@@ -74,7 +74,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
         for done, point in enumerate(tried, start=number * len(tried)):
             tell(done, len(tried) * len(study.layouts))
             try:
-                _check_design(study.at(every.swept(point)), layout)
+                _check_design(study.at(every.sweep_values(point)), layout)
             except InerterError as error:
                 problems.append(at(("layouts", layout), str(error)))
                 break
@@ -113,7 +113,7 @@ def _check_design(study: Study, layout: str) -> None:
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            objective_of(vehicle, study.asked(name, layout), method)
+            objective_of(vehicle, study.resolve_index(name, layout), method)
         bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from inerter.errors import InerterError
-from inerter.files.common.codec import Codec, KeyPath, Scalar, declared, key, table_of, without_none
+from inerter.files.common.codec import Codec, KeyPath, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
@@ -64,7 +64,7 @@ def _limit_text(value: Any) -> str | float:
 _LIMIT = Scalar(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})
 
 
-@declared
+@keyed_dataclass
 class LimitTable:
     """The sides on which an index is limited."""
 
@@ -192,7 +192,9 @@ def part_words(vehicle: Vehicle, output: str) -> str:
     return output.replace("_", " ")
 
 
-def kept(study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]) -> list[tuple[float, bool, float, str]]:
+def limit_results(
+    study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]
+) -> list[tuple[float, bool, float, str]]:
     """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], and its part.
 
     The part is the tyre or strut of that value where the limit applies to each of several; else empty.

@@ -12,8 +12,8 @@ from inerter.files.common.codec import (
     Codec,
     Scalar,
     TableCodec,
-    declared,
     key,
+    keyed_dataclass,
     keys_in,
     section,
     table_of,
@@ -67,7 +67,7 @@ _NONE: dict[str, Any] = {}
 _NO_ROWS: list[Any] = []
 
 
-@declared
+@keyed_dataclass
 class SweepRange:
     """Values of a number from one end to the other."""
 
@@ -79,7 +79,7 @@ class SweepRange:
     )
 
 
-@declared
+@keyed_dataclass
 class ConditionEntry:
     """Numbers by their places, and how much of the time they are so."""
 
@@ -152,7 +152,7 @@ def _scatter(given: Any) -> float:
 _SCATTER = Scalar(_scatter, lambda: {"anyOf": [SHARE_SCHEMA, {"type": "string", "pattern": r"%\s*$"}]})
 
 
-@declared
+@keyed_dataclass
 class Settings:
     """Indices to compute, and the methods that compute them."""
 

@@ -16,7 +16,7 @@ from inerter.files.study.study import Study
 _SEARCH = ("optimise", "budgets", "sweep", "subject_to", "trade_off", "points")
 
 
-def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
+def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
     """Document with the layouts of these designs only, their design variables fixed to the last digit.
 
     An element that has several values becomes several elements, each with the name of its layout.

@@ -18,7 +18,6 @@ from campaigns import sampled
 from combinations import CARS
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from inerter.app.with_fixed_values import with_fixed_values
 from starlette.testclient import TestClient
 from study_text import study_text
 
@@ -27,6 +26,7 @@ from inerter.app import answers
 from inerter.app.answers import answer_panel
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
+from inerter.app.fixed_designs import with_fixed_values
 from inerter.figures.simulation import draw_simulation
 from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation

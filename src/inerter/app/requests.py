@@ -101,7 +101,7 @@ async def _panel(server: Server, request: Request, body: bodies.PanelRequest) ->
     lane = "quick" if at_once(key, asked) else "slow"
     if lane == "slow" or key == "optimise":
         await server.warming.wait()
-    asking = panel, "inerter.app.answers:answered", key, asked
+    asking = panel, "inerter.app.answers:answer_panel", key, asked
     found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, asking)
     return as_json(found)
 

@@ -80,7 +80,7 @@ class Quantities(Body):
 
 
 class OfDesigns(Body):
-    """What all requests about designs have."""
+    """Study, designs and sequence number of a request about designs."""
 
     study: Document
     designs: Annotated[list[ComparedDesign], Field(max_length=100)] = []

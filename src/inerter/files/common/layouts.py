@@ -96,7 +96,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
             section(
                 name,
                 EXPRESSION,
-                f"The network at {name}.",
+                f"Network in the mount {name}.",
                 f'{name} = "k | c"',
                 REQUIRED if mount.needed else mount.network,
             )

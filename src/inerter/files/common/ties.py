@@ -50,7 +50,7 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
 
 def tie_schema() -> dict[str, Any]:
     """JSON Schema of a tied entry."""
-    about = f"What the value follows from: {_EXAMPLE}."
+    about = f"Expression for the value: {_EXAMPLE}."
     text = {"type": "string", "minLength": 1, "maxLength": _LONGEST, "description": about}
     text |= {"examples": ["0.8 * c_front"]}
     return {"type": "object", "properties": {TIED: text}, "required": [TIED], "additionalProperties": False}

@@ -77,25 +77,25 @@ def in_words(name: str) -> str:
 
 @keyed_dataclass
 class StatedExcitation:
-    """What excites the vehicle: white acceleration of the ground, a white force, or the road; perhaps shaped."""
+    """Excitation of the vehicle: white acceleration of the ground, a white force, or the road; perhaps shaped."""
 
     ground_acceleration: float | None = key(
         QuantityCodec(_OF_GROUND, if_given=True),
-        "White acceleration of the ground: its spectral density, two-sided.",
+        "Two-sided spectral density of a white ground acceleration.",
         'ground_acceleration = "0.01 (m/s^2)^2/Hz"',
         default=None,
         words="intensity of the ground acceleration",
     )
-    force: str | None = key(TEXT, "A white force of the vehicle.", 'force = "sprung_force"', default=None)
+    force: str | None = key(TEXT, "Name of the force that is white noise.", 'force = "sprung_force"', default=None)
     intensity: Amount | None = key(
         AmountCodec(_OF_FORCES, "white force"),
-        "Of the force: its spectral density, two-sided; of a moment in (N m)^2/Hz.",
+        "Two-sided spectral density of the force; of a moment in (N m)^2/Hz.",
         'intensity = "1 N^2/Hz"',
         default=None,
     )
     shaping: Filter | None = key(
         FILTER,
-        "A filter through which it arrives.",
+        "Shaping filter between white noise and vehicle.",
         "shaping = { numerator = [1.0], denominator = [1.0, 2.0] }",
         default=None,
     )

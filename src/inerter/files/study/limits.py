@@ -68,9 +68,9 @@ _LIMIT = Scalar(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_sch
 class LimitTable:
     """The sides on which an index is limited."""
 
-    at_most: str | float | None = key(_LIMIT, "The most that it may be.", 'at_most = "3 mm"', default=None)
-    at_least: str | float | None = key(_LIMIT, "The least that it may be.", 'at_least = "1 mm"', default=None)
-    equal: str | float | None = key(_LIMIT, "What it has to be.", 'equal = "120 kN/m"', default=None)
+    at_most: str | float | None = key(_LIMIT, "Upper limit.", 'at_most = "3 mm"', default=None)
+    at_least: str | float | None = key(_LIMIT, "Lower limit.", 'at_least = "1 mm"', default=None)
+    equal: str | float | None = key(_LIMIT, "Required value.", 'equal = "120 kN/m"', default=None)
 
 
 _SIDES = table_of(LimitTable, make=without_none, about=LimitTable.__doc__)

@@ -89,7 +89,7 @@ def _index_table(name: str, symbol: str) -> TableCodec:
     taken = [_KIND, *(one.name for one in keys)]
     if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:
         raise RowError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
-    return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Which index it is."))
+    return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Kind of index."))
 
 
 def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:

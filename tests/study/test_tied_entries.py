@@ -82,7 +82,7 @@ def test_a_tie_follows_a_condition(tmp_path: Path, tie: str, layouts: str) -> No
             for i in range(2):
                 numbers = [(place_of("k"), k[i]), (place_of("c"), c[i])]
                 there = with_numbers(replace(study, conditions=()), numbers)
-                values.append(it.evaluate(there.design(layout), there.asked("J1", layout), it.Norm()).value)
+                values.append(it.evaluate(there.design(layout), there.resolve_index("J1", layout), it.Norm()).value)
             assert found == pytest.approx((values[0] + 2.0 * values[1]) / 3.0, rel=1e-9)
 
 

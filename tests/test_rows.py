@@ -19,8 +19,8 @@ from inerter.errors import MechanismError, RowError, StudyError, UnknownRowError
 from inerter.fields import fields_of, mounts_of
 from inerter.files.common.signal_kinds import unit_of
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import averages, with_gradients

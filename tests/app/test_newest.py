@@ -15,7 +15,7 @@ from starlette.testclient import TestClient
 
 from inerter.app import lanes
 from inerter.app.lanes import Lane, Newest
-from inerter.app.wire import Refused
+from inerter.app.wire import Refusal
 
 
 def told(number: float, seconds: float = 0.0) -> tuple[int, Any]:
@@ -58,7 +58,7 @@ def test_whatever_the_order(steps: list[tuple[str, float, int]], pauses: float) 
     answers, calls = asyncio.run(several(steps, pauses))
     assert calls <= len(steps)
     for (_, sequence, _), answer in zip(steps, answers, strict=True):
-        if isinstance(answer, Refused):
+        if isinstance(answer, Refusal):
             assert answer.status == 409
             assert answer.body["outdated"]
         else:
@@ -75,7 +75,7 @@ def test_sixty_steps_cost_few_calls() -> None:
     answers, calls = asyncio.run(several(steps, 0.0, 0.05))
     assert answers[-1] == b"59.0"
     assert calls <= 3
-    assert all(isinstance(answer, Refused) for answer in answers[:-1])
+    assert all(isinstance(answer, Refusal) for answer in answers[:-1])
 
 
 class Recorded(Executor):
@@ -106,7 +106,7 @@ def test_a_call_that_nobody_waits_for_is_ended(monkeypatch: pytest.MonkeyPatch) 
         await asyncio.sleep(0.02)
         begun = time.monotonic()
         new = await newest.ask(lane, ("a", "budget"), 2.0, (told, 2.0))
-        with pytest.raises(Refused):
+        with pytest.raises(Refusal):
             await old
         task.cancel()
         return new, time.monotonic() - begun

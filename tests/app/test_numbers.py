@@ -23,10 +23,10 @@ from study_text import study_text
 
 import inerter as it
 from inerter.app import answers
-from inerter.app.answers import answered
+from inerter.app.answers import answer_panel
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
-from inerter.app.fixed import fixed
+from inerter.app.fixed_designs import with_fixed_values
 from inerter.figures.simulation import draw_simulation
 from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
@@ -160,8 +160,8 @@ def test_panels_ask_what_the_study_asks(name: str) -> None:
     study = study_from(document)
     designs = designs_of(study, {})
     values = {design.layout: design.values for design in designs}
-    panel = answered("indices", {"study": document, "methods": ["norm"], "values": values})
-    made = fixed(document, study, designs)
+    panel = answer_panel("indices", {"study": document, "methods": ["norm"], "values": values})
+    made = with_fixed_values(document, study, designs)
     asked = study_from({**made, "study": {**made["study"], "evaluate": ["norm"]}})
     data = dataset(asked, {case: run_case(asked, case) for case in cases(asked)})
     for design in panel["designs"]:
@@ -459,12 +459,12 @@ def test_a_process_is_asked_first_what_a_page_asks_first(monkeypatch: pytest.Mon
     asked: list[str] = []
 
     def recorded(key: str, body: Any) -> Any:
-        answer = answered(key, body)
+        answer = answer_panel(key, body)
         assert answer["designs" if "designs" in answer else "curves"]
         asked.append(key)
         return answer
 
-    monkeypatch.setattr(answers, "answered", recorded)
+    monkeypatch.setattr(answers, "answer_panel", recorded)
     monkeypatch.setattr(answers, "is_compiled", lambda method: compiled)
     answers.first()
     assert asked == ["indices", "response", *(["optimise"] if compiled else [])]

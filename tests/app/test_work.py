@@ -183,9 +183,9 @@ def test_a_server_that_begins_again_knows_what_was_left(client: TestClient, serv
         known = jobs.Jobs(tmp_path / "work", executor).known
     assert {job.id: job.state for job in known.values()} == {number: "done", "cut": "stopped"}
     assert jobs.result_of(known[number]) == result
-    assert (known[number].title, known[number].told()["done"]) == ("mine", 4)
+    assert (known[number].title, known[number].to_dict()["done"]) == ("mine", 4)
     assert known["cut"].sentence.endswith(".")
-    assert known["cut"].told()["state"] == "stopped"
+    assert known["cut"].to_dict()["state"] == "stopped"
 
 
 @pytest.mark.parametrize("text", ['{"kind": "run", "title": "dear to me"}', "[]", '"run"', "no JSON"])

@@ -5,7 +5,7 @@ import tomllib
 import pytest
 
 from inerter.cli.main import call
-from inerter.files.common.keys import ANY_NAME, found, keys_of
+from inerter.files.common.keys import ANY_NAME, find_keys, keys_of
 from inerter.files.study.schema import study_schema
 from inerter.indices.registry import INDICES
 
@@ -34,7 +34,7 @@ def test_every_key_is_told_by_its_place_and_by_its_end(capsys):
                 assert key.unit in out
         name = place.rpartition(".")[2]
         if name != ANY_NAME:
-            assert place in {key.place for key in found(KEYS, name)}
+            assert place in {key.place for key in find_keys(KEYS, name)}
 
 
 def test_an_example_is_a_line_of_the_file(capsys):

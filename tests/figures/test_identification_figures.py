@@ -9,9 +9,9 @@ import pytest
 
 import inerter as it
 from inerter.figures import identification as figures
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.figures.identification import MotionCurve
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 
 RATE = 500.0
 TIME = np.arange(4000) / RATE
@@ -59,7 +59,7 @@ FIGURES = {
 
 
 def drawn(make):
-    with styled():
+    with style_context():
         figure = make()
         figure.draw_without_rendering()
     return figure
@@ -114,7 +114,7 @@ def test_a_profile_is_a_parabola_between_its_points_and_the_interval_is_shaded()
 
 def test_breaks_stay_breaks_in_long_curves():
     values = np.where(np.arange(100_000) % 50_000 < 20_000, np.nan, 1.0)
-    _, shown = thinned(np.arange(100_000.0), values)
+    _, shown = thin_curve(np.arange(100_000.0), values)
     assert 0.3 < np.isnan(shown).mean() < 0.5
     assert shown.size < 5000
 

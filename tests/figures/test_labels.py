@@ -11,7 +11,7 @@ from synthetic import designs, sweep
 from inerter.fields import fields_of
 from inerter.figures.labels import (
     axis_label,
-    compared,
+    compared_layouts,
     flat_range,
     layouts,
     percent,
@@ -114,8 +114,8 @@ def test_numbers_that_are_none():
 def test_the_baseline_comes_first_and_is_not_compared_with_itself():
     data = designs(["S2", "S1", "S3"])
     assert layouts(data) == ["S1", "S2", "S3"]
-    assert compared(data) == ["S2", "S3"]
-    assert compared(designs(["S1"], baseline="")) == []
+    assert compared_layouts(data) == ["S2", "S3"]
+    assert compared_layouts(designs(["S1"], baseline="")) == []
 
 
 def test_the_swept_element_is_the_dimension_that_only_a_sweep_has():

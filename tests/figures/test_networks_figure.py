@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from inerter import Damper, Friction, Gap, Inerter, Spring, free
 from inerter.errors import NetworkError
 from inerter.figures.networks import draw_network, draw_networks, element_label, network_figure, schematic
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, TO_LABEL, blank_figure, symbol
 from inerter.networks.catalogue import LAYOUTS
 from inerter.networks.elements import ELEMENT_TYPES, Parallel, Series
@@ -191,7 +191,7 @@ FIGURES = {
 @pytest.mark.parametrize("values", [False, True])
 @pytest.mark.parametrize("drawn", FIGURES.values(), ids=FIGURES)
 def test_no_text_runs_over_the_edge_over_other_text_or_over_lines(drawn, values):
-    with styled():
+    with style_context():
         figure = network_figure(drawn, values=values)
         figure.draw_without_rendering()
     (axes,) = figure.axes

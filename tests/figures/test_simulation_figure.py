@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 
 from inerter.errors import StudyError
 from inerter.figures.simulation import draw_simulation, panels, readable_window, simulation_figure
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
@@ -53,7 +53,7 @@ def case_of(name):
 
 
 def drawn(case, window=None):
-    with styled():
+    with style_context():
         figure = simulation_figure(case, window or readable_window(case))
         figure.draw_without_rendering()
     return figure

@@ -14,7 +14,7 @@ from synthetic import LONG, a_map, designs, improved, judged, sweep, with_value
 from inerter.errors import StudyError
 from inerter.figures.designs import frequency_responses, improvement_bars
 from inerter.figures.study import draw_study, study_figures
-from inerter.figures.style import new_figure, styled
+from inerter.figures.style import new_figure, style_context
 from inerter.figures.sweeps import parameter_curves, sweep_curves
 from inerter.methods.registry import brief_words_of
 
@@ -71,7 +71,7 @@ def test_names_of_figures():
 
 
 def test_methods_differ_by_line_and_layouts_by_colour():
-    with styled():
+    with style_context():
         (figure,) = [f for f in study_figures(judged(sweep(), METHODS)) if f.name == "sweep-J1"]
         drawn = figure.draw()
         assert figure.caption.endswith("Bands: one standard error to both sides.")
@@ -86,7 +86,7 @@ def test_methods_differ_by_line_and_layouts_by_colour():
 
 
 def test_error_bars_stand_where_there_is_an_error():
-    with styled():
+    with style_context():
         bars = improvement_bars(judged(designs(), ["expected-value"]), new_figure(height=3.0)[1][0])
         plain = improvement_bars(designs(), new_figure(height=3.0)[1][0])
     assert (len(bars.collections), len(plain.collections)) == (2, 0)
@@ -104,7 +104,7 @@ def test_the_same_results_give_the_same_bytes(name, tmp_path):
 @pytest.mark.parametrize("name", sampled(CASES, ["a much worse layout"], LESS, kept=3))
 def test_nothing_runs_over_the_edge_or_over_the_legend(name):
     for drawn in study_figures(CASES[name]):
-        with styled():
+        with style_context():
             figure = drawn.draw()
             figure.draw_without_rendering()
         assert len(figure.legends) == any(ax.get_legend_handles_labels()[1] for ax in figure.axes)
@@ -117,7 +117,7 @@ def test_nothing_runs_over_the_edge_or_over_the_legend(name):
 
 @pytest.mark.parametrize("results", [designs(), designs(LONG), CASES["a much worse layout"]])
 def test_numbers_at_bars_do_not_overlap(results):
-    with styled():
+    with style_context():
         figure = study_figures(results)[0].draw()
         figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]

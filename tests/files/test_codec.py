@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from jsonschema import Draft202012Validator
 
-from inerter.files.common.codec import INVALID, TableCodec, declared, key, load_tables, table_of
+from inerter.files.common.codec import INVALID, TableCodec, key, keyed_dataclass, load_tables, table_of
 from inerter.files.common.codecs import NamesCodec, RowsCodec
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, QuantityCodec, not_negative, positive, some_of, whole, word
@@ -29,7 +29,7 @@ STUDIES = [name for name, tables in TABLES.items() if "study" in tables]
 CODECS = {"study": study_codec, "simulation": simulation_codec, "rig": rig_codec, "fit": lambda: IDENTIFICATION}
 
 
-@declared
+@keyed_dataclass
 class Bush:
     """A rubber bush."""
 
@@ -37,7 +37,7 @@ class Bush:
     loss: float = key(not_negative("rad"), "Loss angle.", 'loss = "3 deg"', default=0.0, words="loss angle")
 
 
-@declared
+@keyed_dataclass
 class Mounting:
     """A made-up file with an entry of every sort."""
 

@@ -16,7 +16,7 @@ from world import PARTS, RIG_FILE, SIMULATION_FILE, STUDY, TABLE, cheap, files_o
 from inerter.cli.main import call
 from inerter.files.common.listing import MARK
 from inerter.files.identification.loading import IdentificationRequest, RecordRequest
-from inerter.files.identification.running import Identified, read, run_identification
+from inerter.files.identification.running import IdentificationResult, read, run_identification
 
 FOLDERS = ("out", "out/figures", "other", ".", "out/table1", "link", "deep/er", "study-results")
 NAMES = (
@@ -163,7 +163,7 @@ def paths_to(path: Path) -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def identified(tmp_path_factory: pytest.TempPathFactory) -> Identified:
+def identified(tmp_path_factory: pytest.TempPathFactory) -> IdentificationResult:
     """A fit, which is made once."""
     folder = tmp_path_factory.mktemp("bench")
     (folder / "bench.csv").write_text(TABLE)
@@ -235,7 +235,10 @@ def courses(seeds: range, steps: int, folder: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_what_is_a_users_stays(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], identified: Identified
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    identified: IdentificationResult,
 ) -> None:
     assert courses(range(2), 16, tmp_path, monkeypatch, capsys, identified) == []
 
@@ -248,7 +251,7 @@ def test_what_is_a_users_stays_in_many_courses(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
-    identified: Identified,
+    identified: IdentificationResult,
 ) -> None:
     seeds = range(1000 + 40 * part, 1040 + 40 * part)
     assert courses(seeds, 25, tmp_path, monkeypatch, capsys, identified) == []

@@ -16,7 +16,7 @@ from unittest.mock import patch
 from study_text import study_text
 
 from inerter.files.common.listing import MARK, digest, listing
-from inerter.files.identification.running import RESIDUALS, Identified
+from inerter.files.identification.running import RESIDUALS, IdentificationResult
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
@@ -96,7 +96,7 @@ def fit(found: Any, folder: Path) -> None:
 
 
 @contextmanager
-def cheap(identified: Identified | None = None) -> Iterator[None]:
+def cheap(identified: IdentificationResult | None = None) -> Iterator[None]:
     """Inside, commands write as ever, but search, fit and draw nothing.
 
     The reproduction has its two linear studies, with the same folders and journals, and no simulated tasks.

@@ -17,7 +17,7 @@ from inerter.fields import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
-from inerter.files.study.written import write_resolved
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.networks.elements import Element, Network, Value
 from inerter.networks.elements.drawing import BOX, circle
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit

@@ -16,7 +16,7 @@ import pytest
 
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
-from inerter.files.identification.running import Identified, Reading, Responses, responses
+from inerter.files.identification.running import IdentificationResult, Reading, Responses, responses
 from inerter.identification.choice import Candidate
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, Misfit
@@ -75,16 +75,16 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="session")
-def found() -> Identified:
+def found() -> IdentificationResult:
     rig = it.VirtualRig(SHAFT - (it.Inerter(113.0) | it.Friction(10.0)), seed=1, sampling=400.0)
     record = rig.run(it.cosine(amplitude=1e-3, frequency=4.0), duration=1.0)
     fit = it.identify(record, MODEL, seed=0, starts=8)
     warned = Finding(RecordFinding.HUM, "warning", "force", {"amplitude": 0.3, "frequency": -50.0})
     reading = Reading(record, record, (warned,))
-    return Identified("a <b>", "custom", it.Rig(MODEL).device, fit.device, (reading,), fit, {"seed": 0})
+    return IdentificationResult("a <b>", "custom", it.Rig(MODEL).device, fit.device, (reading,), fit, {"seed": 0})
 
 
-def without(found: Identified, name: str, interval: tuple[float, float]) -> Identified:
+def without(found: IdentificationResult, name: str, interval: tuple[float, float]) -> IdentificationResult:
     fit = found.fit
     changed = replace(fit.parameters[name], value=math.nan, interval=interval)
     verdict = Identifiability(name, Verdict.BELOW, "N", (0.0, 3.0), role=Linear.OPEN)
@@ -92,7 +92,7 @@ def without(found: Identified, name: str, interval: tuple[float, float]) -> Iden
     return replace(found, fit=replace(fit, parameters={**fit.parameters, name: changed}, identifiable=verdicts))
 
 
-def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path) -> None:
+def test_the_page_holds_the_numbers_and_every_figure(found: IdentificationResult, tmp_path) -> None:
     write_fit(found, tmp_path)
     done: list[float] = []
     write_identification(found, tmp_path, done.append)
@@ -118,7 +118,7 @@ def test_the_page_holds_the_numbers_and_every_figure(found: Identified, tmp_path
     assert "measured" in json.loads((tmp_path / "response.json").read_text())
 
 
-def test_data_are_json_to_the_last_number(found: Identified) -> None:
+def test_data_are_json_to_the_last_number(found: IdentificationResult) -> None:
     data = json.loads(json.dumps(identification_data(without(found, "f", (0.0, 3.0))), allow_nan=False))
     assert data["parameters"]["f"]["value"] is None
     assert data["parameters"]["b"]["value"] == found.fit.parameters["b"].value
@@ -126,7 +126,7 @@ def test_data_are_json_to_the_last_number(found: Identified) -> None:
     assert data["records"][0]["findings"][0]["kind"] == "hum"
 
 
-def test_what_is_not_identifiable_is_said_everywhere(found: Identified) -> None:
+def test_what_is_not_identifiable_is_said_everywhere(found: IdentificationResult) -> None:
     less = without(found, "f", (0.0, 3.0))
     assert value_and_interval(less, "f") == ("not identifiable", "below 3 N")
     assert value_and_interval(without(found, "f", (2.0, 100.0)), "f") == ("not identifiable", "above 2 N")
@@ -136,7 +136,7 @@ def test_what_is_not_identifiable_is_said_everywhere(found: Identified) -> None:
     assert "b: identified." not in text
 
 
-def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> None:
+def test_a_model_that_explains_nothing_has_no_intervals(found: IdentificationResult) -> None:
     fit = found.fit
     verdicts = {name: Identifiability(name, Verdict.WITHHELD) for name in fit.parameters}
     parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
@@ -147,7 +147,7 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: Identified) -> No
 
 
 @pytest.mark.parametrize("verdict", [Verdict.WITHHELD, Verdict.CONDITIONAL, Verdict.UNPREDICTABLE])
-def test_a_warned_fit_shows_no_value_as_a_result(found: Identified, verdict: Verdict) -> None:
+def test_a_warned_fit_shows_no_value_as_a_result(found: IdentificationResult, verdict: Verdict) -> None:
     """Neither in text, JSON, the block of elements, the page nor a figure, and nothing of confidence."""
     fit, ends = found.fit, {"b": (101.25, 131.5), "f": (7.125, 12.75)}
     within = ends if verdict is Verdict.CONDITIONAL else dict.fromkeys(ends, (math.nan, math.nan))
@@ -177,7 +177,7 @@ def test_a_warned_fit_shows_no_value_as_a_result(found: Identified, verdict: Ver
         assert (p["value"], p["standard_error"], p["profile"], p["identified"]) == (None, None, [], False)
 
 
-def test_several_models_are_listed_best_first(found: Identified) -> None:
+def test_several_models_are_listed_best_first(found: IdentificationResult) -> None:
     rows = (
         Candidate("friction", 2, 1.01, 0.0, 0.0, True, OK),
         Candidate("custom", 1, 1.02, 0.01, 0.02, True, OK),
@@ -191,7 +191,7 @@ def test_several_models_are_listed_best_first(found: Identified) -> None:
     assert max(map(len, text.splitlines())) <= 80
 
 
-def test_digits_are_those_that_the_interval_bears(found: Identified) -> None:
+def test_digits_are_those_that_the_interval_bears(found: IdentificationResult) -> None:
     fit = found.fit
     p = replace(fit.parameters["b"], value=113.0271, best=113.0271, interval=(112.9, 113.16))
     one = replace(found, fit=replace(fit, parameters={**fit.parameters, "b": p}))
@@ -214,14 +214,14 @@ def test_expressions_are_read_back_as_they_were(text: str) -> None:
     assert it.network(again, **parts) == device
 
 
-def test_the_window_is_a_few_periods_of_what_was_fitted(found: Identified) -> None:
+def test_the_window_is_a_few_periods_of_what_was_fitted(found: IdentificationResult) -> None:
     (comparison,) = found.fit.comparisons
     first, last = window(comparison)
     assert comparison.fitted[last]
     assert last - first <= 1.2 * 400
 
 
-def test_the_response_is_of_the_force_without_its_offset(found: Identified) -> None:
+def test_the_response_is_of_the_force_without_its_offset(found: IdentificationResult) -> None:
     answered = responses(found)
     assert answered.measured is not None
     assert answered.model is not None
@@ -234,7 +234,7 @@ def middle(hypothesis: Hypothesis) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("sound", [True, False])
-def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: bool) -> None:
+def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResult, sound: bool) -> None:
     """Whatever law explains a misfit, "what to do" holds whether its values are shown or not."""
     chain = chain_of(it.Rig(MODEL).device)
     assert chain is not None
@@ -255,7 +255,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: Identified, sound: 
     assert len(proposed) == 6
 
 
-def test_all_is_found_only_in_a_fit_that_can_be_relied_on(found: Identified) -> None:
+def test_all_is_found_only_in_a_fit_that_can_be_relied_on(found: IdentificationResult) -> None:
     status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
     doubted = replace(found, fit=replace(found.fit, status=status))
     good, poor = (Page(identification_page(each, {})).text for each in (found, doubted))
@@ -296,7 +296,7 @@ def test_the_library_knows_steps_on_records_as_data_alone() -> None:
     assert [n.value for n in texts if isinstance(n.value, str) and re.search(words, n.value)] == []
 
 
-def test_a_misfit_is_shown_where_it_is(found: Identified, tmp_path: Path) -> None:
+def test_a_misfit_is_shown_where_it_is(found: IdentificationResult, tmp_path: Path) -> None:
     """One sentence in text, page and data, and one figure more."""
     pattern = Finding(
         MisfitPattern.BEGINS, "info", "", {"time": 0.5, "before": 1.0, "after": 9.0, "share": 0.8, "p": 0.006}

@@ -13,7 +13,7 @@ from synthetic import LONG, a_map, designs, judged, limited, sweep
 
 import inerter as it
 from inerter.figures.study import study_figures
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 from inerter.files.common.roads import MeasuredLine
 from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
@@ -61,7 +61,7 @@ def test_whatever_is_said_names_methods_by_their_words(make, count):
         summary_table(results),
     ]
     assert not [text for text in said if KEYS.search(text)]
-    with styled():
+    with style_context():
         drawn = study_figures(results)[1 if make is designs else 0].draw()
     assert not [text for legend in drawn.legends for text in legend.get_texts() if KEYS.search(text.get_text())]
 
@@ -97,7 +97,7 @@ def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
         (active.any(-1) & ~missed)[:, 0].any()
     )
     assert ("no design keeps the limits." in figures[0].caption) == bool(missed[:, 0].any())
-    with styled():
+    with style_context():
         panels = figures[0].draw().axes
     marks = sum(len(line.get_xdata()) for ax in panels for line in ax.lines if marked(line, make is sweep))
     times = np.array([1 if i == 0 or make is not sweep else 2 for i in range(shape[0])])  # value and improvement
@@ -230,7 +230,7 @@ def test_outputs_that_are_not_excited_are_left_out_and_said(count):
     outputs = data["output_J1"].values.tolist()
     data["gain_J1"].loc[{"output_J1": outputs[-count:]}] = 0.0
     (figure,) = [figure for figure in study_figures(data) if figure.name == "response-J1"]
-    with styled():
+    with style_context():
         panels = figure.draw().axes
     assert len(panels) == (1 if count == 1 else 2)  # where nothing answers, that is what is shown
     assert ("Not excited, and not shown: pitch acceleration." in figure.caption) == (count == 1)
@@ -250,7 +250,7 @@ def test_every_layout_of_a_front_of_three_is_in_its_picture_and_legend():
     )
     (figure,) = [figure for figure in study_figures(data) if figure.name == "front"]
     assert figure.caption.startswith("Trade-off between a, b and c, without friction: ")
-    with styled():
+    with style_context():
         drawn = figure.draw()
     assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2"]
     for ax in drawn.axes:

@@ -20,10 +20,10 @@ from inerter.cli.main import call
 from inerter.errors import StudyError
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 from inerter.networks.elements import Network, Parallel, Series
 from inerter.report.page import report
 from inerter.report.text import summary_table

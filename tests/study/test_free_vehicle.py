@@ -15,9 +15,9 @@ from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.place import place_of
 from inerter.files.study.places import places, with_numbers
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 
 FREE = {"unsprung_mass": '{ from = "20 kg", to = "90 kg" }'}
 ASK = 'indices = ["J3"]\noptimise = "norm"'

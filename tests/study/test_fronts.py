@@ -14,12 +14,12 @@ import inerter as it
 from inerter.errors import StudyError
 from inerter.figures.labels import with_unit
 from inerter.figures.study import study_figures
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
-from inerter.files.study.written import write_resolved
 from inerter.report.page import report
 from inerter.tasks.fronts import Fronts
 
@@ -86,7 +86,7 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
         "least tyre-load",
     ]
     (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
-    with styled():
+    with style_context():
         figure.draw().draw_without_rendering()
     page = report(found.data, found.study, tmp_path, found.answers)
     assert ">Trade-off</h2>" in page

@@ -15,15 +15,15 @@ from study_text import study_text
 
 import inerter as it
 from inerter.app.designs import design_of
-from inerter.app.valued import limits_at
+from inerter.app.index_values import limits_at
 from inerter.errors import StudyError
 from inerter.files.common.entries import element_name
 from inerter.files.common.problem import EntryError
 from inerter.files.study.cases import Outcome, cases, run_case
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 from inerter.networks.elements.values import NAME
 from inerter.report.answers import answers
 from inerter.report.findings import headlines
@@ -206,7 +206,7 @@ def test_limits_and_conditions_survive_being_written(load: Callable[..., Study])
     copy = study.path.with_name("copy.toml")
     copy.write_text(write_resolved(study), encoding="utf-8")
     assert load_study(copy) == study
-    assert load_study(copy).resolved() == study.resolved()
+    assert load_study(copy).to_tables() == study.to_tables()
 
 
 ASK = 'indices = ["J1"]\noptimise = "norm"\n'

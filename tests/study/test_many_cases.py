@@ -31,7 +31,7 @@ from inerter.files.study import checking, running, summary
 from inerter.files.study.cases import Case, Cases, Outcome, cases, portable
 from inerter.files.study.journal import journal_of, outcomes
 from inerter.files.study.loading import load_study
-from inerter.files.study.results import Gathered, dataset
+from inerter.files.study.results import DatasetBuilder, dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.report.page import report
@@ -126,7 +126,7 @@ def test_the_order_in_which_outcomes_come_is_no_matter(tmp_path: Path) -> None:
     everything = {case: drawn(study, case) for case in cases(study)}
     one, shuffled = dataset(study, everything), [*everything.values()]
     random.Random(0).shuffle(shuffled)
-    gathered = Gathered(study)
+    gathered = DatasetBuilder(study)
     for outcome in shuffled:
         gathered.enter(Outcome(**json.loads(json.dumps(outcome.to_json()))))
     other = gathered.dataset()
@@ -151,13 +151,13 @@ def test_cases_are_made_when_they_are_asked_for(tmp_path: Path) -> None:
 
 def test_a_large_sweep_is_checked_at_its_ends_and_extremes() -> None:
     values = [float(i) for i in range(1000, 0, -1)] + [0.0] + [float(i) for i in range(1001, 100_000)]
-    tried = [values[i] for i in checking._tried(Cases((), (), (tuple(values),)))]
+    tried = [values[i] for i in checking._points_to_check(Cases((), (), (tuple(values),)))]
     assert len(tried) < 300
     assert {values[0], values[-1], 0.0, 99_999.0} <= {*tried}
-    assert checking._tried(Cases((), (), (tuple(values[:150]),))) == list(range(150))
+    assert checking._points_to_check(Cases((), (), (tuple(values[:150]),))) == list(range(150))
     both = Cases((), (), (tuple(values), (2.0, 1.0, 3.0)))
     corners = {(value, end) for value in (0.0, 99_999.0) for end in (1.0, 3.0)}
-    assert corners <= {both.swept(point) for point in checking._tried(both)}
+    assert corners <= {both.sweep_values(point) for point in checking._points_to_check(both)}
 
 
 @pytest.mark.parametrize("seed", sampled(range(4), [0]))
@@ -217,7 +217,7 @@ def test_a_case_takes_so_many_bytes_and_no_more(tmp_path: Path, swift: object, p
         journal = journal_of(study, tmp_path / f"out{len(peaks)}" / "journal.jsonl")
 
         def read(study: Study = study, journal: Journal = journal) -> None:
-            gathered = Gathered(study)
+            gathered = DatasetBuilder(study)
             for outcome in outcomes(journal):
                 assert isinstance(outcome, Outcome)
                 gathered.enter(outcome)

@@ -14,7 +14,7 @@ from campaigns import sampled
 from study_text import study_text
 
 from inerter.figures.study import draw_study, study_figures
-from inerter.figures.style import styled
+from inerter.figures.style import style_context
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
@@ -138,7 +138,7 @@ def test_a_map_with_values_that_are_none_is_drawn(data: xr.Dataset, *, bad: floa
     holes["value"][0, 0, 0, 0] = holes["improvement"][1, 0, :, 1] = bad
     if everywhere:
         holes["value"][1, 0] = holes["improvement"][1, 0] = bad
-    with styled():
+    with style_context():
         study_figures(holes)[0].draw().draw_without_rendering()
     assert summary_table(holes)
     assert headlines(holes)
@@ -151,5 +151,5 @@ def test_a_map_without_a_baseline_shows_values(study: Study, tmp_path: Path) -> 
     assert "improvement" not in figure.caption
     assert "sprung mass = 400 kg" in headlines(found)[0]
     assert "improvement" not in map_tables(found)[0].caption
-    with styled():
+    with style_context():
         figure.draw().draw_without_rendering()

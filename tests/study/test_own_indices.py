@@ -12,9 +12,9 @@ from study_text import study_text
 
 from inerter.errors import StudyError
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.report.page import report

@@ -11,10 +11,10 @@ from study_text import study_text
 import inerter as it
 from inerter.errors import StudyError
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
-from inerter.files.study.written import write_resolved
 from inerter.report.page import report
 from inerter.tasks.tolerances import Tolerances
 
@@ -86,7 +86,7 @@ def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     fixed = FREE.replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "30 kg"')
     study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)
     best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0)
-    asked = study.asked("J1", "S1")
+    asked = study.resolve_index("J1", "S1")
     assert isinstance(asked, it.Quantile)
     assert it.evaluate(best.design, asked.apart, it.Norm()).value == best.value
     again = it.optimise(study.design("S1"), asked, it.Norm()).value  # from other starts

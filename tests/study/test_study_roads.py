@@ -14,18 +14,18 @@ from study_text import study_text
 import inerter as it
 from inerter.app.documents import read
 from inerter.errors import StudyError
-from inerter.files.common.keys import found, keys_of
+from inerter.files.common.keys import find_keys, keys_of
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import write_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.checking import study_notes
 from inerter.files.study.conditions import condition_of
 from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study
-from inerter.files.study.written import write_resolved
 from inerter.report.answers import answers
 
 ROUGH = 'roughness = "5e-7 m^3/cycle"'
@@ -159,7 +159,7 @@ def test_a_resolved_study_needs_no_profile(load, tmp_path, form):
     again.write_text(write_resolved(study), encoding="utf-8")
     assert load_study(again) == study
     assert "road.csv" in again.read_text(encoding="utf-8")
-    assert load_study(again).resolved() == study.resolved()
+    assert load_study(again).to_tables() == study.to_tables()
 
 
 def test_a_profile_that_has_changed_is_another_study(load, tmp_path):
@@ -238,7 +238,7 @@ def test_what_explains_files_knows_roads():
     keys = keys_of(study_schema())
     places = {key.place for key in keys}
     assert places >= {f"road.{key}" for key in ("profile", "track", "coherence", "coherence.track", "coherence.level")}
-    (corner,) = found(keys, "coherence.wavenumber")
+    (corner,) = find_keys(keys, "coherence.wavenumber")
     assert (corner.unit, corner.example) == ("cycle/m", "0.2 cycle/m")
 
 
@@ -472,4 +472,4 @@ def test_a_simulation_reads_a_profile_by_its_keys(tmp_path: Path) -> None:
     assert np.array_equal(bare.make_signal()(time), named.make_signal()(time))
     (tmp_path / "again.toml").write_text(write_simulation(bare), encoding="utf-8")
     assert load_simulation(tmp_path / "again.toml") == bare
-    assert "columns" not in named.resolved()["signal"]
+    assert "columns" not in named.to_tables()["signal"]

@@ -15,9 +15,9 @@ from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.written import write_resolved
 
 OWN = """k = "60 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -56,7 +56,7 @@ def test_a_tie_follows_a_sweep_and_survives_being_written(tmp_path: Path) -> Non
     (tmp_path / "copy.toml").write_text(write_resolved(study), encoding="utf-8")
     again = load_study(tmp_path / "copy.toml")
     assert again == study
-    assert again.resolved() == study.resolved()
+    assert again.to_tables() == study.to_tables()
 
 
 @pytest.mark.parametrize(
@@ -77,12 +77,12 @@ def test_a_tie_follows_a_condition(tmp_path: Path, tie: str, layouts: str) -> No
         sections = [f'[[conditions]]\nk = "{k[i]!r} N/m"\nc = "{c[i]!r} N s/m"\nshare = {i + 1}\n' for i in range(2)]
         study = study_of(tmp_path, elements, layouts, 'indices = ["J1"]\n' + "".join(sections))
         for layout in study.layouts:
-            found = it.evaluate(study.design(layout), study.asked("J1", layout), it.Norm()).value
+            found = it.evaluate(study.design(layout), study.resolve_index("J1", layout), it.Norm()).value
             values = []
             for i in range(2):
                 numbers = [(place_of("k"), k[i]), (place_of("c"), c[i])]
                 there = with_numbers(replace(study, conditions=()), numbers)
-                values.append(it.evaluate(there.design(layout), there.asked("J1", layout), it.Norm()).value)
+                values.append(it.evaluate(there.design(layout), there.resolve_index("J1", layout), it.Norm()).value)
             assert found == pytest.approx((values[0] + 2.0 * values[1]) / 3.0, rel=1e-9)
 
 

@@ -18,7 +18,7 @@ from campaigns import sampled
 from clusters import PATIENCE, Cluster, cluster, kill, results
 
 import inerter as it
-from inerter.cli.cluster import connected
+from inerter.cli.cluster import cluster_executor
 from inerter.cli.main import call
 from inerter.errors import WorkError
 from inerter.work.pool import Pool
@@ -215,7 +215,7 @@ def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there
     car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     comfort, roads = it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.ExpectedValue(realisations=16)
     record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=1).run(it.cosine(1e-3, 3.0), 1.0)
-    with connected(there.address, None, {}) as workers, Processes(2) as processes:
+    with cluster_executor(there.address, None, {}) as workers, Processes(2) as processes:
         there.start_worker()
         values = [it.evaluate(car, comfort, roads, executor=executor) for executor in (None, processes, workers)]
         fits = [it.identify(record, "friction", starts=8, executor=executor) for executor in (None, processes, workers)]
@@ -241,7 +241,7 @@ def test_what_kills_every_worker_is_named_and_the_rest_complete(tmp_path: Path, 
     mark = f"__import__('tempfile').mkstemp(dir={str(tmp_path)!r}, prefix='mark') and "
     items = [f"abs({-i})" for i in range(40)]
     items.insert(20, f"{mark}{KILL}")
-    with connected(there.address, None, {}) as workers, Pool(executor=workers) as pool:
+    with cluster_executor(there.address, None, {}) as workers, Pool(executor=workers) as pool:
         found: list[Any] = list(pool.spread(eval, items, lost=lambda item: item))
     assert sorted(map(str, found)) == sorted([*map(str, range(40)), items[20]])
     assert len(list(tmp_path.glob("mark*"))) == 3
@@ -282,7 +282,7 @@ def test_a_scheduler_without_workers_is_told(tmp_path: Path, monkeypatch: pytest
     monkeypatch.setattr("inerter.work.cluster._FIRST", 1.0)
     with (
         cluster(tmp_path, 0) as made,
-        connected(made.address, None, {}) as workers,
+        cluster_executor(made.address, None, {}) as workers,
         pytest.raises(WorkError, match=r"no workers.*dask worker tcp://"),
     ):
         Pool(executor=workers)

@@ -14,7 +14,7 @@ from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
-from inerter.app.wire import encoded
+from inerter.app.wire import encode_json
 from inerter.errors import DesignError, StudyError
 from inerter.fields import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
@@ -53,15 +53,15 @@ def first() -> None:
         "study": {"indices": [next(iter(INDICES))]},
     }
     for key in ("indices", "response"):
-        encoded(answered(key, {"study": study}))
+        encode_json(answer_panel(key, {"study": study}))
     search = methods_that(searches)[0]
     if is_compiled(search):  # else it would wait here for the compiler
         elements[Damper.symbol] = {"from": "100 N s/m", "to": "10 kN s/m"}
         study["study"]["optimise"] = search
-        encoded(answered("optimise", {"study": study}))
+        encode_json(answer_panel("optimise", {"study": study}))
 
 
-def answered(key: str, body: Body) -> Answer:
+def answer_panel(key: str, body: Body) -> Answer:
     """The answer of a panel.
 
     Raises what the library raises of what was asked.
@@ -105,7 +105,7 @@ def mechanism(study: Study, body: Body) -> Answer:
 
     known = outputs(mechanism, full_graph(mechanism))
     return {
-        **design.told(),
+        **design.describe_values(),
         "coordinates": [{"name": c.name, "inertia": c.inertia, "angle": c.angle} for c in mechanism.coordinates],
         "struts": [
             {"name": s.name, "upper": end(s.upper), "lower": end(s.lower), "network": tree_of(s.network)}
@@ -161,7 +161,7 @@ def optimum(
         found[case] = run_case(asked, case)
     tell(len(found), len(every), "")
     return {
-        "designs": [_told(study, outcome) for outcome in found.values()],
+        "designs": [_describe_outcome(study, outcome) for outcome in found.values()],
         "at_speeds": asdict(_at_speeds(asked, found)),
     }
 
@@ -177,7 +177,7 @@ def _at_speeds(study: Study, found: Mapping[Case, Outcome]) -> SpeedSentences:
     return speed_sentences(dataset(there, found))
 
 
-def _told(study: Study, outcome: Outcome) -> Answer:
+def _describe_outcome(study: Study, outcome: Outcome) -> Answer:
     """Outcome of a design for an answer, with its values as texts that are read back exactly."""
     return {
         **outcome.to_json(),
@@ -200,8 +200,8 @@ def budget(study: Study, body: Body) -> Answer:
     found = find_budget(
         design.vehicle,
         baseline.vehicle,
-        study.asked(needed(body, "index"), design.layout),
-        parameter=needed(body, "parameter"),
+        study.resolve_index(required_value(body, "index"), design.layout),
+        parameter=required_value(body, "parameter"),
         method=study.method(method),
     )
     return {
@@ -223,20 +223,20 @@ def budget(study: Study, body: Body) -> Answer:
 
 def scatter(study: Study, body: Body) -> Answer:
     """Tolerance analysis of a design: distribution of an index, and first- and total-order Sobol' indices."""
-    design, name = one_design(study, body), needed(body, "index")
+    design, name = one_design(study, body), required_value(body, "index")
     index = study.over_conditions(name)
     method = body.get("method") or DEFAULT
     found = tolerance(
         design.vehicle,
         index,
         study.method(method),
-        spread=needed(body, "spread"),
+        spread=required_value(body, "spread"),
         samples=body.get("samples") or _SAMPLES,
         seed=body.get("seed") or 0,
     )
     counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
     return {
-        **design.told(),
+        **design.describe_values(),
         "index": name,
         "unit": study.unit(name),
         "method": method,
@@ -254,7 +254,7 @@ def scatter(study: Study, body: Body) -> Answer:
     }
 
 
-def needed(body: Body, key: str) -> Any:
+def required_value(body: Body, key: str) -> Any:
     """Value of a required key of a request; raises `StudyError` where it is left out."""
     if not body.get(key):
         raise StudyError(f"The request needs `{key}`.")

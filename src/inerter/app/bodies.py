@@ -22,7 +22,7 @@ class Body(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class Given(Body):
+class DesignRequest(Body):
     """A design: a layout, and a value for each of its free elements."""
 
     layout: Name
@@ -30,7 +30,7 @@ class Given(Body):
     name: Text = ""
 
 
-class Compared(Given):
+class ComparedDesign(DesignRequest):
     """A design that is compared: one of the study of the request, or of another one."""
 
     study: Annotated[Document | None, Field(description="That it is of, if it is another one.")] = None
@@ -54,7 +54,7 @@ class WriteStudy(Body):
     """A study document, and designs at which it is to be fixed, if any."""
 
     study: Document
-    designs: Annotated[list[Given], Field(max_length=100)] = []
+    designs: Annotated[list[DesignRequest], Field(max_length=100)] = []
 
 
 class ParseNetwork(Body):
@@ -80,13 +80,13 @@ class Quantities(Body):
 
 
 class OfDesigns(Body):
-    """What all requests about designs have."""
+    """Study, designs and sequence number of a request about designs."""
 
     study: Document
-    designs: Annotated[list[Compared], Field(max_length=100)] = []
+    designs: Annotated[list[ComparedDesign], Field(max_length=100)] = []
     layouts: Annotated[list[Name], Field(max_length=1000)] = []
     values: Annotated[dict[str, Values], Field(description="By layout, where `designs` are not given.")] = {}
-    baseline: Given | None = None
+    baseline: DesignRequest | None = None
     indices: list[Name] = []
     methods: list[Name] = []
 
@@ -96,7 +96,7 @@ class PanelRequest(OfDesigns):
 
     client: Annotated[str, Field(max_length=100, description="One for each page that is open.")] = ""
     sequence: Annotated[Number, Field(description="Rises with each request of the page to the panel.")] = 0
-    design: Given | None = None
+    design: DesignRequest | None = None
     layout: Name | None = None
     index: Name | None = None
     parameter: Name | None = None

@@ -10,8 +10,8 @@ import numpy as np
 
 from inerter.app.designs import Design, baseline_of, design_of, designs_of
 from inerter.app.documents import study_from
+from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
-from inerter.app.valued import limits_at, valued
 from inerter.errors import DesignError
 from inerter.figures.labels import decimals_of
 from inerter.files.common.layouts import LayoutCodec
@@ -31,7 +31,7 @@ _VEHICLE, _DIGITS = "vehicle", 5
 
 
 @dataclass(frozen=True)
-class _Judged:
+class _IndexResult:
     """Design with its estimate of one index by one method."""
 
     design: Design
@@ -45,7 +45,7 @@ class _Judged:
         value, status = self.estimate.value, self.estimate.status
         return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
 
-    def beside(self, other: _Judged) -> Comparison | None:
+    def beside(self, other: _IndexResult) -> Comparison | None:
         """Comparison with another design on the same roads.
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
@@ -55,7 +55,7 @@ class _Judged:
         if not np.isfinite([self.estimate.value, other.estimate.value]).all():
             return None
         first, second = self.design.vehicle, other.design.vehicle
-        asked, method = self.design.asked(self.index), self.design.study.method(self.method)
+        asked, method = self.design.resolve_index(self.index), self.design.study.method(self.method)
         try:
             return compare(first, second, asked, method, known=(self.estimate, other.estimate))
         except FAILURES:
@@ -66,27 +66,30 @@ def indices(study: Study, body: Body) -> Answer:
     """Indices of all designs, compared with the baseline, and the state of their limits."""
     designs = designs_of(study, body)
     baseline = baseline_of(study, body, designs)
-    asked = _asked(study, body)
-    base = [None if baseline is None else _judged(baseline, *each) for each in asked]
+    asked = _index_method_pairs(study, body)
+    base = [None if baseline is None else _evaluate_design(baseline, *each) for each in asked]
     return {
         "designs": [
             {
-                **design.told(),
-                "results": [_told(_judged(design, *each), one) for each, one in zip(asked, base, strict=True)],
+                **design.describe_values(),
+                "results": [
+                    _describe_result(_evaluate_design(design, *each), one)
+                    for each, one in zip(asked, base, strict=True)
+                ],
                 "limits": limits_at(study, design, asked[0][1]),
             }
             for design in designs
         ],
-        "baseline": None if baseline is None else baseline.told(),
+        "baseline": None if baseline is None else baseline.describe_values(),
     }
 
 
 def side_by_side(study: Study, body: Body) -> Answer:
     """Comparison of two to four designs with the first of them; each may belong to another study."""
-    return compared(study, body, lambda done, total, told: None)
+    return compare_designs(study, body, lambda done, total, told: None)
 
 
-def compared(study: Study, body: Body, tell: Tell) -> Answer:
+def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
     """Comparison of two to four designs with the first of them, with a progress report before each.
 
     What is asked of all, on which road and by which methods, is what `study` says.
@@ -94,21 +97,21 @@ def compared(study: Study, body: Body, tell: Tell) -> Answer:
     designs = _of_studies(study, body)
     if not _FEWEST <= len(designs) <= _MOST:
         raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
-    asked = _asked(study, body)
-    found: list[list[_Judged]] = []
+    asked = _index_method_pairs(study, body)
+    found: list[list[_IndexResult]] = []
     for i, design in enumerate(designs):
         tell(i, len(designs), design.name)
-        found.append([_judged(design, *each) for each in asked])
+        found.append([_evaluate_design(design, *each) for each in asked])
     tell(len(designs), len(designs), "")
     best = [_best(column) for column in zip(*found, strict=True)]
     return {
         "designs": [
             {
-                **one[0].design.told(),
+                **one[0].design.describe_values(),
                 "network": LayoutCodec().dump(one[0].design.study.layouts[one[0].design.layout]),
                 "numbers": _numbers(one[0].design),
                 "results": [
-                    {**_told(each, base), "best": i in least}
+                    {**_describe_result(each, base), "best": i in least}
                     for each, base, least in zip(one, found[0], best, strict=True)
                 ],
             }
@@ -138,26 +141,28 @@ def _put(study: Study, document: object) -> Study:
 
 def _numbers(design: Design) -> dict[str, str]:
     """Numbers of a design's elements and vehicle as texts with units, by their description."""
-    used = {name for name, layouts in elements_used(design.fixed).items() if design.layout in layouts}
+    used = {name for name, layouts in elements_used(design.fixed_study).items() if design.layout in layouts}
     found = {}
-    for label, number in places(design.fixed).items():
+    for label, number in places(design.fixed_study).items():
         place = place_of(label)
         if isinstance(number.value, int | float) and (place.section == _VEHICLE or element_at(place) in used):
             found[number.words] = format_quantity(number.value, number.unit, digits=_DIGITS)
     return found
 
 
-def _asked(study: Study, body: Body) -> list[tuple[str, str]]:
+def _index_method_pairs(study: Study, body: Body) -> list[tuple[str, str]]:
     """Pairs of each requested index and each requested method."""
     indices, methods = body.get("indices") or study.indices, body.get("methods") or study.evaluate
     return [(index, method) for index in indices for method in methods]
 
 
-def _judged(design: Design, index: str, method: str) -> _Judged:
-    return _Judged(design, index, method, valued(design.vehicle, design.asked(index), design.study.method(method)))
+def _evaluate_design(design: Design, index: str, method: str) -> _IndexResult:
+    return _IndexResult(
+        design, index, method, estimate_index(design.vehicle, design.resolve_index(index), design.study.method(method))
+    )
 
 
-def _best(found: Sequence[_Judged]) -> list[int]:
+def _best(found: Sequence[_IndexResult]) -> list[int]:
     """Numbers of the designs that do not differ significantly from the best one.
 
     None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
@@ -172,7 +177,7 @@ def _best(found: Sequence[_Judged]) -> list[int]:
     return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_tie)]
 
 
-def _told(one: _Judged, baseline: _Judged | None) -> Answer:
+def _describe_result(one: _IndexResult, baseline: _IndexResult | None) -> Answer:
     """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
     study, estimate = one.design.study, one.estimate
     two = None if baseline is None else one.beside(baseline)

@@ -36,15 +36,15 @@ class Design:
         return self.vehicle.mechanism()
 
     @cached_property
-    def fixed(self) -> Study:
+    def fixed_study(self) -> Study:
         """Study with the design variables replaced by the values of the design."""
         return self.study.with_values(self.values)
 
-    def asked(self, index: str) -> Asked:
+    def resolve_index(self, index: str) -> Asked:
         """Objective of the design's layout for an index of its study."""
-        return self.study.asked(index, self.layout)
+        return self.study.resolve_index(index, self.layout)
 
-    def told(self) -> dict[str, Any]:
+    def describe_values(self) -> dict[str, Any]:
         """Name, layout, values with units, and design variables at default values, for an answer."""
         units = self.study.free_units
         values = {

@@ -36,10 +36,10 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(Fronts().csv(asked, found)))
     tell(len(layouts), len(layouts), "")
     told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
-    return {"indices": told, "fronts": [_told(asked, one) for one in found]}
+    return {"indices": told, "fronts": [_describe_front(asked, one) for one in found]}
 
 
-def _told(study: Study, found: FrontAnswer) -> dict[str, Any]:
+def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
     points = []
     for values, parameters, said in zip(found.values, found.parameters, found.statuses, strict=True):
         status, message = Status.parts(said)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from secrets import compare_digest
 from typing import Any
 
-from inerter.app.wire import Refused, encoded
+from inerter.app.wire import Refusal, encode_json
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -50,32 +50,32 @@ class AccessGuard:
         try:
             self._check(scope, headers)
             limit = self.record_limit if scope["path"] == "/api/records" else self.limit
-            await self.app(scope, _limited(receive, headers, limit), _with_headers(send))
-        except Refused as refused:
+            await self.app(scope, _limit_body(receive, headers, limit), _with_headers(send))
+        except Refusal as refused:
             await refuse(refused, send)
 
     def _check(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> None:
         allowed = {f"{host}:{self.port}" for host in HOSTS}
         hosts = [value.decode("latin-1").lower() for name, value in headers if name == b"host"]
         if len(hosts) != 1 or hosts[0] not in allowed:
-            raise Refused(403, "This server answers to 127.0.0.1 alone.")
+            raise Refusal(403, "This server answers to 127.0.0.1 alone.")
         origins = [value.decode("latin-1").lower() for name, value in headers if name == b"origin"]
         if any(origin not in {f"http://{host}" for host in allowed} for origin in origins):
-            raise Refused(403, "This server answers to no other page than its own.")
+            raise Refusal(403, "This server answers to no other page than its own.")
         sites = [value for name, value in headers if name == b"sec-fetch-site"]
         if scope["path"].startswith("/api") and any(site not in (b"same-origin", b"none") for site in sites):
-            raise Refused(403, "This server answers to no other page than its own.")
+            raise Refusal(403, "This server answers to no other page than its own.")
         if scope["path"].startswith("/api") and not self._knows(headers):
-            raise Refused(401, "The token is missing or is not that of this server: open the link that it has printed.")
+            raise Refusal(401, "The token is missing or is not that of this server: open the link that it has printed.")
 
     def _knows(self, headers: list[tuple[bytes, bytes]]) -> bool:
         given = [value for name, value in headers if name == b"authorization"]
         return len(given) == 1 and compare_digest(given[0], f"Bearer {self.token}".encode())
 
 
-async def refuse(refused: Refused, send: Send) -> None:
+async def refuse(refused: Refusal, send: Send) -> None:
     """Answer with a refusal."""
-    body = encoded(refused.body)
+    body = encode_json(refused.body)
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if refused.status in (401, 413):
         headers.append((b"connection", b"close"))
@@ -83,10 +83,10 @@ async def refuse(refused: Refused, send: Send) -> None:
     await send({"type": "http.response.body", "body": body})
 
 
-def _limited(receive: Receive, headers: list[tuple[bytes, bytes]], limit: int) -> Receive:
+def _limit_body(receive: Receive, headers: list[tuple[bytes, bytes]], limit: int) -> Receive:
     """The body of a request, refused if it says that it is larger than the limit, or turns out to be."""
     told = [value for name, value in headers if name == b"content-length"]
-    too_large = Refused(413, f"The body is larger than {limit} bytes, the limit of this server.")
+    too_large = Refusal(413, f"The body is larger than {limit} bytes, the limit of this server.")
     if any(not value.isdigit() or int(value) > limit for value in told):
         raise too_large
     seen = 0
@@ -103,11 +103,11 @@ def _limited(receive: Receive, headers: list[tuple[bytes, bytes]], limit: int) -
 
 
 def _with_headers(send: Send) -> Send:
-    async def sent(message: MutableMapping[str, Any]) -> None:
+    async def send_with_headers(message: MutableMapping[str, Any]) -> None:
         if message["type"] == "http.response.start":
             given = {name.lower() for name, _ in message["headers"]}
             more = [(k.encode(), v.encode()) for k, v in _HEADERS.items() if k.encode() not in given]
             message = {**message, "headers": [*message["headers"], *more]}
         await send(message)
 
-    return sent
+    return send_with_headers

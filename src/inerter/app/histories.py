@@ -9,7 +9,7 @@ import numpy as np
 
 from inerter.app.designs import Design
 from inerter.errors import StudyError
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.files.common.roads import road_values
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
@@ -27,15 +27,15 @@ _DURATION, _STEP = 10.0, 5e-4  # [s]
 def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     """The motion of a design over a random road of the study.
 
-    Raises what `simulated` raises, and `simulate`.
+    Raises what `simulation_request` raises, and `simulate`.
     """
-    asked = simulated(study, design, body)
+    asked = simulation_request(study, design, body)
     run, mechanism = asked.run(), design.mechanism
     names = body.get("outputs") or main_outputs(mechanism)
-    shaded = _shaded(run)
+    shaded = _state_intervals(run)
     return {
-        **design.told(),
-        "signals": [_drawn(run, name) for name in names],
+        **design.describe_values(),
+        "signals": [_signal_curve(run, name) for name in names],
         "motion": _motion(run, mechanism),
         "shaded": shaded,
         "events": len(run.events),
@@ -48,7 +48,7 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
     }
 
 
-def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
+def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
     """Simulation request of a design over a random road of the study.
 
     Raises `StudyError` for a time that is too long to be looked at, and where there is no road.
@@ -66,7 +66,7 @@ def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> Simulati
         model=study.model,
         vehicle=study.vehicle,
         road=road_values(study.road, study.coherence),
-        elements=design.fixed.elements,
+        elements=design.fixed_study.elements,
         layouts=study.layouts,
         signal=SignalRequest("multisine", "road", {"seed": int(body.get("seed") or 0)}),
         layout=design.layout,
@@ -75,9 +75,9 @@ def simulated(study: Study, design: Design, body: Mapping[str, Any]) -> Simulati
     )
 
 
-def _drawn(run: Trajectory, name: str) -> dict[str, Any]:
+def _signal_curve(run: Trajectory, name: str) -> dict[str, Any]:
     """An output by the lowest and the highest sample of each piece, at their times."""
-    time, values = thinned(run.time, run[name], _MOST)
+    time, values = thin_curve(run.time, run[name], _MOST)
     return {
         "name": name,
         "label": run.outputs[name].title,
@@ -90,7 +90,7 @@ def _drawn(run: Trajectory, name: str) -> dict[str, Any]:
 def _motion(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
     """Coordinates and roads at even times, as many a second as a screen shows."""
     time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
-    at = {name: np.interp(time, run.time, run[output]) for name, output in _moved(mechanism).items()}
+    at = {name: np.interp(time, run.time, run[output]) for name, output in _coordinate_outputs(mechanism).items()}
     return {
         "time": time,
         "coordinates": {c.name: at[c.name] for c in mechanism.coordinates},
@@ -98,13 +98,13 @@ def _motion(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
     }
 
 
-def _moved(mechanism: Mechanism) -> dict[str, str]:
+def _coordinate_outputs(mechanism: Mechanism) -> dict[str, str]:
     """The outputs that say where coordinates and roads are."""
     coordinates = {c.name: f"{c.name}_displacement" for c in mechanism.coordinates}
     return {**coordinates, **{r.name: r.name for r in mechanism.roads}}
 
 
-def _shaded(run: Trajectory) -> list[dict[str, Any]]:
+def _state_intervals(run: Trajectory) -> list[dict[str, Any]]:
     """Time intervals of each element that switches in each of its states."""
     states: dict[str, set[str]] = {element: {state} for element, state in run.states.items()}
     for event in run.events[:_MOST_EVENTS]:

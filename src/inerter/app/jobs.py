@@ -15,7 +15,7 @@ from secrets import token_hex
 from typing import Any
 
 from inerter.app.kinds import KINDS, RESULTS
-from inerter.app.wire import Refused, encoded
+from inerter.app.wire import Refusal, encode_json
 from inerter.app.working import REQUEST, RESULT, STOP, events_of, work, write_last
 from inerter.work.processes import Processes
 
@@ -40,7 +40,7 @@ class Job:
     sentence: str = ""
     over: asyncio.Event = field(default_factory=asyncio.Event)
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """State and progress of the job, for an answer."""
         events, _ = events_of(self.folder)
         progress = next((e for e in reversed(events) if e["event"] == "progress"), {"done": 0, "total": 0, "told": ""})
@@ -75,26 +75,26 @@ class Jobs:
             with suppress(OSError, ValueError, KeyError, AttributeError):
                 request = json.loads(path.read_bytes())
                 if _OURS.items() <= request.items():
-                    self.known[path.parent.name] = _left(path.parent, request)
+                    self.known[path.parent.name] = _job_of_earlier_server(path.parent, request)
 
     def add(self, kind: str, request: Mapping[str, Any], title: str = "") -> Job:
-        """Append a job to the queue; raises `Refused` where too much is kept already."""
+        """Append a job to the queue; raises `Refusal` where too much is kept already."""
         for old in [job for job in self.known.values() if job.state in ENDED][: max(len(self.known) - _MOST + 1, 0)]:
             self.forget(old)
         if len(self.known) >= _MOST:
-            raise Refused(400, f"{_MOST} pieces of work are waiting. Stop some of them first.")
+            raise Refusal(400, f"{_MOST} pieces of work are waiting. Stop some of them first.")
         name = token_hex(8)
         job = Job(name, kind, title or KINDS[kind].title, self.root / name)
         job.folder.mkdir(parents=True)
-        (job.folder / REQUEST).write_bytes(encoded({**request, "kind": kind, "title": job.title, **_OURS}))
+        (job.folder / REQUEST).write_bytes(encode_json({**request, "kind": kind, "title": job.title, **_OURS}))
         self.known[name] = job
         self._queue.put_nowait(job)
         return job
 
     def get(self, name: str) -> Job:
-        """Job of that id; raises `Refused` if there is none."""
+        """Job of that id; raises `Refusal` if there is none."""
         if name not in self.known:
-            raise Refused(404, "Unknown work: it was removed, or the server was restarted.")
+            raise Refusal(404, "Unknown work: it was removed, or the server was restarted.")
         return self.known[name]
 
     def stop(self, job: Job) -> None:
@@ -157,7 +157,7 @@ class Jobs:
         job.over.set()
 
 
-def _left(folder: Path, request: Mapping[str, Any]) -> Job:
+def _job_of_earlier_server(folder: Path, request: Mapping[str, Any]) -> Job:
     """Work that an earlier server has left: as it ended, or stopped where it was."""
     events, _ = events_of(folder)
     last = events[-1] if events else {}
@@ -171,15 +171,15 @@ def _left(folder: Path, request: Mapping[str, Any]) -> Job:
 
 
 def result_of(job: Job) -> bytes:
-    """Result of a job as JSON text; raises `Refused` where there is none."""
+    """Result of a job as JSON text; raises `Refusal` where there is none."""
     if job.state != "done":
-        raise Refused(404, f"This work is {job.state}; it has no result. {job.sentence}".strip())
+        raise Refusal(404, f"This work is {job.state}; it has no result. {job.sentence}".strip())
     return (job.folder / RESULT).read_bytes()
 
 
 def with_result(job: Job) -> bytes:
     """State of a job as JSON, with its result if it is done."""
-    told = encoded(job.told())
+    told = encode_json(job.to_dict())
     return told if job.state != "done" else told[:-1] + b', "result": ' + result_of(job) + b"}"
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-Tell = Callable[[int, int, str], None]  # how much is done, of how much, and what; raises `Stopped` if it is to stop
+Tell = Callable[[int, int, str], None]  # how much is done, of how much, and what; raises `JobStopped` if it is to stop
 RESULTS = "results"  # the folder of results in that of the work
 
 
-class Stopped(Exception):  # noqa: N818 -- nothing is wrong
+class JobStopped(Exception):  # noqa: N818 -- nothing is wrong
     """Raised in a job after a request to stop it."""
 
 
@@ -26,7 +26,7 @@ class WorkKind:
     home: str
 
 
-_STUDIED, _DESIGNS = "inerter.app.studied", ("indices", "methods")
+_STUDIED, _DESIGNS = "inerter.app.study_jobs", ("indices", "methods")
 KINDS = {
     kind.key: kind
     for kind in (
@@ -44,7 +44,7 @@ KINDS = {
             "identify",
             "What a measured device is made of",
             ("records", "model", "config"),
-            "inerter.app.identified:identify",
+            "inerter.app.identification_jobs:identify",
         ),
     )
 }

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from inerter.app.calls import load
-from inerter.app.wire import Refused, refusal_of
+from inerter.app.wire import Refusal, refusal_of
 
 _PATIENCE = 2.0  # seconds that a call nobody waits for may go on before its process is ended
 _MOST = 1000  # pages and panels whose newest request is known
@@ -27,7 +27,7 @@ class Waiting:
     answer: asyncio.Future[bytes] = field(default_factory=lambda: asyncio.get_running_loop().create_future())
     outdated: asyncio.Event = field(default_factory=asyncio.Event)
 
-    def refuse(self, why: Refused) -> None:
+    def refuse(self, why: Refusal) -> None:
         """Answer with a refusal, unless already answered."""
         if not self.answer.done():
             self.answer.set_exception(why)
@@ -61,13 +61,13 @@ class Lane:
     async def begin(self) -> None:
         """Start the process, and import the modules of its answers."""
         with suppress(Exception):  # should it fail, so does the first request, which says why
-            await (await self._submitted((load, *self.homes)))
+            await (await self._submit((load, *self.homes)))
 
     async def _do(self, mine: Waiting) -> None:
         try:
-            status, body = await self._called(mine)
+            status, body = await self._await_call(mine)
         except BrokenExecutor:
-            mine.refuse(Refused(500, "The process of this answer ended unexpectedly; memory may have run out."))
+            mine.refuse(Refusal(500, "The process of this answer ended unexpectedly; memory may have run out."))
         except TimeoutError:  # nobody waits for it
             await asyncio.to_thread(
                 self.worker.shutdown, wait=False, cancel_futures=True
@@ -76,18 +76,18 @@ class Lane:
             mine.refuse(refusal_of(error))
         else:
             if status != 200:
-                mine.refuse(Refused(status, **body))
+                mine.refuse(Refusal(status, **body))
             elif not mine.answer.done():
                 mine.answer.set_result(body)
 
-    async def _submitted(self, call: Call) -> asyncio.Future[Any]:
+    async def _submit(self, call: Call) -> asyncio.Future[Any]:
         """Future of the call in the process, which is started if necessary."""
         function, *args = call
         return asyncio.wrap_future(await asyncio.to_thread(partial(self.worker.submit, function, *args)))
 
-    async def _called(self, mine: Waiting) -> tuple[int, Any]:
+    async def _await_call(self, mine: Waiting) -> tuple[int, Any]:
         """Status and body of the call; raises `TimeoutError` if that takes long, and nobody waits for it any more."""
-        future = await self._submitted(mine.call)
+        future = await self._submit(mine.call)
         overtaken = asyncio.create_task(mine.outdated.wait())
         try:
             await asyncio.wait((future, overtaken), return_when=asyncio.FIRST_COMPLETED)
@@ -103,7 +103,7 @@ class Newest:
     known: dict[Who, Waiting] = field(default_factory=dict)
 
     async def ask(self, lane: Lane, who: Who, sequence: float, call: Call) -> bytes:
-        """The answer of a call; raises `Refused` if a newer one has come, or comes meanwhile."""
+        """The answer of a call; raises `Refusal` if a newer one has come, or comes meanwhile."""
         mine, before = Waiting(call, sequence), self.known.pop(who, None)
         if before is not None and before.sequence > sequence:
             self.known[who] = before
@@ -116,6 +116,6 @@ class Newest:
         return await lane.answer(mine)
 
 
-def out_of_date(sequence: float) -> Refused:
+def out_of_date(sequence: float) -> Refusal:
     """Refusal of a request that a newer one has superseded."""
-    return Refused(409, "A newer request of this page has come.", outdated=True, sequence=sequence)
+    return Refusal(409, "A newer request of this page has come.", outdated=True, sequence=sequence)

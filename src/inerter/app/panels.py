@@ -22,14 +22,14 @@ class Panel:
 PANELS = {
     panel.key: panel
     for panel in (
-        Panel("indices", "Indices beside the baseline", "inerter.app.comparing:indices"),
+        Panel("indices", "Indices compared with the baseline", "inerter.app.comparing:indices"),
         Panel("compare", "Two to four designs side by side", "inerter.app.comparing:side_by_side"),
         Panel("response", "Frequency response", "inerter.app.answers:response"),
-        Panel("mechanism", "The vehicle as it is joined", "inerter.app.answers:mechanism"),
-        Panel("optimise", "The best values", "inerter.app.answers:optimum"),
-        Panel("history", "The motion on a road", "inerter.app.answers:motion", quick=False),
-        Panel("tolerance", "What scatter makes of an index", "inerter.app.answers:scatter", quick=False),
-        Panel("budget", "How much friction, play or softness it bears", "inerter.app.answers:budget", quick=False),
+        Panel("mechanism", "The mechanism of the vehicle", "inerter.app.answers:mechanism"),
+        Panel("optimise", "Optimal values", "inerter.app.answers:optimum"),
+        Panel("history", "Motion on a road", "inerter.app.answers:motion", quick=False),
+        Panel("tolerance", "Index under tolerances", "inerter.app.answers:scatter", quick=False),
+        Panel("budget", "Break-even friction, backlash or compliance", "inerter.app.answers:budget", quick=False),
     )
 }
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from inerter.app.designs import Design, designs_of
 from inerter.app.documents import study_from
-from inerter.app.fixed import fixed
-from inerter.app.histories import simulated
+from inerter.app.fixed_designs import with_fixed_values
+from inerter.app.histories import simulation_request
 from inerter.errors import DesignError, StudyError
 from inerter.figures.networks import draw_networks
 from inerter.figures.simulation import NAME as SIMULATION
@@ -56,7 +56,7 @@ def _motion(study: Study, designs: Sequence[Design], body: Mapping[str, Any]) ->
     """The motion of a single design on the road, as the page shows it."""
     if len(designs) != 1:
         raise DesignError(f"A picture of the motion is one of a single design, got {len(designs)}.")
-    asked = simulated(study, designs[0], body)
+    asked = simulation_request(study, designs[0], body)
     return SimulationResult(asked, asked.run())
 
 
@@ -70,5 +70,5 @@ def _networks(designs: Sequence[Design]) -> dict[str, Network]:
 
 def dataset_of(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> Any:
     """The results of a study of these very designs."""
-    asked = study_from(fixed(document, study, designs))
+    asked = study_from(with_fixed_values(document, study, designs))
     return dataset(asked, {case: run_case(asked, case) for case in cases(asked)})

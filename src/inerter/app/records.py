@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from secrets import token_hex
 
-from inerter.app.wire import Refused
+from inerter.app.wire import Refusal
 
 _MOST = 100  # that are kept
 
@@ -22,9 +22,9 @@ class Records:
     known: dict[str, Path] = field(default_factory=dict)
 
     async def take(self, name: str, body: AsyncIterator[bytes]) -> str:
-        """Write an uploaded record to a file in chunks, and return its id; raises `Refused` if there are too many."""
+        """Write an uploaded record to a file in chunks, and return its id; raises `Refusal` if there are too many."""
         if len(self.known) >= _MOST:
-            raise Refused(400, f"There are {_MOST} records already. Delete some of them first.")
+            raise Refusal(400, f"There are {_MOST} records already. Delete some of them first.")
         number = token_hex(8)
         folder = self.root / number
         folder.mkdir(parents=True)
@@ -40,9 +40,9 @@ class Records:
         return number
 
     def get(self, number: str) -> Path:
-        """File of a record; raises `Refused` if there is none of that id."""
+        """File of a record; raises `Refusal` if there is none of that id."""
         if number not in self.known:
-            raise Refused(404, "Unknown record: it was deleted, or the server was restarted.")
+            raise Refusal(404, "Unknown record: it was deleted, or the server was restarted.")
         return self.known[number]
 
     def forget(self, number: str) -> None:

@@ -10,22 +10,22 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
 from inerter.app import about, bodies, documents, parts
+from inerter.app.api_description import Endpoint, openapi
 from inerter.app.calls import call, panel
-from inerter.app.described import Endpoint, openapi
 from inerter.app.designs import designs_of
-from inerter.app.fixed import fixed
+from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.jobs import Job, as_event, result_of, with_result
 from inerter.app.kinds import KINDS
 from inerter.app.lanes import Waiting
 from inerter.app.panels import PANELS, at_once
 from inerter.app.responses import as_events, as_json, media_type
 from inerter.app.server import Server
-from inerter.app.wire import Refused, decoded, encoded
+from inerter.app.wire import Refusal, decode_json, encode_json
 from inerter.files.common.toml import as_toml
 
 
 async def _about(server: Server, request: Request) -> dict[str, Any]:
-    return {**await asyncio.to_thread(about.about), "kernels": server.warming.told()}
+    return {**await asyncio.to_thread(about.about), "kernels": server.warming.to_dict()}
 
 
 async def _ready(server: Server, request: Request) -> Response:
@@ -45,18 +45,18 @@ async def _example(server: Server, request: Request) -> dict[str, Any]:
     found = await asyncio.to_thread(about.examples)
     name = request.path_params["name"]
     if name not in found:
-        raise Refused(404, f"Unknown example; available: {', '.join(found)}.")
-    return opened(f"{name}.toml", found[name].read_text(encoding="utf-8"))
+        raise Refusal(404, f"Unknown example; available: {', '.join(found)}.")
+    return to_document(f"{name}.toml", found[name].read_text(encoding="utf-8"))
 
 
-def opened(name: str, text: str) -> dict[str, Any]:
+def to_document(name: str, text: str) -> dict[str, Any]:
     """A study file as a page opens it."""
     return {"name": name, "text": text, **documents.read(text, name)}
 
 
 async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
     if (body.text is None) == (body.study is None):
-        raise Refused(400, "Give either the text of a study file or a study document.")
+        raise Refusal(400, "Give either the text of a study file or a study document.")
     if body.text is not None:
         return await asyncio.to_thread(documents.read, body.text, body.name)
     return {"study": body.study, "problems": await asyncio.to_thread(documents.problems, body.study)}
@@ -66,18 +66,18 @@ async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> R
     settings = body.study.get("study")
     swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
     lane = server.lanes["slow" if swept else "quick"]
-    return as_json(await lane.answer(Waiting((call, "inerter.app.checked:checked", body.study))))
+    return as_json(await lane.answer(Waiting((call, "inerter.app.study_check:check_document", body.study))))
 
 
 async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
-    def written() -> dict[str, Any]:
+    def file_text() -> dict[str, Any]:
         if not body.designs:
             return {"text": as_toml(body.study)}
         study = documents.study_from(body.study)
-        document = fixed(body.study, study, designs_of(study, body.model_dump()))
+        document = with_fixed_values(body.study, study, designs_of(study, body.model_dump()))
         return {"text": as_toml(document), "study": document}
 
-    return await asyncio.to_thread(written)
+    return await asyncio.to_thread(file_text)
 
 
 async def _parse(server: Server, request: Request, body: bodies.ParseNetwork) -> dict[str, Any]:
@@ -96,19 +96,19 @@ async def _quantities(server: Server, request: Request, body: bodies.Quantities)
 async def _panel(server: Server, request: Request, body: bodies.PanelRequest) -> Response:
     key = request.path_params["name"]
     if key not in PANELS:
-        raise Refused(404, f"There is no panel {key!r}; there are {', '.join(PANELS)}.")
+        raise Refusal(404, f"There is no panel {key!r}; there are {', '.join(PANELS)}.")
     asked = body.model_dump(exclude_unset=True)
     lane = "quick" if at_once(key, asked) else "slow"
     if lane == "slow" or key == "optimise":
         await server.warming.wait()
-    asking = panel, "inerter.app.answers:answered", key, asked
+    asking = panel, "inerter.app.answers:answer_panel", key, asked
     found = await server.newest.ask(server.lanes[lane], (body.client, key), body.sequence, asking)
     return as_json(found)
 
 
 async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) -> Response:
     if body.kind not in KINDS:
-        raise Refused(400, f"There is no work of the kind {body.kind!r}; there are {', '.join(KINDS)}.")
+        raise Refusal(400, f"There is no work of the kind {body.kind!r}; there are {', '.join(KINDS)}.")
     asked = body.model_dump(exclude_unset=True, exclude={"wait", "title", "kind"})
     asked["records"] = [str(server.records.get(record)) for record in body.records]
     job = server.jobs.add(body.kind, asked, body.title)
@@ -119,11 +119,11 @@ async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) 
 
 
 async def _all_work(server: Server, request: Request) -> dict[str, Any]:
-    return {"work": [job.told() for job in server.jobs.known.values()]}
+    return {"work": [job.to_dict() for job in server.jobs.known.values()]}
 
 
 async def _one_work(server: Server, request: Request) -> dict[str, Any]:
-    return _job(server, request).told()
+    return _job(server, request).to_dict()
 
 
 async def _work_events(server: Server, request: Request) -> Response:
@@ -138,7 +138,7 @@ async def _stop_work(server: Server, request: Request) -> dict[str, Any]:
         server.jobs.forget(job)
         return {"id": job.id, "state": "forgotten"}
     server.jobs.stop(job)
-    return job.told()
+    return job.to_dict()
 
 
 async def _work_result(server: Server, request: Request) -> Response:
@@ -153,7 +153,7 @@ async def _work_files(server: Server, request: Request) -> dict[str, Any]:
 async def _work_file(server: Server, request: Request) -> Response:
     files, name = _job(server, request).files(), request.path_params["name"]
     if name not in files:
-        raise Refused(404, "Unknown file of this work.")
+        raise Refusal(404, "Unknown file of this work.")
     return FileResponse(files[name], media_type=media_type(name), filename=files[name].name)
 
 
@@ -165,11 +165,11 @@ async def _take_record(server: Server, request: Request) -> Response:
     number = await server.records.take(request.query_params.get("name", ""), request.stream())
     path = server.records.get(number)
     try:
-        found = await server.aside("inerter.app.found:found_in", str(path))
-    except Refused:
+        found = await server.aside("inerter.app.record_findings:found_in", str(path))
+    except Refusal:
         server.records.forget(number)
         raise
-    return as_json(encoded({"id": number, "size": path.stat().st_size})[:-1] + b", " + found[1:], 201)
+    return as_json(encode_json({"id": number, "size": path.stat().st_size})[:-1] + b", " + found[1:], 201)
 
 
 async def _forget_record(server: Server, request: Request) -> dict[str, Any]:
@@ -186,7 +186,7 @@ async def _figure(server: Server, request: Request, body: bodies.FigureRequest) 
 async def _csv(server: Server, request: Request, body: bodies.ExportRequest) -> Response:
     await server.warming.wait()
     found = await server.aside("inerter.app.tables:as_csv", body.panel, body.request.model_dump(exclude_unset=True))
-    return Response(decoded(found), media_type="text/csv; charset=utf-8")
+    return Response(decode_json(found), media_type="text/csv; charset=utf-8")
 
 
 async def _openapi(server: Server, request: Request) -> dict[str, Any]:

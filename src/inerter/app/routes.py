@@ -15,12 +15,12 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, Response
 from starlette.routing import Route
 
-from inerter.app.described import Endpoint
+from inerter.app.api_description import Endpoint
 from inerter.app.guard import AccessGuard, App
-from inerter.app.requests import ENDPOINTS, opened
+from inerter.app.requests import ENDPOINTS, to_document
 from inerter.app.responses import as_json, media_type
 from inerter.app.server import Server
-from inerter.app.wire import Refused, decoded, encoded, refusal_of
+from inerter.app.wire import Refusal, decode_json, encode_json, refusal_of
 from inerter.errors import InerterError
 
 WEB = Path(__file__).with_name("web")
@@ -38,7 +38,7 @@ def of_file(
     limits: tuple[int, int],
 ) -> App:
     """The application that begins with a study file, its name and text; `root` is where it keeps its things."""
-    return application(Server(root, opened(*file) if file else _NOTHING, quick=quick), token, port, *limits)
+    return application(Server(root, to_document(*file) if file else _NOTHING, quick=quick), token, port, *limits)
 
 
 def application(server: Server, token: str, port: int, limit: int, record_limit: int) -> App:
@@ -49,23 +49,23 @@ def application(server: Server, token: str, port: int, limit: int, record_limit:
         async with server.running():
             yield
 
-    routes = [Route(e.path, _routed(server, e), methods=[e.verb]) for e in ENDPOINTS]
+    routes = [Route(e.path, _make_route(server, e), methods=[e.verb]) for e in ENDPOINTS]
     routes.append(Route("/{path:path}", _page, methods=["GET"]))
-    handlers: dict[Any, Any] = {Refused: _refused, 404: _unknown, 405: _unknown, Exception: _fault}
+    handlers: dict[Any, Any] = {Refusal: _refusal_response, 404: _unknown, 405: _unknown, Exception: _fault}
     app = Starlette(routes=routes, lifespan=lifespan, exception_handlers=handlers)
     return AccessGuard(app, token, port, limit, record_limit)
 
 
-def _routed(server: Server, endpoint: Endpoint) -> Callable[[Request], Awaitable[Response]]:
+def _make_route(server: Server, endpoint: Endpoint) -> Callable[[Request], Awaitable[Response]]:
     async def route(request: Request) -> Response:
         try:
-            given = () if endpoint.body is None else (_checked(endpoint.body, decoded(await request.body())),)
+            given = () if endpoint.body is None else (_validate_body(endpoint.body, decode_json(await request.body())),)
             found = await endpoint.handler(server, request, *given)
         except ClientDisconnect:
             return Response(status_code=400)
         except InerterError as error:
             raise refusal_of(error) from None
-        return found if isinstance(found, Response) else as_json(encoded(found))
+        return found if isinstance(found, Response) else as_json(encode_json(found))
 
     return route
 
@@ -74,7 +74,7 @@ async def _page(request: Request) -> Response:
     """A file of the page, which holds nothing that is not in the package."""
     path = request.path_params["path"] or "index.html"
     if path.startswith("api/") or path == "api" or path not in _files():
-        raise Refused(404, "Page not found.")
+        raise Refusal(404, "Page not found.")
     return FileResponse(_files()[path], media_type=media_type(path))
 
 
@@ -82,30 +82,30 @@ def _files() -> dict[str, Path]:
     return {path.relative_to(WEB).as_posix(): path for path in WEB.rglob("*") if path.is_file()}
 
 
-async def _refused(request: Request, refused: Refused) -> Response:
-    return as_json(encoded(refused.body), refused.status)
+async def _refusal_response(request: Request, refused: Refusal) -> Response:
+    return as_json(encode_json(refused.body), refused.status)
 
 
 async def _unknown(request: Request, error: Any) -> Response:
     return as_json(
-        encoded({"sentence": "Unknown request; /api/openapi.json describes all requests."}),
+        encode_json({"sentence": "Unknown request; /api/openapi.json describes all requests."}),
         error.status_code,
     )
 
 
 async def _fault(request: Request, error: Exception) -> Response:
     where = re.sub(r"\s+", " ", f"{type(error).__name__}: {error}")[:300]
-    return as_json(encoded({"sentence": f"This is a fault of the program ({where}). Nothing else is lost."}), 500)
+    return as_json(encode_json({"sentence": f"This is a fault of the program ({where}). Nothing else is lost."}), 500)
 
 
-def _checked(shape: type[BaseModel], body: Any) -> BaseModel:
+def _validate_body(shape: type[BaseModel], body: Any) -> BaseModel:
     try:
         return shape.model_validate(body)
     except ValidationError as error:
         problems = [
             {"place": [str(key) for key in detail["loc"]], "sentence": _sentence(detail)} for detail in error.errors()
         ]
-        raise Refused(400, str(problems[0]["sentence"]), problems=problems) from None
+        raise Refusal(400, str(problems[0]["sentence"]), problems=problems) from None
 
 
 def _sentence(detail: Any) -> str:

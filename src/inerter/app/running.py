@@ -89,7 +89,7 @@ def _text_of(study: object) -> tuple[str, str] | None:
     if study is None:
         return None
     if not isinstance(study, str | Path):
-        text: str = resolve_name("inerter.files.study.study:write_resolved")(study)
+        text: str = resolve_name("inerter.files.study.quantity_texts:write_resolved")(study)
         return "study.toml", text
     path = Path(study)
     try:

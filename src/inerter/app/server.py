@@ -20,7 +20,7 @@ from inerter.work.processes import Processes
 _LANES = {  # norms; what simulates; records, figures and tables
     "quick": ("inerter.app.answers",),
     "slow": ("inerter.app.answers",),
-    "aside": ("inerter.app.found", "inerter.app.pictures", "inerter.app.tables"),
+    "aside": ("inerter.app.record_findings", "inerter.app.pictures", "inerter.app.tables"),
 }
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any
 
-from inerter.app.answers import answered
+from inerter.app.answers import answer_panel
 from inerter.errors import StudyError
 from inerter.units import headed
 
@@ -21,7 +21,7 @@ def as_csv(panel: str, request: Mapping[str, Any]) -> str:
         raise StudyError(f"There are tables of {', '.join(_TABLES)}, not of {panel!r}.")
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(
-        [_cell(value) for value in row] for row in _TABLES[panel](answered(panel, request))
+        [_cell(value) for value in row] for row in _TABLES[panel](answer_panel(panel, request))
     )
     return text.getvalue()
 

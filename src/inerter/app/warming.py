@@ -38,7 +38,7 @@ class Warming:
         """Wait until the kernels are compiled."""
         await self.done.wait()
 
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """Whether the kernels are compiled, and the one being compiled."""
         last = (_lines(self.path) or [{"title": "", "number": 0, "total": 0}])[-1]
         return {"ready": self.done.is_set(), **last}

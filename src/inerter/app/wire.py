@@ -13,7 +13,7 @@ from inerter.app.documents import problems_of
 from inerter.errors import InerterError, WorkError
 
 
-class Refused(Exception):  # noqa: N818 -- an answer, not a fault
+class Refusal(Exception):  # noqa: N818 -- an answer, not a fault
     """A request that is refused, with the status of the answer and a sentence."""
 
     def __init__(self, status: int, /, sentence: str, **more: Any) -> None:
@@ -21,26 +21,26 @@ class Refused(Exception):  # noqa: N818 -- an answer, not a fault
         self.status, self.body = status, {"sentence": sentence, **more}
 
 
-def encoded(data: Any) -> bytes:
+def encode_json(data: Any) -> bytes:
     """Data as JSON: nan is null, infinity is text, arrays are lists."""
     return json.dumps(_plain(data), ensure_ascii=False, allow_nan=False).encode("utf-8", "backslashreplace")
 
 
-def decoded(text: bytes) -> Any:
-    """Data from JSON; raises `Refused` where it is none."""
+def decode_json(text: bytes) -> Any:
+    """Data from JSON; raises `Refusal` where it is none."""
     try:
         return json.loads(text, parse_constant=_no_number)
     except (ValueError, RecursionError) as error:
-        raise Refused(400, f"The body is not JSON ({_shortly(error)}).") from None
+        raise Refusal(400, f"The body is not JSON ({_shortly(error)}).") from None
 
 
-def refusal_of(error: Exception) -> Refused:
+def refusal_of(error: Exception) -> Refusal:
     """Refusal of a request for an exception of the library, with its problems."""
     if isinstance(error, WorkError):
-        return Refused(500, str(error))
+        return Refusal(500, str(error))
     if isinstance(error, InerterError):
-        return Refused(400, str(error), problems=problems_of(error))
-    return Refused(400, f"This cannot be computed ({_shortly(error)}).", problems=[])
+        return Refusal(400, str(error), problems=problems_of(error))
+    return Refusal(400, f"This cannot be computed ({_shortly(error)}).", problems=[])
 
 
 def _no_number(text: str) -> Any:

@@ -10,9 +10,9 @@ from pathlib import Path
 from pkgutil import resolve_name
 from typing import Any
 
-from inerter.app.calls import called
-from inerter.app.kinds import KINDS, Stopped
-from inerter.app.wire import decoded, encoded
+from inerter.app.calls import run_call
+from inerter.app.kinds import KINDS, JobStopped
+from inerter.app.wire import decode_json, encode_json
 from inerter.work.progress import ProgressStep, progress
 from inerter.writing import whole
 
@@ -29,7 +29,7 @@ class _Telling:
 
     def __call__(self, done: int, total: int, told: str) -> None:
         if (self.folder / STOP).exists():
-            raise Stopped
+            raise JobStopped
         now = time.monotonic()
         self.count = done, total
         if now - self.last > _OFTEN or done == total:
@@ -37,9 +37,9 @@ class _Telling:
             write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
 
     def step(self, step: ProgressStep) -> None:
-        """Write the progress of the running step, at most every `_SELDOM` seconds; raises `Stopped` on request."""
+        """Write the progress of the running step, at most every `_SELDOM` seconds; raises `JobStopped` on request."""
         if (self.folder / STOP).exists():
-            raise Stopped
+            raise JobStopped
         if not step.over and time.monotonic() - self.last > _SELDOM:
             self(*self.count, f"{step}, {step.seconds:.0f} s")
 
@@ -47,7 +47,7 @@ class _Telling:
 def work(folder: str) -> dict[str, Any]:
     """Do the work whose request is in a folder, and write its result there; returns how it ended."""
     place = Path(folder)
-    request = decoded((place / REQUEST).read_bytes())
+    request = decode_json((place / REQUEST).read_bytes())
     stopped = False
 
     def run() -> Any:
@@ -56,11 +56,11 @@ def work(folder: str) -> dict[str, Any]:
             telling = _Telling(place)
             with progress(telling.step):
                 return resolve_name(KINDS[request["kind"]].home)(request, place, telling)
-        except Stopped:
+        except JobStopped:
             stopped = True
             return None
 
-    status, found = called(run)
+    status, found = run_call(run)
     if stopped:
         return {"event": "stopped"}
     if status != 200:
@@ -73,7 +73,7 @@ def work(folder: str) -> dict[str, Any]:
 def write_event(folder: Path, event: dict[str, Any]) -> None:
     """Append an event to those of a piece of work."""
     with (folder / EVENTS).open("ab") as stream:
-        stream.write(encoded({**event, "time": time.time()}) + b"\n")
+        stream.write(encode_json({**event, "time": time.time()}) + b"\n")
 
 
 def write_last(folder: Path, event: dict[str, Any]) -> None:

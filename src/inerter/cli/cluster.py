@@ -34,14 +34,14 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
         raise StudyError("Got --jobs and a scheduler; leave --jobs out: the cluster has as many processes as it has.")
     tls = {"tls_ca_file": asked.tls_ca_file, "tls_client_cert": asked.tls_cert, "tls_client_key": asked.tls_key}
     given = {name: str(path) for name, path in tls.items() if path is not None}
-    with connected(asked.scheduler, asked.scheduler_file, given) as executor:
+    with cluster_executor(asked.scheduler, asked.scheduler_file, given) as executor:
         clusters.check(executor)
-        print(f"inerter: {_told(clusters.places(executor))}", file=sys.stderr, flush=True)
+        print(f"inerter: {_describe_workers(clusters.places(executor))}", file=sys.stderr, flush=True)
         yield executor
 
 
 @contextmanager
-def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
+def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, str]) -> Iterator[Executor]:
     """Executor on a running cluster, by the address or the file of its scheduler.
 
     `tls` are fields of dask's `Security`.
@@ -76,7 +76,7 @@ def connected(address: str | None, file: Path | None, tls: Mapping[str, str]) ->
         yield client.get_executor(pure=False)
 
 
-def _told(places: Sequence[clusters.Worker]) -> str:
+def _describe_workers(places: Sequence[clusters.Worker]) -> str:
     threads = sum(place.threads for place in places)
     hosts = len({place.host for place in places})
     counts = ((len(places), "worker"), (threads, "thread"), (hosts, "machine"))

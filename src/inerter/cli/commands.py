@@ -31,7 +31,7 @@ from inerter.papers.registry import PAPERS
 from inerter.report.answers import answers
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
-from inerter.report.text import WIDTH, summary_table, wrapped
+from inerter.report.text import WIDTH, summary_table, wrap_text
 
 _MOST = 20  # designs that are told one by one
 
@@ -56,7 +56,7 @@ def run(
         draw_layouts(loaded, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
 
-    kept = _kept(("run", str(study)), folder, jobs, cluster, as_json=as_json)
+    kept = _continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = " and ".join(["designs", *(task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
@@ -80,14 +80,14 @@ def run(
             print(text, end="")
     else:
         road = roads_sentence(loaded)
-        head = [*wrapped(loaded.title), *(wrapped(f"{road}.") if road else []), ""]
+        head = [*wrap_text(loaded.title), *(wrap_text(f"{road}.") if road else []), ""]
         print("\n".join([*head, summary_table(result.data)]))
         for task, own in by_task(result.answers).items():
             print("\n".join(task.lines(TaskResults(loaded, result.data, own), WIDTH)))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         told = answers(result.data, loaded, result.answers)
-        print("\n".join(["", *(line for text in told for line in wrapped(text, subsequent_indent="  "))]))
+        print("\n".join(["", *(line for text in told for line in wrap_text(text, subsequent_indent="  "))]))
     return _judge(result)
 
 
@@ -99,11 +99,11 @@ def _pace(study: Study) -> Pace:
 
 def papers() -> int:
     """Print the available papers with their parts; returns the exit code."""
-    print("\n\n".join(_told(paper) for paper in PAPERS.values()))
+    print("\n\n".join(_describe_paper(paper) for paper in PAPERS.values()))
     return 0
 
 
-def _told(paper: Paper) -> str:
+def _describe_paper(paper: Paper) -> str:
     lines = (f"Parts: {', '.join(paper.parts)}.", f"Claims: {len(paper.claims)}. Figures: {len(paper.figures)}.")
     told = [*wrap(paper.title, WIDTH - 2), *(line for text in lines for line in wrap(text, WIDTH - 2))]
     return "\n".join([paper.name, *(f"  {line}" for line in told)])
@@ -125,7 +125,7 @@ def reproduce(
     folder = output or Path(f"{name}-results")
     processes = _processes(jobs)
     parts = (word for part in only for word in ("--only", part))
-    kept = _kept(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
+    kept = _continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
     settings = {"jobs": processes, "resume": resume, "force": force}
     with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps(name) as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
@@ -134,7 +134,9 @@ def reproduce(
     return max([_judge(result) for result in found.studies.values()], default=0)
 
 
-def _kept(command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool) -> str:
+def _continuation_clause(
+    command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool
+) -> str:
     """Clause on results kept at an interruption, with the complete command that continues the work."""
     options = (*(() if jobs is None else ("-j", str(jobs))), *cluster.words, *(("--json",) if as_json else ()))
     again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])

@@ -9,7 +9,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StudyError, with_article
-from inerter.files.common.keys import ANY_NAME, Key, below, found, keys_of
+from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
@@ -44,7 +44,7 @@ def explain(wanted: str | None) -> int:
     section = wanted.partition(".")[0]
     if kind_with(section) is not None and all(key.place != section for key in keys):
         raise StudyError(_unknown(wanted, keys))
-    told = [list(_told(key, keys)) for key in found(keys, wanted)]
+    told = [list(_describe_key(key, keys)) for key in find_keys(keys, wanted)]
     told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
         raise StudyError(_unknown(wanted, keys))
@@ -67,24 +67,24 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     return f"Unknown key {shown(wanted)} of study files.{nearest(wanted, known)} All keys: inerter explain"
 
 
-def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
+def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
     """Lines on a key, and on the keys that it holds if it is a section."""
     where = f"{key.place}, of a {key.of}" if key.of else key.place
-    yield from _wrapped(f"{where}: {key.sentence}", "")
+    yield from _wrap_text(f"{where}: {key.sentence}", "")
     if key.unit:
         others = f", or another of its kind such as {' or '.join(key.other_units[:2])}" if key.other_units else ""
-        yield from _wrapped(f"unit     {key.unit}{others}")
+        yield from _wrap_text(f"unit     {key.unit}{others}")
     if key.words:
-        yield from _wrapped(f"one of   {', '.join(key.words)}")
+        yield from _wrap_text(f"one of   {', '.join(key.words)}")
     if key.default not in (None, []):
-        yield from _wrapped(f"default  {as_line(key.name, key.default)}")
+        yield from _wrap_text(f"default  {as_line(key.name, key.default)}")
     elif ANY_NAME not in key.place:
-        yield from _wrapped("default  none: it has to be given" if key.needed else "default  left out")
+        yield from _wrap_text("default  none: required" if key.needed else "default  left out")
     if key.example is not None:
         name = "k" if key.name == ANY_NAME else key.name
         section = key.place.rpartition(".")[0]
         place = f"    in [{section}]" if section and ANY_NAME not in section else ""
-        yield from _wrapped(f"example  {as_line(name, key.example)}{place}")
+        yield from _wrap_text(f"example  {as_line(name, key.example)}{place}")
     if key.section and (held := below(keys, key)):
         yield ""
         yield from _table(held)
@@ -93,7 +93,7 @@ def _told(key: Key, keys: Sequence[Key]) -> Iterator[str]:
 def _row(what: str, name: str, row: Any) -> Iterator[str]:
     """Lines on a registry entry that is a possible value of a key."""
     sentence = " ".join((getdoc(row) or "").partition("\n\n")[0].split())
-    yield from _wrapped(f"{name}, {with_article(what)}: {sentence}", "")
+    yield from _wrap_text(f"{name}, {with_article(what)}: {sentence}", "")
 
 
 def _table(keys: Sequence[Key]) -> Iterator[str]:
@@ -115,7 +115,7 @@ def _by_model(keys: Sequence[Key]) -> str:
     return " ".join(f"{key.of}: {key.sentence}" for key in keys)
 
 
-def _wrapped(text: str, indent: str = "  ") -> list[str]:
+def _wrap_text(text: str, indent: str = "  ") -> list[str]:
     further = " " * 11 if indent else "  "
     return wrap(
         text,

@@ -35,12 +35,12 @@ EXAMPLES = """Examples:
   inerter reproduce    lists the papers
   inerter serve    opens the workbench in the browser
 
-Exit codes: 0 done, 1 the work failed, 2 the request was wrong, 130 interrupted by Ctrl-C."""
+Exit codes: 0 success, 1 computation failed, 2 invalid input, 130 interrupted by Ctrl-C."""
 
 app = App(
     name="inerter",
     version=f"inerter {__version__}",
-    help="What an inerter does for a vehicle, and which design is best.",
+    help="Analysis, optimisation and identification of vehicle suspensions with inerters.",
     help_epilogue=EXAMPLES,
     help_format="plaintext",
     suppress_keyboard_interrupt=False,
@@ -68,7 +68,7 @@ def run(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Find the best designs of a study file, and write tables, figures and a report.
+    """Optimise all layouts of a study file, and write tables, figures and a report.
 
     The folder, by default STUDY-results, then holds report.html, summary.csv,
     results.nc and figures. An interrupted run keeps what was computed.
@@ -113,13 +113,13 @@ def new(
     *,
     output: Annotated[
         Path | None,
-        Parameter(name=["--output", "-o"], allow_leading_hyphen=True, help="The file to write, or - to print it."),
+        Parameter(name=["--output", "-o"], allow_leading_hyphen=True, help="Output file, or - for the terminal."),
     ] = None,
     force: Annotated[
-        bool, Parameter(negative=(), show_default=False, help="Replace a file that it wrote and nobody edited.")
+        bool, Parameter(negative=(), show_default=False, help="Replace a template that has not been edited.")
     ] = False,
 ) -> int:
-    """Write a study file to start from, with a remark beside every key. It never replaces a file of yours.
+    """Create a commented template of a study file. Existing files are not overwritten.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def new(
   inerter explain sweep"""
 )
 def explain(key: str | None = None, /) -> int:
-    """Tell what a key of study files means: its unit, its default, an example.
+    """Show the meaning, unit, default and an example of a key of study files.
 
     Parameters
     ----------
@@ -174,12 +174,12 @@ def simulate(
     *,
     output: Output = None,
     window: Annotated[
-        str | None, Parameter(help="Seconds that the figure shows, FROM:TO; as much as can be read if left out.")
+        str | None, Parameter(help="Time interval of the figure, FROM:TO in seconds; default: a readable part.")
     ] = None,
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Simulate one motion with dry friction and backlash, and write it as tables and a figure.
+    """Simulate a time history with dry friction and backlash, and write tables and a figure.
 
     The folder, by default FILE-results, then holds trajectory.csv,
     trajectory.nc, events.csv, simulation.toml and figures.
@@ -205,10 +205,13 @@ def identify(
     /,
     *,
     model: Annotated[
-        str | None, Parameter(help="What is fitted: ball-screw and others, or choose for the best of them all.")
+        str | None, Parameter(help="Model to fit, such as ball-screw, or choose to select the best of all models.")
     ] = None,
     config: Annotated[
-        Path | None, Parameter(help="A file (TOML) with [record], [model], [elements] and [fit]; options overrule it.")
+        Path | None,
+        Parameter(
+            help="Identification file (TOML) with [record], [model], [elements] and [fit]; options take precedence."
+        ),
     ] = None,
     reading: Reading = AS_THEY_ARE,
     search: Searching = AS_USUAL,
@@ -217,7 +220,7 @@ def identify(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Identify the parameters of a device from measured records, and say what is not identifiable.
+    """Estimate the parameters of a device from measured records, with confidence intervals and identifiability.
 
     The folder, by default RECORD-results, then holds report.html, fit.json,
     residuals.csv and figures.
@@ -243,13 +246,13 @@ def rig(
     *,
     output: Annotated[
         Path,
-        Parameter(name=["--output", "-o"], help="The file to write: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
+        Parameter(name=["--output", "-o"], help="Output file: .csv, .tsv, .txt, .tdms, .mf4 or .mat."),
     ],
     force: Annotated[
         bool, Parameter(negative="", show_default=False, help="Replace a record that this command wrote.")
     ] = False,
 ) -> int:
-    """Run a virtual test rig, and write what its sensors read of a device that is known.
+    """Generate the records of a virtual test rig from a known device.
 
     Parameters
     ----------
@@ -271,15 +274,15 @@ def serve(
     study: Path | None = None,
     /,
     *,
-    port: Annotated[int | None, Parameter(help="The port to listen on; a free one if left out.")] = None,
-    browser: Annotated[bool, Parameter(help="Whether to open the page.")] = True,
-    limit: Annotated[int, Parameter(help="Bytes that a request may have.")] = LIMIT,
-    record_limit: Annotated[int, Parameter(help="Bytes that a measured record may have.")] = RECORD_LIMIT,
+    port: Annotated[int | None, Parameter(help="Port to listen on; default: a free port.")] = None,
+    browser: Annotated[bool, Parameter(help="Open the page in the browser.")] = True,
+    limit: Annotated[int, Parameter(help="Maximum size of a request in bytes.")] = LIMIT,
+    record_limit: Annotated[int, Parameter(help="Maximum size of a measured record in bytes.")] = RECORD_LIMIT,
     folder: Annotated[
-        Path | None, Parameter(help="Where long work and records are kept; until the end only if left out.")
+        Path | None, Parameter(help="Folder for jobs and records; default: a temporary folder, deleted at the end.")
     ] = None,
 ) -> int:
-    """Open the workbench in the browser: draw a strut, move a slider, see all that follows.
+    """Open the interactive workbench in the browser.
 
     It listens on this machine alone, and prints its link. Ctrl-C ends it.
 
@@ -296,7 +299,7 @@ def serve(
 app.command(
     "inerter.cli.reproduce:app",
     name="reproduce",
-    help="Recompute the numbers, designs, figures and claims of a paper, and compare them with the printed ones.",
+    help="Recompute a published paper and compare it with the printed numbers, designs, figures and claims.",
 )
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
-Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Processes to use; all cores if left out.")]
+Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Number of processes; default: all cores.")]
 
 
 @dataclass(frozen=True)
@@ -17,12 +17,16 @@ class Cluster:
     """A scheduler of dask to which work is handed."""
 
     scheduler: Annotated[
-        str | None, Parameter(help="Work on the cluster of this dask scheduler, such as tcp://HOST:8786.")
+        str | None, Parameter(help="Address of a Dask scheduler to run on, such as tcp://HOST:8786.")
     ] = None
-    scheduler_file: Annotated[Path | None, Parameter(help="The same, by the file that the scheduler wrote.")] = None
-    tls_ca_file: Annotated[Path | None, Parameter(help="Certificate of who signs for the scheduler (PEM).")] = None
-    tls_cert: Annotated[Path | None, Parameter(help="Own certificate (PEM).")] = None
-    tls_key: Annotated[Path | None, Parameter(help="Own private key (PEM).")] = None
+    scheduler_file: Annotated[
+        Path | None, Parameter(help="Scheduler file of Dask, as an alternative to its address.")
+    ] = None
+    tls_ca_file: Annotated[
+        Path | None, Parameter(help="Certificate of the authority that signed the scheduler's (PEM).")
+    ] = None
+    tls_cert: Annotated[Path | None, Parameter(help="Client certificate (PEM).")] = None
+    tls_key: Annotated[Path | None, Parameter(help="Private key of the client certificate (PEM).")] = None
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -38,7 +42,7 @@ Resume = Annotated[
     Parameter(
         negative="",
         show_default=False,
-        help="Continue an interrupted run: what its journal holds is not computed again.",
+        help="Continue an interrupted run; completed cases are reused.",
     ),
 ]
 Force = Annotated[
@@ -46,8 +50,8 @@ Force = Annotated[
     Parameter(
         negative="",
         show_default=False,
-        help="Replace the results in the folder when the new ones are whole. "
-        "Files that inerter did not write, or that were edited since, are never replaced.",
+        help="Replace previous results once the run has completed. "
+        "Files that inerter did not write, or that were edited, are kept.",
     ),
 ]
 Json = Annotated[

@@ -94,7 +94,7 @@ class Pace:
 
     def _times(self, known: Mapping[Kind, float]) -> dict[Kind, float]:
         """Seconds that a design of each kind takes: a product of one factor by layout and one by index."""
-        rest = {kind: math.log(max(seconds, 1e-9)) - self._expected(kind) for kind, seconds in known.items()}
+        rest = {kind: math.log(max(seconds, 1e-9)) - self._expected_log_time(kind) for kind, seconds in known.items()}
         mean = sum(rest.values()) / len(rest)
         by_layout, by_index = dict.fromkeys(self.free, mean), dict.fromkeys(self.indices, 0.0)
         for _ in range(3):
@@ -104,10 +104,10 @@ class Pace:
             for layout in by_layout:
                 off = [r - by_index[kind[1]] for kind, r in rest.items() if kind[0] == layout]
                 by_layout[layout] = sum(off) / len(off) if off else mean
-        fitted = {k: math.exp(self._expected(k) + by_layout[k[0]] + by_index[k[1]]) for k in self.left_of}
+        fitted = {k: math.exp(self._expected_log_time(k) + by_layout[k[0]] + by_index[k[1]]) for k in self.left_of}
         return fitted | {kind: seconds for kind, seconds in known.items() if kind in fitted}
 
-    def _expected(self, kind: Kind) -> float:
+    def _expected_log_time(self, kind: Kind) -> float:
         return _POWER * math.log(max(self.free[kind[0]], 1))
 
     def _kind(self, name: str) -> Kind:

@@ -32,7 +32,7 @@ from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
 
 
-class Shown(NamedTuple):
+class ProgressCallbacks(NamedTuple):
     """Callbacks that display the progress of a study."""
 
     cases: Report  # how many cases are done, and which one was last
@@ -90,7 +90,7 @@ class _Study:
 @contextmanager
 def progress(
     what: str, items: str = "designs", executor: Executor | None = None, pace: Pace | None = None
-) -> Iterator[Shown]:
+) -> Iterator[ProgressCallbacks]:
     """Callbacks that show how far the work is.
 
     `items` says what there is to find, `executor` who looks for it, `pace` how much work the designs are.
@@ -101,7 +101,7 @@ def progress(
 
 
 @contextmanager
-def _in_lines(study: _Study) -> Iterator[Shown]:
+def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
     with pulse(study.words, study.pace.take) as printer:
 
@@ -113,15 +113,15 @@ def _in_lines(study: _Study) -> Iterator[Shown]:
             elif last is not None and done == total:
                 printer.say(f"{study.what}: all {total} {study.items} found")
 
-        def begun(title: str, number: int, total: int) -> None:
+        def on_kernel_begin(title: str, number: int, total: int) -> None:
             study.begin_kernel(title, number, total)
             printer.say(f"{study.what}: {study.compiling}")
 
-        yield Shown(show, begun)
+        yield ProgressCallbacks(show, on_kernel_begin)
 
 
 @contextmanager
-def _on_terminal(study: _Study) -> Iterator[Shown]:
+def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
     """A bar, which moves."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -138,7 +138,7 @@ def _on_terminal(study: _Study) -> Iterator[Shown]:
             bar.update(task, completed=study.done + parts, total=study.total, description=text)
 
         with listening(Listener(update, every=0.5)):
-            yield Shown(study.count, study.begin_kernel)
+            yield ProgressCallbacks(study.count, study.begin_kernel)
 
 
 @contextmanager

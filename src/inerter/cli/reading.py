@@ -12,38 +12,41 @@ from cyclopts import Parameter
 class ReadingOptions:
     """Options on channels, samples and sensors; None where not given."""
 
-    displacement: Annotated[str | None, Parameter(help="The channel of the displacement: name, or number from 0.")] = (
-        None
-    )
-    force_channel: Annotated[str | None, Parameter(help="The channel of the force: name, or number from 0.")] = None
-    time: Annotated[str | None, Parameter(help="The channel of the times: name, or number from 0.")] = None
+    displacement: Annotated[str | None, Parameter(help="Displacement channel: name, or number from 0.")] = None
+    force_channel: Annotated[str | None, Parameter(help="Force channel: name, or number from 0.")] = None
+    time: Annotated[str | None, Parameter(help="Time channel: name, or number from 0.")] = None
     unit: Annotated[
         tuple[str, ...],
         Parameter(
             negative="",
             show_default=False,
-            help="A unit where the file has none or a wrong one: force=kgf. Several times.",
+            help="Unit of a channel if missing or wrong in the file, such as force=kgf; repeatable.",
         ),
     ] = ()
-    interval: Annotated[str | None, Parameter(help='Between samples, where the file has no times: "1 ms".')] = None
-    gaps: Annotated[
-        str | None, Parameter(help='What missing samples are: refuse, fill, longest, or filled up to "50 ms".')
+    interval: Annotated[
+        str | None, Parameter(help='Sampling interval if the file has no time channel, such as "1 ms".')
     ] = None
-    trim: Annotated[str | None, Parameter(help="Seconds to use, FROM:TO.")] = None
-    resample: Annotated[str | None, Parameter(help='New interval between samples: "1 ms".')] = None
-    period: Annotated[str | None, Parameter(help='Of an excitation that repeats: "10 s"; else it is found.')] = None
-    force_range: Annotated[str | None, Parameter(help='What the load cell can read: "981 N".')] = None
+    gaps: Annotated[
+        str | None,
+        Parameter(
+            help='Treatment of missing samples: refuse, fill, longest, or the longest gap to fill, such as "50 ms".'
+        ),
+    ] = None
+    trim: Annotated[str | None, Parameter(help="Time interval to use, FROM:TO in seconds.")] = None
+    resample: Annotated[str | None, Parameter(help='New sampling interval, such as "1 ms".')] = None
+    period: Annotated[str | None, Parameter(help='Period of the excitation, such as "10 s"; default: detected.')] = None
+    force_range: Annotated[str | None, Parameter(help='Measuring range of the load cell, such as "981 N".')] = None
     force_bandwidth: Annotated[
-        str | None, Parameter(help='Bandwidth of the load cell and its amplifier: "300 Hz".')
+        str | None, Parameter(help='Bandwidth of the load cell and its amplifier, such as "300 Hz".')
     ] = None
     force_noise: Annotated[
-        str | None, Parameter(help='Noise of the load cell, r.m.s.: "0.5 N"; estimated from the record if left out.')
+        str | None, Parameter(help='R.m.s. force noise, such as "0.5 N"; default: estimated from the record.')
     ] = None
     displacement_noise: Annotated[
-        str | None, Parameter(help='Noise of the displacement, r.m.s.: "1 um"; estimated from the record if left out.')
+        str | None, Parameter(help='R.m.s. displacement noise, such as "1 um"; default: estimated from the record.')
     ] = None
     fixture_mass: Annotated[
-        str | None, Parameter(help='Mass that moves with the table between load cell and device: "2 kg +- 10 g".')
+        str | None, Parameter(help='Fixture mass between load cell and device, such as "2 kg +- 10 g".')
     ] = None
 
 
@@ -54,12 +57,17 @@ AS_THEY_ARE = ReadingOptions()
 class SearchOptions:
     """Options on the search and on the scales of the sensors; None where not given."""
 
-    seed: Annotated[int | None, Parameter(help="Of the starting points; 0 if left out.")] = None
-    starts: Annotated[int | None, Parameter(help="Starting points of the search, 8 or more.")] = None
+    seed: Annotated[int | None, Parameter(help="Seed of the starting points; default: 0.")] = None
+    starts: Annotated[int | None, Parameter(help="Number of starting points of the search, at least 8.")] = None
     force_scale: Annotated[
-        str | None, Parameter(help='True force over the reading, with standard uncertainty (k = 1): "1 +- 1 %".')
+        str | None,
+        Parameter(
+            help='Scale factor of the force, true over measured, with standard uncertainty (k = 1), such as "1 +- 1 %".'
+        ),
     ] = None
-    displacement_scale: Annotated[str | None, Parameter(help='The same of the displacement: "1 +- 0.1 %".')] = None
+    displacement_scale: Annotated[
+        str | None, Parameter(help='Scale factor of the displacement, true over measured, such as "1 +- 0.1 %".')
+    ] = None
 
 
 AS_USUAL = SearchOptions()

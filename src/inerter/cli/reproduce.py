@@ -33,9 +33,7 @@ def reproduce(
     *,
     only: Annotated[
         tuple[Part, ...],
-        Parameter(
-            negative="", show_default=False, help="The parts to reproduce, each with its own --only; all if left out."
-        ),
+        Parameter(negative="", show_default=False, help="Part to reproduce; repeatable; default: all parts."),
     ] = (),
     output: Output = None,
     jobs: Jobs = None,
@@ -44,7 +42,7 @@ def reproduce(
     force: Force = False,
     json: Json = False,
 ) -> int:
-    """Recompute the numbers, designs, figures and claims of a paper, and compare them with the printed ones.
+    """Recompute a published paper and compare it with the printed numbers, designs, figures and claims.
 
     Parameters
     ----------

@@ -25,12 +25,12 @@ def simulate(file: Path, output: Path | None, window: str | None, *, force: bool
     folder = output or Path(f"{file.stem}-results")
 
     def draw(result: SimulationResult, into: Path) -> None:
-        if (shown := _shown(result, wanted)) is not None:
+        if (shown := _figure_window(result, wanted)) is not None:
             draw_simulation(result, into / FIGURES, shown)
 
     with interruptible(), fraction(file.stem) as callback:
         result = run_simulation(request, folder, force=force, progress=callback, finish=draw)
-    shown = _shown(result, wanted)
+    shown = _figure_window(result, wanted)
     print(json.dumps(simulation_data(result), indent=2) if as_json else simulation_text(result, shown))
     print(f"inerter: results: {folder}", file=sys.stderr)
     if not result.run.status.ok:
@@ -39,7 +39,7 @@ def simulate(file: Path, output: Path | None, window: str | None, *, force: bool
     return 0
 
 
-def _shown(result: SimulationResult, wanted: Window | None) -> Window | None:
+def _figure_window(result: SimulationResult, wanted: Window | None) -> Window | None:
     """Time window of the figure; None for a motion of fewer than two samples."""
     if result.run.time.size < 2:
         return None

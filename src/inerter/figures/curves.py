@@ -11,7 +11,7 @@ Matrix = NDArray[np.float64]
 _MOST_POINTS = 4000  # of a curve; more are drawn as the range that they cover
 
 
-def thinned(time: Matrix, values: Matrix, most: int = _MOST_POINTS) -> tuple[Matrix, Matrix]:
+def thin_curve(time: Matrix, values: Matrix, most: int = _MOST_POINTS) -> tuple[Matrix, Matrix]:
     """Visually identical curve with about `most` points or fewer: lowest and highest sample of each piece.
 
     Values that are no numbers are breaks in the curve.

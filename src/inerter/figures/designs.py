@@ -16,7 +16,7 @@ from inerter.figures.labels import (
     axis_label,
     by_method,
     capital,
-    compared,
+    compared_layouts,
     index_title,
     indices,
     layouts,
@@ -24,7 +24,7 @@ from inerter.figures.labels import (
     one_method,
     percent,
     scale,
-    titled,
+    title_with_name,
     typeset,
     way,
 )
@@ -43,7 +43,7 @@ _WIDEST_BAR = 0.28  # of the distance between two groups
 def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
     """The improvement of every layout over the baseline, in groups by index. For a study without a sweep."""
     results = one_method(results)
-    names, styles = compared(results), layout_styles(layouts(results), results.attrs["baseline"])
+    names, styles = compared_layouts(results), layout_styles(layouts(results), results.attrs["baseline"])
     groups = np.arange(results.sizes["index"], dtype=float)
     width = min(0.84 / max(len(names), 1), _WIDEST_BAR)
     upright = len(names) * groups.size > _MOST_LEVEL_NUMBERS
@@ -54,7 +54,9 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
         ax.axhline(0.0, **styles[results.attrs["baseline"]].curve() | {"linewidth": 1.0})
     _leave_room(ax, 0.18 if upright else 0.1)
     ax.set_xlim(-0.5, groups.size - 0.5)
-    ax.set_xticks(groups, [titled(index_title(results, index), index, "{1}\n{0}") for index in indices(results)])
+    ax.set_xticks(
+        groups, [title_with_name(index_title(results, index), index, "{1}\n{0}") for index in indices(results)]
+    )
     ax.tick_params(axis="x", length=0)
     ax.grid(visible=False, axis="x")
     ax.set_ylabel(IMPROVEMENT)
@@ -63,7 +65,7 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
 
 def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
     """The improvement of every layout over the baseline by every method, one of `axes` for each index."""
-    names = compared(results)
+    names = compared_layouts(results)
     places, width = np.arange(len(names), dtype=float), 0.7 / len(methods(results))
     for ax, index in zip(axes, indices(results), strict=True):
         for number, method in enumerate(methods(results)):
@@ -80,7 +82,7 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
         ax.grid(visible=False, axis="x")
         ax.margins(y=0.12)
         ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-        ax.set_title(fill(titled(index_title(results, index), index, "{1}: {0}"), _WIDEST_TITLE))
+        ax.set_title(fill(title_with_name(index_title(results, index), index, "{1}: {0}"), _WIDEST_TITLE))
     axes[0].set_ylabel(IMPROVEMENT)
     return axes
 

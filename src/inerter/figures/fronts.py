@@ -18,7 +18,7 @@ from inerter.figures.labels import (
     criterion_unit,
     layouts,
     scale,
-    titled,
+    title_with_name,
 )
 from inerter.figures.style import LayoutStyle, layout_styles
 
@@ -52,7 +52,7 @@ def front_curves(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
             ax.set(
                 **{
                     f"{which}label": axis_label(
-                        capital(titled(criterion_title(results, name), name, "{} {}")), unit.unit
+                        capital(title_with_name(criterion_title(results, name), name, "{} {}")), unit.unit
                     )
                 }
             )

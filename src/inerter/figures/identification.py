@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.figures.labels import Scale, axis_label, scale
-from inerter.figures.style import add_legend, colour, log_axis, new_figure, save, styled
+from inerter.figures.style import add_legend, colour, log_axis, new_figure, save, style_context
 from inerter.records.record import Record
 from inerter.records.result import Response
 
@@ -59,7 +59,7 @@ class ProfileCurve:
 
 def draw(figure: Figure, folder: Path, name: str, *, print_too: bool = True) -> list[Path]:
     """Write a figure into `folder` as SVG and, for print too, as PDF and PNG; returns the files."""
-    with styled():
+    with style_context():
         return save(figure, folder, name, pdf=print_too, png=print_too)
 
 
@@ -74,7 +74,7 @@ def response_figure(
     `model` is the model's response at the same amplitude, `linear` the linear one and `ideal` that of the inertance
     alone as baselines, as far as there are any.
     """
-    with styled():
+    with style_context():
         figure, (first,) = new_figure(height=4.9)
         first.remove()
         grid = figure.add_gridspec(3, 1, height_ratios=(2.3, 1.7, 0.95))
@@ -129,7 +129,7 @@ def time_figure(
     measured: MotionCurve, model: MotionCurve | None = None, window: tuple[float, float] | None = None
 ) -> Figure:
     """Displacement and force over time: Figure 8 of the paper, and with a model Figure 9."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(2, height=_HEIGHT)
         curves = [(measured, _MEASURED)] if model is None else [(measured, _BELOW), (model, _ABOVE)]
         for ax, name, unit, letter in zip(axes, ("displacement", "force"), ("m", "N"), "ab", strict=True):
@@ -146,7 +146,7 @@ def time_figure(
 
 def record_figure(received: Record, used: Record) -> Figure:
     """The channels of a record as they came, in grey, and as they were used."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(2, height=_HEIGHT)
         for ax, name, unit in zip(axes, ("displacement", "force"), ("m", "N"), strict=True):
             curves = [
@@ -167,7 +167,7 @@ def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: M
 
     `bound` is what the autocorrelation of white noise stays within in 95 of 100 cases.
     """
-    with styled():
+    with style_context():
         figure, (first,) = new_figure(height=1.9)
         first.remove()
         grid = figure.add_gridspec(1, 2, width_ratios=(1.7, 1.0))
@@ -189,7 +189,7 @@ def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: M
 
 def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: Matrix | None = None) -> Figure:
     """Force [N] over displacement [m] and over velocity [m/s], measured and, where it is given, of a model."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(2, 2, height=2.6)
         up = scale([np.abs(force).max()], "N")
         for ax, along, name, unit in zip(
@@ -210,7 +210,7 @@ def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: M
 def profile_figure(curves: Sequence[ProfileCurve]) -> Figure:
     """Profile likelihoods, a panel for each parameter: an interval is where the curve lies below the line."""
     columns = min(3, len(curves))
-    with styled():
+    with style_context():
         figure, axes = new_figure(len(curves), columns, height=1.75)
         for ax, curve in zip(axes, curves, strict=True):
             draw_profile(ax, curve)
@@ -304,7 +304,7 @@ def _over_time(ax: Axes, curves: Sequence[tuple[Matrix, Matrix, str, dict[str, A
     own = scale([np.nanmax(np.abs(curves[0][1]))], unit)
     for time, values, label, style in curves:
         named: dict[str, Any] = {"label": label} if label else {}
-        ax.plot(*thinned(time, values * own.factor), **style, **named)
+        ax.plot(*thin_curve(time, values * own.factor), **style, **named)
     return own
 
 

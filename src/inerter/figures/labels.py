@@ -144,7 +144,7 @@ def layouts(results: xr.Dataset) -> list[str]:
     return sorted(names, key=lambda name: name != results.attrs["baseline"])
 
 
-def compared(results: xr.Dataset) -> list[str]:
+def compared_layouts(results: xr.Dataset) -> list[str]:
     """The layouts that are compared with the baseline."""
     return layouts(results)[1:] if results.attrs["baseline"] else []
 
@@ -165,10 +165,10 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
-def titled(title: str, name: str, form: str = "{} ({})") -> str:
+def title_with_name(title: str, name: str, form: str = "{} ({})") -> str:
     """Title of an index with its name in the study, unless the title contains the name.
 
-    >>> titled("ride comfort", "J1"), titled("dynamic tyre load", "tyre-load")
+    >>> title_with_name("ride comfort", "J1"), title_with_name("dynamic tyre load", "tyre-load")
     ('ride comfort (J1)', 'dynamic tyre load')
     """
     return title if name.replace("-", " ") in title else form.format(title, name)
@@ -199,7 +199,7 @@ def which_front(results: xr.Dataset) -> str:
 def trade_off_title(results: xr.Dataset) -> str:
     """Title of the trade-off: its indices, and the method if the study has several."""
     titles = [criterion_title(results, name) for name in criteria(results)]
-    return f"Trade-off between {listed(titles)}{which_front(results)}"
+    return f"Trade-off between {format_list(titles)}{which_front(results)}"
 
 
 def flat_range(entry: xr.Dataset) -> str:
@@ -209,7 +209,7 @@ def flat_range(entry: xr.Dataset) -> str:
     return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
 
 
-def listed(words: Sequence[str]) -> str:
+def format_list(words: Sequence[str]) -> str:
     """Words one after another, as a sentence has them."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
@@ -235,7 +235,7 @@ def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.
     if not shows_error(value, error, bound):
         return format_quantity(value, unit, digits_of(value, bound))
     own = scale([value], unit)
-    return f"{measured(value * own.factor, error * own.factor, bound)} {own.unit}".rstrip()
+    return f"{format_uncertain(value * own.factor, error * own.factor, bound)} {own.unit}".rstrip()
 
 
 def digits_of(value: float, bound: float = np.nan) -> int:
@@ -263,7 +263,7 @@ def shows_error(value: float, error: float, bound: float = np.nan) -> bool:
     return bool(np.isfinite(value) and np.isfinite(error) and error > np.fmax(_LEAST_ERROR, bound) * abs(value))
 
 
-def measured(value: float, error: float, bound: float = np.nan, sign: str = "") -> str:
+def format_uncertain(value: float, error: float, bound: float = np.nan, sign: str = "") -> str:
     """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always."""
     if not _SMALLEST < error < _LARGEST:
         return f"{value:{sign}.4g} +- {error:.2g}"
@@ -272,7 +272,7 @@ def measured(value: float, error: float, bound: float = np.nan, sign: str = "") 
     return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
 
 
-def printed(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
+def typeset_quantity(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
     """Value with its unit in printed form, without line breaks."""
     return typeset(with_unit(value, unit, error, bound)).replace(" ", _NO_BREAK_SPACE)
 
@@ -294,7 +294,7 @@ def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
     if np.isnan(value):
         return "n/a"
     if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST and not error <= bound:
-        return f"{measured(value, error, bound / max(abs(value), 1e-300), '+')} %"
+        return f"{format_uncertain(value, error, bound / max(abs(value), 1e-300), '+')} %"
     if abs(value) >= _LARGEST:
         return f"{value:+.3g} %"
     text = f"{value:+.{0 if bound > _TENTH else 1}f} %"

@@ -17,7 +17,7 @@ from inerter.figures.labels import (
     NOTICEABLE,
     axis_label,
     capital,
-    compared,
+    compared_layouts,
     held_back,
     index_title,
     index_unit,
@@ -26,7 +26,7 @@ from inerter.figures.labels import (
     swept_label,
     swept_places,
     swept_scale,
-    titled,
+    title_with_name,
     typeset,
 )
 from inerter.figures.style import log_axis, suits_log_axis
@@ -50,12 +50,12 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
 
     Without a baseline, the value of every layout. The first swept place goes to the right, the second upwards.
     """
-    data = _ordered(results.sel(index=index))
-    others = compared(results)
+    data = _sort_by_sweep(results.sel(index=index))
+    others = compared_layouts(results)
     valued = [name for name in layouts(results) if name not in others]
     unit = scale(data["value"].sel(layout=valued).values, index_unit(results, index))
     values = data["value"].sel(layout=valued) * unit.factor
-    label = axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit)
+    label = axis_label(capital(title_with_name(index_title(results, index), index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
         _draw(data.sel(layout=name), values.sel(layout=name).values, ax, _sequential(values.values), label)
         ax.set_title(_in_lines(f"{name} (baseline)" if others else name))
@@ -77,7 +77,7 @@ def parameter_panels(results: xr.Dataset, index: str, parameter: str) -> list[st
 
 def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequence[Axes]) -> Sequence[Axes]:
     """The value of a parameter that is best for `index`, a layout on one of `axes` each; circles: at a bound."""
-    data = _ordered(results.sel(index=index, parameter=parameter))
+    data = _sort_by_sweep(results.sel(index=index, parameter=parameter))
     unit = scale(data["parameter_value"].values, str(data["parameter_unit"].item()))
     label = axis_label(f"Best {parameter}", unit.unit)
     for ax, name in zip(axes, parameter_panels(results, index, parameter), strict=True):
@@ -96,7 +96,7 @@ def _in_lines(title: str) -> str:
     return fill(title, _TITLE)
 
 
-def _ordered(data: xr.Dataset) -> xr.Dataset:
+def _sort_by_sweep(data: xr.Dataset) -> xr.Dataset:
     places = swept_places(data)
     return data.sortby(places).transpose(..., *places)
 

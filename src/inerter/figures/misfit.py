@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from inerter.figures.labels import axis_label, scale
-from inerter.figures.style import add_legend, colour, log_axis, new_figure, styled
+from inerter.figures.style import add_legend, colour, log_axis, new_figure, style_context
 
 Matrix = NDArray[np.float64]
 _BINS, _CELLS = 24, 18  # of a curve, and of the map to either side
@@ -43,7 +43,7 @@ class ResidualSamples:
 
 def misfit_figure(s: ResidualSamples) -> Figure:
     """Residual over time, position, speed and model force, its spectrum, and its mean over position and speed."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(6, 2, height=2.0)
         _over_time(axes[0], s)
         _spectrum(axes[1], s)
@@ -138,7 +138,7 @@ def _over(ax: Axes, s: ResidualSamples, along: Matrix, name: str, unit: str) -> 
     if name == "Velocity":
         parts = [(np.ones(along.size, dtype=bool), "mean", "black", "-")]
     for chosen, label, shade, line in parts:
-        at, means = _binned(along[chosen], s.residual[chosen], edges)
+        at, means = _bin_means(along[chosen], s.residual[chosen], edges)
         ax.plot(at * own.factor, means * up.factor, color=shade, linestyle=line, linewidth=1.3, label=label)
     ax.set_ylim(*(limit * up.factor for limit in _limits(s)))
     ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
@@ -151,7 +151,7 @@ def _edges(values: Matrix, count: int) -> Matrix:
     return np.linspace(float(low), float(high), count + 1)
 
 
-def _binned(along: Matrix, values: Matrix, edges: Matrix) -> tuple[Matrix, Matrix]:
+def _bin_means(along: Matrix, values: Matrix, edges: Matrix) -> tuple[Matrix, Matrix]:
     bins = np.clip(np.searchsorted(edges, along) - 1, 0, edges.size - 2)
     count = np.bincount(bins, minlength=edges.size - 1)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from inerter.errors import NetworkError
-from inerter.figures.labels import printed
-from inerter.figures.style import WIDE, save, styled
+from inerter.figures.labels import typeset_quantity
+from inerter.figures.style import WIDE, save, style_context
 from inerter.figures.symbols import (
     HALF_HEIGHT,
     HALF_WIDTH,
@@ -25,10 +25,10 @@ from inerter.figures.symbols import (
     Point,
     blank_figure,
     circle,
-    moved,
     stroke,
     symbol,
     text_width,
+    translate_line,
     write,
 )
 from inerter.networks.elements import (
@@ -49,7 +49,7 @@ _MARGIN, _TITLE, _COLUMN, _ROW = 6.0, 4.0, 24.0, 22.0  # around a figure, below 
 
 
 @dataclass(frozen=True)
-class Placed:
+class PlacedElement:
     """An element with the middle of its symbol, and the label to the right of it."""
 
     element: Element
@@ -70,20 +70,20 @@ class Schematic:
     left: float  # how far it reaches to either side of its ends
     right: float
     height: float
-    placed: tuple[Placed, ...]
+    placed: tuple[PlacedElement, ...]
     lines: tuple[Line, ...] = ()
 
-    def moved(self, x: float, y: float) -> tuple[tuple[Placed, ...], tuple[Line, ...]]:
+    def translate(self, x: float, y: float) -> tuple[tuple[PlacedElement, ...], tuple[Line, ...]]:
         """Elements and lines with the upper end at (x, y)."""
-        placed = tuple(Placed(p.element, p.label, p.x + x, p.y + y) for p in self.placed)
-        return placed, tuple(moved(line, x, y) for line in self.lines)
+        placed = tuple(PlacedElement(p.element, p.label, p.x + x, p.y + y) for p in self.placed)
+        return placed, tuple(translate_line(line, x, y) for line in self.lines)
 
 
 def draw_networks(
     networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False, alone: bool = False
 ) -> list[Path]:
     """Write the figure of some networks by their titles into `folder`, as SVG `alone` if wished; returns the files."""
-    with styled():
+    with style_context():
         return save(network_figure(networks, values=values), folder, name, pdf=not alone, png=not alone)
 
 
@@ -129,14 +129,14 @@ def schematic(network: Network, *, values: bool = False) -> Schematic:
             raise NetworkError("A network without elements cannot be drawn. Give it at least one.")
         return _side_by_side(parts) if isinstance(network, Parallel) else _in_a_column(parts)
     (element,) = network.elements()
-    middle = Placed(element, element_label(element, values=values), 0.0, -HALF_HEIGHT)
+    middle = PlacedElement(element, element_label(element, values=values), 0.0, -HALF_HEIGHT)
     return Schematic(HALF_WIDTH, middle.right, 2.0 * HALF_HEIGHT, (middle,))
 
 
 def element_label(element: Element, *, values: bool = False) -> str:
     """Label of an element in a drawing; with `values`, its fixed value in a second line."""
     name, value = symbol(element.label), element.value
-    return name if isinstance(value, Free | Tied) or not values else f"{name}\n{printed(value, element.unit)}"
+    return name if isinstance(value, Free | Tied) or not values else f"{name}\n{typeset_quantity(value, element.unit)}"
 
 
 def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
@@ -155,20 +155,20 @@ def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
         if lead:
             lines += [((x, y), (x, y - lead)) for y in (top, bottom + lead)]
     size = (parts[0].left - xs[0], parts[-1].right + xs[-1], inside + 2.0 * _STUB)
-    return _joined(parts, at, size, lines)
+    return _join_schematics(parts, at, size, lines)
 
 
 def _in_a_column(parts: Sequence[Schematic]) -> Schematic:
     heights = [part.height for part in parts]
     at = [(0.0, -y) for y in accumulate(heights[:-1], initial=0.0)]
     left, right = max(part.left for part in parts), max(part.right for part in parts)
-    return _joined(parts, at, (left, right, sum(heights)))
+    return _join_schematics(parts, at, (left, right, sum(heights)))
 
 
-def _joined(
+def _join_schematics(
     parts: Sequence[Schematic], at: Sequence[Point], size: tuple[float, float, float], lines: Iterable[Line] = ()
 ) -> Schematic:
-    there = [part.moved(*point) for part, point in zip(parts, at, strict=True)]
+    there = [part.translate(*point) for part, point in zip(parts, at, strict=True)]
     placed = tuple(one for elements, _ in there for one in elements)
     return Schematic(*size, placed, (*lines, *(line for _, wires in there for line in wires)))
 
@@ -212,11 +212,11 @@ def _row_width(row: Sequence[_Cell]) -> float:
 
 
 def _draw(drawing: Schematic, axes: Axes, at: Point) -> Axes:
-    placed, lines = drawing.moved(*at)
+    placed, lines = drawing.translate(*at)
     x, y = at
     strokes = [*lines, circle(x, y + _TERMINAL, _TERMINAL), circle(x, y - drawing.height - _TERMINAL, _TERMINAL)]
     for one in placed:
-        strokes += [moved(line, one.x, one.y) for line in one.element.drawing]
+        strokes += [translate_line(line, one.x, one.y) for line in one.element.drawing]
         write(axes, one.label, one.x + HALF_WIDTH + TO_LABEL, one.y, ha="left")
     return stroke(strokes, axes)
 

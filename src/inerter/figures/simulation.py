@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from inerter.errors import StudyError
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.figures.labels import axis_label, capital, scale
-from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, styled
+from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
 from inerter.networks.elements.roles import Guard
 from inerter.systems.outputs import force_of
@@ -62,7 +62,7 @@ def draw_simulation(result: SimulationResult, folder: Path, window: Window | Non
 
     Raises `StudyError` for a `window` [s] with less than two samples.
     """
-    with styled():
+    with style_context():
         return save(simulation_figure(result, window or readable_window(result)), folder, NAME)
 
 
@@ -144,7 +144,7 @@ def draw_panel(result: SimulationResult, panel: TimePanel, inside: NDArray[np.bo
     values = [run[curve.output][inside] * curve.weight for curve in panel.curves]
     unit = scale([max(float(np.abs(v).max(initial=0.0)) for v in values)], panel.unit)
     for curve, value in zip(panel.curves, values, strict=True):
-        ax.plot(*thinned(time, value * unit.factor), **_style(curve))
+        ax.plot(*thin_curve(time, value * unit.factor), **_style(curve))
     _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
     if panel.title == _TYRES:
         _shade_lift_offs(result, (float(time[0]), float(time[-1])), ax)
@@ -181,7 +181,7 @@ def _curves(names: Sequence[str]) -> tuple[Curve, ...]:
     return tuple(Curve(name, label, i) for i, (name, label) in enumerate(zip(names, labels, strict=True)))
 
 
-def _shared(names: Sequence[str]) -> list[str]:
+def _shared_words(names: Sequence[str]) -> list[str]:
     """The words that all names have: "tyre" and "load" of `tyre_front_load` and `tyre_rear_load`."""
     words = [name.split("_") for name in names]
     return [word for word in words[0] if all(word in others for others in words)]
@@ -189,12 +189,12 @@ def _shared(names: Sequence[str]) -> list[str]:
 
 def _common(names: Sequence[str]) -> str:
     """Words common to the names of several outputs; else the first name."""
-    return " ".join(_shared(names)) or names[0].replace("_", " ")
+    return " ".join(_shared_words(names)) or names[0].replace("_", " ")
 
 
 def _own(names: Sequence[str]) -> list[str]:
     """Words that distinguish each of several outputs: "front" of `road_front`, or its whole name."""
-    shared = _shared(names)
+    shared = _shared_words(names)
     own = [" ".join(word for word in name.split("_") if word not in shared) for name in names]
     return own if all(own) and len({*own}) == len(own) else [name.replace("_", " ") for name in names]
 

@@ -18,24 +18,24 @@ from inerter.figures.labels import (
     NOTICEABLE,
     WIDE_RANGE,
     by_which,
-    compared,
+    compared_layouts,
     criteria,
+    format_list,
     held_back,
     index_title,
     indices,
     infeasible,
     layouts,
-    listed,
     methods,
     one_method,
     swept_places,
     swept_words,
-    titled,
+    title_with_name,
     trade_off_title,
     way,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
-from inerter.figures.style import WIDE, add_legend, new_figure, save, styled
+from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
@@ -59,14 +59,14 @@ def study_figures(results: xr.Dataset) -> list[StudyFigure]:
 
 def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:
     """Write all figures of a study into `folder`, each as SVG and as PNG; returns the files."""
-    with styled():
+    with style_context():
         return [path for figure in study_figures(results) for path in save(figure.draw(), folder, figure.name)]
 
 
 def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     baseline, every, results = results.attrs["baseline"], results, one_method(results)
     several = len(methods(every)) > 1
-    if compared(results) and bool(np.isfinite(results["value"].sel(layout=compared(results))).any()):
+    if compared_layouts(results) and bool(np.isfinite(results["value"].sel(layout=compared_layouts(results))).any()):
         yield StudyFigure(
             "improvement",
             f"Improvement over {baseline}, each layout with its own best design for each index"
@@ -75,7 +75,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             + (" Bars with a triangle are cut." if _any(_cut(results)) else ""),
             partial(_improvement, results),
         )
-    if compared(results) and several:
+    if compared_layouts(results) and several:
         yield StudyFigure(
             "methods",
             f"Improvement over {baseline} by each method." + _uncertain(every, " Bars with caps: one standard error."),
@@ -94,7 +94,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {titled(index_title(results, index), index)}."
+                f"{linear} of the designs that are best for {title_with_name(index_title(results, index), index)}."
                 + _still(results, index)
                 + _nearest(results.sel(index=index), "Of a layout that does not keep the limits, that"),
                 partial(_response, results, index),
@@ -105,8 +105,10 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
         here = results.sel(index=index)
-        title = titled(index_title(results, index), index)
-        versus = f", and improvement over the best {baseline} of the same {element}" if compared(results) else ""
+        title = title_with_name(index_title(results, index), index)
+        versus = (
+            f", and improvement over the best {baseline} of the same {element}" if compared_layouts(results) else ""
+        )
         yield StudyFigure(
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
@@ -132,8 +134,8 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
     baseline, others = results.attrs["baseline"], " and ".join(way(every, name) for name in methods(every)[1:])
     for index in indices(results):
         here = results.sel(index=index)
-        title = titled(index_title(results, index), index)
-        versus = f" of {baseline}, and improvement over it of every other layout" if compared(results) else ""
+        title = title_with_name(index_title(results, index), index)
+        versus = f" of {baseline}, and improvement over it of every other layout" if compared_layouts(results) else ""
         yield StudyFigure(
             f"map-{index}",
             f"Best {title}{versus}, over {words}{by_which(results)}."
@@ -177,7 +179,7 @@ def _cut(results: xr.Dataset) -> xr.DataArray:
 
 def _crosses(here: xr.Dataset) -> bool:
     """Whether a layout of a map is better than the baseline at some points and worse at others."""
-    rows = (here["improvement"].sel(layout=name).values for name in compared(here))
+    rows = (here["improvement"].sel(layout=name).values for name in compared_layouts(here))
     return any(_any(row < -NOTICEABLE) and _any(row > NOTICEABLE) for row in rows)
 
 
@@ -200,9 +202,9 @@ def _front(results: xr.Dataset) -> Figure:
 
 def _methods(results: xr.Dataset) -> Figure:
     panels = results.sizes["index"]
-    upright = upright_names(compared(results))
+    upright = upright_names(compared_layouts(results))
     figure, axes = new_figure(
-        panels, panels, height=2.9 + (0.06 * max(map(len, compared(results))) if upright else 0.0)
+        panels, panels, height=2.9 + (0.06 * max(map(len, compared_layouts(results))) if upright else 0.0)
     )
     improvement_by_method(results, axes)
     add_legend(figure, axes)
@@ -210,13 +212,13 @@ def _methods(results: xr.Dataset) -> Figure:
 
 
 def _improvement(results: xr.Dataset) -> Figure:
-    figure, axes = new_figure(height=2.9 if len(compared(results)) <= 5 else 3.6)
+    figure, axes = new_figure(height=2.9 if len(compared_layouts(results)) <= 5 else 3.6)
     improvement_bars(results, axes[0])
     add_legend(figure, axes)
     return figure
 
 
-def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
+def _has_response(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
     """True for each output of an index with a nonzero response; roll has none where both tracks are equal."""
     gain = results[f"gain_{index}"]
     most = np.asarray(gain.max([name for name in gain.dims if name != f"output_{index}"]).fillna(0.0).values)
@@ -225,12 +227,12 @@ def _excited(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
 
 def _still(results: xr.Dataset, index: str) -> str:
     """A sentence on the outputs that a figure leaves out."""
-    names = results[f"output_{index}"].values[~_excited(results, index)].tolist()
-    return f" Not excited, and not shown: {listed([name.replace('_', ' ') for name in names])}." if names else ""
+    names = results[f"output_{index}"].values[~_has_response(results, index)].tolist()
+    return f" Not excited, and not shown: {format_list([name.replace('_', ' ') for name in names])}." if names else ""
 
 
 def _response(results: xr.Dataset, index: str) -> Figure:
-    results = results.isel({f"output_{index}": _excited(results, index)})
+    results = results.isel({f"output_{index}": _has_response(results, index)})
     outputs = results.sizes[f"output_{index}"]
     figure, axes = new_figure(outputs, min(outputs, 2), height=3.0)
     frequency_responses(results, index, axes)
@@ -239,7 +241,7 @@ def _response(results: xr.Dataset, index: str) -> Figure:
 
 
 def _sweep(results: xr.Dataset, index: str) -> Figure:
-    panels = 2 if compared(results) else 1
+    panels = 2 if compared_layouts(results) else 1
     crowded = len(methods(results)) > 1 and len(methods(results)) + len(layouts(results)) > _MOST_ENTRIES
     figure, axes = new_figure(panels, panels, height=3.4 if crowded else 2.9)
     sweep_curves(results, index, axes)

@@ -112,7 +112,7 @@ def colour(number: int) -> str:
 
 
 @contextmanager
-def styled() -> Iterator[None]:
+def style_context() -> Iterator[None]:
     """Context that applies the style of the package to figures created and drawn inside, and restores the settings."""
     with matplotlib.rc_context(_SETTINGS):
         yield
@@ -195,7 +195,7 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
     folder.mkdir(parents=True, exist_ok=True)
     wanted = {"svg": True, "pdf": pdf, "png": png}
     files = [folder / f"{name}.{kind}" for kind, asked in wanted.items() if asked]
-    with styled(), warnings.catch_warnings():
+    with style_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied")  # no room between labels of 300 digits
         if engine := figure.get_layout_engine():
             engine.execute(figure)  # once for all files

@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from inerter.errors import StudyError
-from inerter.figures.curves import thinned, thinned_band
+from inerter.figures.curves import thin_curve, thinned_band
 from inerter.figures.designs import IMPROVEMENT, WORST
 from inerter.figures.labels import (
     axis_label,
     by_method,
     capital,
-    compared,
+    compared_layouts,
     held_back,
     index_title,
     index_unit,
@@ -29,7 +29,7 @@ from inerter.figures.labels import (
     swept_element,
     swept_label,
     swept_scale,
-    titled,
+    title_with_name,
     way,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
@@ -65,7 +65,7 @@ class _Sweep:
         style, few = self.styles[layout], self.values.size <= _MOST_MARKERS
         marker: dict[str, Any] = {"marker": style.marker if few else "", "markersize": 3.2, "markeredgewidth": 0.8}
         finite = np.where(np.isfinite(numbers), numbers, np.nan)
-        ax.plot(*thinned(self.values, finite), **style.curve() | (line or {}), **marker)
+        ax.plot(*thin_curve(self.values, finite), **style.curve() | (line or {}), **marker)
         if few and open_where is not None and np.any(open_where):
             look: dict[str, Any] = {
                 **marker,
@@ -103,10 +103,10 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
     for one, line in zip(sweeps, lines, strict=True):
         for name in layouts(results):
             _curve(one, left, name, "value", unit.factor, line)
-    left.set_ylabel(axis_label(capital(titled(index_title(results, index), index, "{} {}")), unit.unit))
+    left.set_ylabel(axis_label(capital(title_with_name(index_title(results, index), index, "{} {}")), unit.unit))
     for ax in right:
         for one, line in zip(sweeps, lines, strict=True):
-            for name in compared(results):
+            for name in compared_layouts(results):
                 _curve(one, ax, name, "improvement", 1.0, line)
         if results.attrs["baseline"]:
             ax.axhline(0.0, **sweep.styles[results.attrs["baseline"]].curve() | lines[0])

@@ -28,10 +28,10 @@ __all__ = [
     "Point",
     "blank_figure",
     "circle",
-    "moved",
     "stroke",
     "symbol",
     "text_width",
+    "translate_line",
     "write",
 ]
 
@@ -92,6 +92,6 @@ def _font() -> FontProperties:
     return FontProperties(family="DejaVu Sans", size=_LETTERS, math_fontfamily="dejavusans")
 
 
-def moved(line: Line, x: float, y: float) -> Line:
+def translate_line(line: Line, x: float, y: float) -> Line:
     """The line with its origin at (x, y)."""
     return tuple((px + x, py + y) for px, py in line)

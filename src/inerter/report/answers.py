@@ -8,7 +8,7 @@ from math import nan
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import infeasible, layouts, listed, one_method, swept_words, with_unit
+from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words, with_unit
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
@@ -56,14 +56,14 @@ def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str
     ]
     missed = infeasible(results)
     if limits and bool(missed.all()):
-        yield f"No design has {listed(limits)}{_nearest(results, study, write)}."
+        yield f"No design has {format_list(limits)}{_nearest(results, study, write)}."
     elif limits:
         none = [
             f" Of {name} there is none{at}."
             for name in layouts(results)
             if (at := _missed_at(results, name)) is not None
         ]
-        yield f"These are the best of all designs with {listed(limits)}.{''.join(none)}"
+        yield f"These are the best of all designs with {format_list(limits)}.{''.join(none)}"
 
 
 def _missed_at(results: xr.Dataset, layout: str) -> str | None:
@@ -93,7 +93,7 @@ def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
         f"{of_each(limit.of, part)} {_number(float(value), limit.unit, write)}"
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
-    return f"; the nearest, one of {of}, has {listed(told)}"
+    return f"; the nearest, one of {of}, has {format_list(told)}"
 
 
 def _number(value: float, unit: str, write: Writer) -> str:

@@ -15,20 +15,20 @@ from inerter.figures.labels import (
     bound_of,
     by_method,
     capital,
-    compared,
+    compared_layouts,
     digits_of,
     error_of,
+    format_uncertain,
     improvement_text,
     index_title,
     index_unit,
     indices,
     layouts,
-    measured,
     methods,
     scale,
     shows_error,
     swept_places,
-    titled,
+    title_with_name,
     typeset,
     way,
     with_unit,
@@ -78,7 +78,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
     for name in _names(results):
         entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
         rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
-    caption = f"{titled(index_title(results, index), index)} {_what(results, unit)}"
+    caption = f"{title_with_name(index_title(results, index), index)} {_what(results, unit)}"
     return Table(
         typeset(capital(caption)), ["Layout", *(capital(way(results, method)) for method in methods(results))], rows
     )
@@ -87,11 +87,13 @@ def _table(results: xr.Dataset, index: str) -> Table:
 def _what(results: xr.Dataset, unit: Scale) -> str:
     if not swept_places(results):
         return f"by each method{f', in {unit.unit}' if unit.unit else ''}"
-    return "by each method, at its best" + (f" compared with {results.attrs['baseline']}" if compared(results) else "")
+    return "by each method, at its best" + (
+        f" compared with {results.attrs['baseline']}" if compared_layouts(results) else ""
+    )
 
 
 def _names(results: xr.Dataset) -> list[str]:
-    return (compared(results) if swept_places(results) else []) or layouts(results)
+    return (compared_layouts(results) if swept_places(results) else []) or layouts(results)
 
 
 def _unit(results: xr.Dataset, index: str) -> Scale:
@@ -105,14 +107,14 @@ def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
         value, error, bound = float(row["value"]) * unit.factor, error_of(row) * unit.factor, bound_of(row)
         better = "" if layout == baseline or not baseline else improvement_text(row)
         return _Entry(
-            measured(value, error, bound) if shows_error(value, error, bound) else _plain(value, bound), better
+            format_uncertain(value, error, bound) if shows_error(value, error, bound) else _plain(value, bound), better
         )
-    ends = extremes(row["improvement" if compared(results) else "value"])
+    ends = extremes(row["improvement" if compared_layouts(results) else "value"])
     if ends is None:
         return _Entry("n/a")
-    place = ends[1] if compared(results) else ends[0]
+    place = ends[1] if compared_layouts(results) else ends[0]
     here = row.sel(place[1])
-    if compared(results):
+    if compared_layouts(results):
         text = improvement_text(here)
     else:
         text = with_unit(place[0], index_unit(results, index), error_of(here), bound_of(here))

@@ -15,15 +15,15 @@ from inerter.figures.labels import (
     bound_of,
     by_method,
     by_which,
-    compared,
+    compared_layouts,
     error_of,
+    format_list,
     improvement_text,
     index_title,
     index_unit,
     indices,
     infeasible,
     layouts,
-    listed,
     methods,
     one_method,
     percent,
@@ -31,7 +31,7 @@ from inerter.figures.labels import (
     swept_places,
     swept_text,
     swept_words,
-    titled,
+    title_with_name,
     way,
     with_unit,
 )
@@ -85,7 +85,7 @@ def doubt_of(results: xr.Dataset, index: str) -> str:
     many = len(next(iter(texts.values())))
     of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
     decided = deciding(methods(results)[0], message) if len(methods(results)) == 1 else ""
-    return f"Not certain ({_UNSURE}: {listed(of)}, {message.rstrip('.')}{decided}). "
+    return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}{decided}). "
 
 
 def best_layout(results: xr.Dataset, index: str) -> str | None:
@@ -133,7 +133,7 @@ def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
 
 
 def _alike(names: list[str]) -> str:
-    return f"{listed(names)}, equally good" if len(names) > 1 else names[0]
+    return f"{format_list(names)}, equally good" if len(names) > 1 else names[0]
 
 
 Extreme = tuple[float, dict[str, float]]  # a number, and the swept values where it is
@@ -195,7 +195,7 @@ def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
     """Pairs of index and sentence on the number of points of a map at which each layout outperforms the baseline."""
     sentences = []
     for index in indices(results):
-        for name in compared(results):
+        for name in compared_layouts(results):
             better = one_method(results)["improvement"].sel(layout=name, index=index).values
             counts = {
                 "better than": int((better >= NOTICEABLE).sum()),
@@ -204,7 +204,7 @@ def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
             }
             told = [f"{words} {results.attrs['baseline']} at {count}" for words, count in counts.items() if count]
             if told:
-                sentences.append((index, f"{name} is {listed(told)} of {better.size} points{by_which(results)}"))
+                sentences.append((index, f"{name} is {format_list(told)} of {better.size} points{by_which(results)}"))
     return sentences
 
 
@@ -220,7 +220,7 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
     )
     sentences = []
     for index in indices(results):
-        for name in compared(results):
+        for name in compared_layouts(results):
             found = {by: crossings(one, index, name) for by, one in ways.items()}
             texts = [_places(results, places, write) + by for by, places in found.items() if places]
             if texts:
@@ -233,11 +233,11 @@ def _places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer
     """Swept values with their errors as text; of many, the first and the number of others."""
     more, element = len(found) - _MOST_PLACES, str(swept_element(results))
     texts = [swept_text(results, element, at, write, error) for at, error in found[:_MOST_PLACES]]
-    return listed([*texts, *([f"{more} other values"] if more > 0 else [])])
+    return format_list([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
 def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
-    title = f"Best {_called(results, index)}"
+    title = f"Best {_index_label(results, index)}"
     names = best_layouts(results, index)
     if not names:
         return f"{title}: {_none(results, index)}."
@@ -255,10 +255,10 @@ def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
     return f"{'; '.join(parts)}."
 
 
-def _called(results: xr.Dataset, index: str) -> str:
+def _index_label(results: xr.Dataset, index: str) -> str:
     """Title of an index, with its name if it is user-defined."""
     title = index_title(results, index)
-    return title if index in INDICES else titled(title, index)
+    return title if index in INDICES else title_with_name(title, index)
 
 
 def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
@@ -296,13 +296,13 @@ def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
     results, write = one_method(every), wording.write
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
-    swept, title, baseline = swept_words(results), _called(results, index), results.attrs["baseline"]
-    names_there = compared(results) or results["layout"].values.tolist()
-    rows = results["improvement" if compared(results) else "value"].sel(index=index)
+    swept, title, baseline = swept_words(results), _index_label(results, index), results.attrs["baseline"]
+    names_there = compared_layouts(results) or results["layout"].values.tolist()
+    rows = results["improvement" if compared_layouts(results) else "value"].sel(index=index)
     found = {name: ends for name in names_there if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
         return f"Best {title}: {_none(results, index)}."
-    if not compared(results):
+    if not compared_layouts(results):
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]

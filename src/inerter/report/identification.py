@@ -11,25 +11,25 @@ from pathlib import Path
 from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
-from inerter.files.identification.running import FIT, RESIDUALS, Identified, responses
+from inerter.files.identification.running import FIT, RESIDUALS, IdentificationResult, responses
 from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
 from inerter.report.identification_text import (
     about,
     behind,
-    done,
-    explained,
+    likely_causes,
     misfit,
+    processing_notes,
     remarks,
     share,
     unreliable,
     whiteness,
 )
 from inerter.report.identified_values import (
-    Known,
+    ResultKind,
     elements_block,
-    known,
+    result_kind,
     value_and_interval,
 )
 from inerter.report.options import as_options
@@ -67,14 +67,14 @@ class RecordText:
     number: int
 
 
-def write_fit(found: Identified, folder: Path) -> None:
+def write_fit(found: IdentificationResult, folder: Path) -> None:
     """Write the numbers and the residuals, which is what took time to find, into `folder`."""
     write_text(folder / FIT, json.dumps(identification_data(found), indent=2) + "\n")
     write_residuals(found, folder / RESIDUALS)
 
 
 def write_identification(
-    found: Identified, folder: Path, progress: Callable[[float], None] = lambda done: None
+    found: IdentificationResult, folder: Path, progress: Callable[[float], None] = lambda done: None
 ) -> None:
     """Write the frequency responses, the figures (SVG), and a page that shows all of it, into `folder`."""
     answered = responses(found)
@@ -89,7 +89,9 @@ def write_identification(
     progress(1.0)
 
 
-def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], notes: tuple[str, ...] = ()) -> str:
+def identification_page(
+    found: IdentificationResult, drawn: dict[str, list[PageFigure]], notes: tuple[str, ...] = ()
+) -> str:
     """The page as text, with these figures by their section; `notes` are those of the frequency response."""
     fit = found.fit
     return (
@@ -105,7 +107,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
             sentences=[verdict.sentence for verdict in fit.identifiable.values() if not verdict.plain],
             names=list(fit.parameters),
-            correlation=[[_signed(value) for value in row] for row in fit.correlation.tolist()],
+            correlation=[[_format_correlation(value) for value in row] for row in fit.correlation.tolist()],
             next_experiment=fit.next_experiment,
             elements=elements_block(found),
             records=list(_records(found)),
@@ -113,7 +115,7 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
             whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
             misfit=misfit(found),
             remarks=list(remarks(found)),
-            explanations=list(explained(found)),
+            explanations=list(likely_causes(found)),
             places=[(place.source, place.sentence) for place in fit.localisations],
             candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), str(c.status)) for c in found.candidates],
             choice=[as_options(finding.text) for finding in found.choice],
@@ -126,10 +128,10 @@ def identification_page(found: Identified, drawn: dict[str, list[PageFigure]], n
     )
 
 
-def _answers(found: Identified) -> Iterator[str]:
+def _answers(found: IdentificationResult) -> Iterator[str]:
     for name in found.fit.parameters if found.explains else ():
         value, interval = value_and_interval(found, name)
-        if known(found, name) is not Known.VALUE:
+        if result_kind(found, name) is not ResultKind.VALUE:
             yield f"{name} {value}: {interval}." if interval else f"{name} {value}."
         else:
             yield f"{name} = {value}, with 95 % confidence {interval}."
@@ -138,7 +140,7 @@ def _answers(found: Identified) -> Iterator[str]:
     yield f"The model explains {' and '.join(share(part) for part in parts)} {where}."
 
 
-def _rows(found: Identified) -> Iterator[ParameterRow]:
+def _rows(found: IdentificationResult) -> Iterator[ParameterRow]:
     for name, p in found.fit.parameters.items():
         value, interval = value_and_interval(found, name)
         bounds = found.bounds(name)
@@ -148,7 +150,7 @@ def _rows(found: Identified) -> Iterator[ParameterRow]:
         yield ParameterRow(name, value, interval, error, sought, identified)
 
 
-def _records(found: Identified) -> Iterator[RecordText]:
+def _records(found: IdentificationResult) -> Iterator[RecordText]:
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
         by_severity = {
             title: [as_options(f.text) for f in reading.findings if f.severity == severity]
@@ -157,13 +159,13 @@ def _records(found: Identified) -> Iterator[RecordText]:
         yield RecordText(
             reading.used.source,
             about(reading),
-            list(done(found, reading, comparison)),
+            list(processing_notes(found, reading, comparison)),
             {title: sentences for title, sentences in by_severity.items() if sentences},
             number,
         )
 
 
-def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
+def _goodness(found: IdentificationResult) -> Iterator[tuple[str, ...]]:
     for c in found.fit.comparisons:
         for part, mask in (("fitted", c.fitted), ("check", c.checked)):
             if mask.any():
@@ -173,7 +175,7 @@ def _goodness(found: Identified) -> Iterator[tuple[str, ...]]:
                 yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
 
 
-def _computation(found: Identified) -> str:
+def _computation(found: IdentificationResult) -> str:
     fit = found.fit
     settings = ", ".join(f"{name} {value}" for name, value in {**fit.settings, **found.settings}.items())
     ended = f"{len(fit.costs)} different fits" if len(fit.costs) > 1 else "one and the same fit"
@@ -188,7 +190,7 @@ def _computation(found: Identified) -> str:
     return text.replace(": -", ": −")
 
 
-def _signed(value: float) -> str:
+def _format_correlation(value: float) -> str:
     """Correlation with its sign, without one if it rounds to zero; empty if not available."""
     if isnan(value):
         return ""

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.files.identification.running import Identified, Reading, Responses
+from inerter.files.identification.running import IdentificationResult, Reading, Responses
 from inerter.identification.fit import RecordFit
 from inerter.networks.parser import format_expression
 from inerter.records.result import Response
@@ -18,7 +18,7 @@ from inerter.work.origin import versions
 from inerter.writing import whole
 
 
-def identification_data(found: Identified) -> dict[str, Any]:
+def identification_data(found: IdentificationResult) -> dict[str, Any]:
     """All numbers of a fit but its residuals; infinite ones are text, those that are not identifiable null."""
     fit = found.fit
     data = {
@@ -87,7 +87,7 @@ def response_data(found: Responses) -> dict[str, Any]:
     return plain
 
 
-def write_residuals(found: Identified, path: Path) -> None:
+def write_residuals(found: IdentificationResult, path: Path) -> None:
     """Write one row per sample of every record: measured and predicted force, and use of the sample."""
     with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
         file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")

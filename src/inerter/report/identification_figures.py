@@ -20,10 +20,10 @@ from inerter.figures.identification import (
     time_figure,
 )
 from inerter.figures.misfit import ResidualSamples, misfit_figure
-from inerter.files.identification.running import Identified, Responses
+from inerter.files.identification.running import IdentificationResult, Responses
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.misfit_patterns import MisfitPattern
-from inerter.report.identified_values import Known, known, value_and_interval
+from inerter.report.identified_values import ResultKind, result_kind, value_and_interval
 from inerter.units import handy_unit
 
 Matrix = NDArray[np.float64]
@@ -34,7 +34,7 @@ _WHITE = 1.96  # standard deviations, that 95 % of white noise stay within
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class IdentificationFigure:
     """A figure, the name of its file, its section of the page, and its caption."""
 
     name: str
@@ -43,27 +43,31 @@ class Drawn:
     caption: str
 
 
-def figures(found: Identified, answered: Responses) -> Iterator[Drawn]:
+def figures(found: IdentificationResult, answered: Responses) -> Iterator[IdentificationFigure]:
     """All figures, one after the other."""
     names = found.fit.parameters if found.explains else ()
     curves = [c for name in names if (c := _profile(found, name)) is not None]
     if curves:
         scaled = any(found.fit.settings.get(name) for name in ("force_scale", "displacement_scale"))
-        yield Drawn("profiles", "profiles", profile_figure(curves), _PROFILES + (_SCALED if scaled else ""))
+        yield IdentificationFigure(
+            "profiles", "profiles", profile_figure(curves), _PROFILES + (_SCALED if scaled else "")
+        )
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
         end = f"-{number + 1}" if len(found.readings) > 1 else ""
         source = comparison.record.source
         received = record_figure(reading.received, comparison.record)
-        yield Drawn(f"record{end}", f"record{number}", received, f"{source}, as received and as used.")
+        yield IdentificationFigure(f"record{end}", f"record{number}", received, f"{source}, as received and as used.")
         if found.fit.localisations:
             place = found.fit.localisations[number]
             caption = f"{source}: residual force; {place.sentence}. {_MISFIT}"
-            yield Drawn(f"misfit{end}", f"misfit{number}", misfit_figure(residual_samples(comparison, place)), caption)
+            yield IdentificationFigure(
+                f"misfit{end}", f"misfit{number}", misfit_figure(residual_samples(comparison, place)), caption
+            )
         for name, figure, caption in _of_fit(comparison):
-            yield Drawn(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
+            yield IdentificationFigure(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
     if answered.measured is not None:
         figure = response_figure(answered.measured, answered.model, answered.linear)
-        yield Drawn("response", "response", figure, _response_caption(answered))
+        yield IdentificationFigure("response", "response", figure, _response_caption(answered))
 
 
 def window(comparison: RecordFit) -> tuple[int, int]:
@@ -95,7 +99,7 @@ def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     measured = MotionCurve("measured", record.time, record.displacement, record.force)
     model = MotionCurve("model", record.time, record.displacement, c.model)
     part = (float(record.time[first]), float(record.time[last]))
-    yield "fit", time_figure(measured, model), f"the model over the measurement, {_checked(c)}."
+    yield "fit", time_figure(measured, model), f"the model over the measurement, {_fitted_part(c)}."
     inside = slice(max(first - 1, 0), last + 2)
     near = [MotionCurve(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
     yield "window", time_figure(near[0], near[1], part), f"{part[0]:.4g} to {part[1]:.4g} s of it."
@@ -123,7 +127,7 @@ def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     )
 
 
-def _checked(c: RecordFit) -> str:
+def _fitted_part(c: RecordFit) -> str:
     if not c.checked.any():
         return "all of it fitted"
     start = float(c.record.time[int(np.flatnonzero(c.checked)[0])])
@@ -139,7 +143,7 @@ def _autocorrelation(white: Matrix) -> tuple[Matrix, Matrix, float]:
     return lags.astype(float), np.array([float(x[k:] @ x[: x.size - k]) / square for k in lags]), _WHITE / x.size**0.5
 
 
-def _profile(found: Identified, name: str) -> ProfileCurve | None:
+def _profile(found: IdentificationResult, name: str) -> ProfileCurve | None:
     parameter = found.fit.parameters[name]
     if len(parameter.profile) < 2:
         return None
@@ -154,7 +158,7 @@ def _profile(found: Identified, name: str) -> ProfileCurve | None:
         rises=points[:, 1],
         interval=(low / size, high / size),
         unit=unit,
-        remark="" if known(found, name) is Known.VALUE else value,
+        remark="" if result_kind(found, name) is ResultKind.VALUE else value,
     )
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from math import floor, log10
 from textwrap import wrap
 
-from inerter.figures.labels import measured
-from inerter.files.identification.running import Identified, Reading, model_title
+from inerter.figures.labels import format_uncertain
+from inerter.files.identification.running import IdentificationResult, Reading, model_title
 from inerter.identification.choice import Candidate
 from inerter.identification.fit import RecordFit
 from inerter.report.identified_values import elements_block, value_and_interval
@@ -19,7 +19,7 @@ INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
 
 
-def identification_text(found: Identified) -> str:
+def identification_text(found: IdentificationResult) -> str:
     """Whether it can be relied on, records, estimates, goodness, the next experiment, elements.
 
     ASCII, 80 columns.
@@ -29,7 +29,7 @@ def identification_text(found: Identified) -> str:
         _records(found),
         _candidates(found),
         _estimates(found),
-        _identified(found),
+        _identifiability_lines(found),
         _goodness(found),
         _next(found),
         iter(elements_block(found).splitlines()),
@@ -39,7 +39,7 @@ def identification_text(found: Identified) -> str:
     return text.encode("ascii", "replace").decode()
 
 
-def _warning(found: Identified) -> Iterator[str]:
+def _warning(found: IdentificationResult) -> Iterator[str]:
     """A wrong model or sensor, before anything else, and what explains it."""
     if found.fit.status.ok:
         return
@@ -47,7 +47,7 @@ def _warning(found: Identified) -> Iterator[str]:
     for place in found.fit.localisations:
         of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
         yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
-    said = list(explained(found))
+    said = list(likely_causes(found))
     if said:
         yield ""
         yield "what may be wrong, the likeliest first"
@@ -59,7 +59,7 @@ def _warning(found: Identified) -> Iterator[str]:
             yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
 
 
-def unreliable(found: Identified) -> str:
+def unreliable(found: IdentificationResult) -> str:
     """Reason why the estimates of a fit are unreliable; empty if they are reliable.
 
     Where no hypothesis explains the misfit, what the records were warned of before is the first thing to look at.
@@ -74,7 +74,7 @@ def unreliable(found: Identified) -> str:
     return f"{status.message}. Begin with the warning about {' and '.join(warned)} below, which may name the cause"
 
 
-def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
+def likely_causes(found: IdentificationResult) -> Iterator[tuple[str, str, str, str]]:
     """Possible causes of the residual: sentence, share explained [%], estimates with the cause, and remedy."""
     likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
     for e in likely[:MOST_EXPLANATIONS]:
@@ -87,7 +87,7 @@ def explained(found: Identified) -> Iterator[tuple[str, str, str, str]]:
         yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.name.remedy(e.details))
 
 
-def misfit(found: Identified) -> str:
+def misfit(found: IdentificationResult) -> str:
     """Sentence on the normalised residual: r.m.s. residual over sensor noise, of fitted and validation data."""
     m = found.fit.misfit
     parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
@@ -100,7 +100,7 @@ def about(reading: Reading) -> str:
     return f"{record.time.size} samples over {record.duration:.6g} s at {1.0 / record.interval:.6g} Hz"
 
 
-def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator[str]:
+def processing_notes(found: IdentificationResult, reading: Reading, comparison: RecordFit) -> Iterator[str]:
     """Sentences on the processing of a record."""
     yield from reading.used.notes
     yield from comparison.record.notes[len(reading.used.notes) :]
@@ -113,13 +113,13 @@ def done(found: Identified, reading: Reading, comparison: RecordFit) -> Iterator
     yield f"{fitted} samples were fitted, and {checked} kept to check the fit{unused}."
 
 
-def _records(found: Identified) -> Iterator[str]:
+def _records(found: IdentificationResult) -> Iterator[str]:
     yield from wrap(f"{found.title}: {model_title(found)}", WIDTH)
     yield ""
     yield "records"
     for reading, comparison in zip(found.readings, found.fit.comparisons, strict=True):
         yield from wrap(f"  {reading.used.source}: {about(reading)}", WIDTH, subsequent_indent="    ")
-        for sentence in done(found, reading, comparison):
+        for sentence in processing_notes(found, reading, comparison):
             yield from wrap(sentence, WIDTH, initial_indent="    ", subsequent_indent="    ")
         for finding in reading.findings:
             if finding.severity == "warning":
@@ -127,7 +127,7 @@ def _records(found: Identified) -> Iterator[str]:
                 yield from wrap(said, WIDTH, initial_indent="    ", subsequent_indent="    ")
 
 
-def _candidates(found: Identified) -> Iterator[str]:
+def _candidates(found: IdentificationResult) -> Iterator[str]:
     if not found.candidates:
         return
     width = max(len(c.name) for c in found.candidates)
@@ -144,11 +144,11 @@ def behind(candidate: Candidate) -> str:
     """Text on the validation loss of a model above that of the best one, with its standard error."""
     if candidate.behind == 0.0:
         return "best"
-    known = measured(candidate.behind, candidate.error)
+    known = format_uncertain(candidate.behind, candidate.error)
     return f"{known}, as good" if candidate.as_good else known
 
 
-def _estimates(found: Identified) -> Iterator[str]:
+def _estimates(found: IdentificationResult) -> Iterator[str]:
     rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
     names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
     yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'95 % interval' if found.explains else ''}".rstrip()
@@ -163,12 +163,12 @@ def _estimates(found: Identified) -> Iterator[str]:
         yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
 
 
-def remarks(found: Identified) -> Iterator[str]:
+def remarks(found: IdentificationResult) -> Iterator[str]:
     """Sentences on limitations of the estimates."""
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
 
-def _identified(found: Identified) -> Iterator[str]:
+def _identifiability_lines(found: IdentificationResult) -> Iterator[str]:
     said = [verdict.sentence for verdict in found.fit.identifiable.values() if not verdict.plain]
     if said:
         yield "what is identified, and what is not"
@@ -176,7 +176,7 @@ def _identified(found: Identified) -> Iterator[str]:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
-def _goodness(found: Identified) -> Iterator[str]:
+def _goodness(found: IdentificationResult) -> Iterator[str]:
     yield "goodness"
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
@@ -210,7 +210,7 @@ def whiteness(comparison: RecordFit) -> str:
     )
 
 
-def _next(found: Identified) -> Iterator[str]:
+def _next(found: IdentificationResult) -> Iterator[str]:
     if found.fit.next_experiment:
         yield "next experiment"
     for sentence in found.fit.next_experiment:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from enum import Enum, auto
 from math import isnan
 
-from inerter.files.identification.running import Identified
+from inerter.files.identification.running import IdentificationResult
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import format_expression
 from inerter.units import format_handy, format_quantity, format_with_interval
@@ -14,7 +14,7 @@ from inerter.units import format_handy, format_quantity, format_with_interval
 _MOST_DIGITS = 6  # of values that are to be read back
 
 
-class Known(Enum):
+class ResultKind(Enum):
     """Kind of result available for a parameter."""
 
     VALUE = auto()
@@ -22,28 +22,28 @@ class Known(Enum):
     NOTHING = auto()  # the fit is not to be relied on: its values are withheld
 
 
-_WORDS = {Known.BOUNDS: "not identifiable", Known.NOTHING: "withheld"}
+_WORDS = {ResultKind.BOUNDS: "not identifiable", ResultKind.NOTHING: "withheld"}
 
 
-def known(found: Identified, name: str) -> Known:
+def result_kind(found: IdentificationResult, name: str) -> ResultKind:
     """Kind of result available for a parameter: a value, bounds only, or nothing."""
     if not found.explains:
-        return Known.NOTHING
-    return Known.BOUNDS if isnan(found.fit.parameters[name].value) else Known.VALUE
+        return ResultKind.NOTHING
+    return ResultKind.BOUNDS if isnan(found.fit.parameters[name].value) else ResultKind.VALUE
 
 
-def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
+def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str]:
     """Value of a parameter and its 95 % confidence interval as texts; words for a missing value."""
     parameter, bounds = found.fit.parameters[name], found.bounds(name)
     low, high = parameter.interval
-    what = known(found, name)
-    if what is Known.NOTHING:
+    what = result_kind(found, name)
+    if what is ResultKind.NOTHING:
         if isnan(low):
             return _WORDS[what], ""
         return _WORDS[
             what
         ], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)} if explained so"
-    if what is Known.VALUE:
+    if what is ResultKind.VALUE:
         return format_with_interval(parameter.best, low, high, parameter.unit)
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
@@ -54,7 +54,7 @@ def value_and_interval(found: Identified, name: str) -> tuple[str, str]:
     return _WORDS[what], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)}"
 
 
-def elements_block(found: Identified) -> str:
+def elements_block(found: IdentificationResult) -> str:
     """The identified device as sections of a study or simulation file: elements with their best values, one layout.
 
     What is not identifiable has its best value too, so that the layout can be computed, and says so. Of a fit that is
@@ -74,13 +74,13 @@ def elements_block(found: Identified) -> str:
     return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])
 
 
-def _sources(found: Identified) -> str:
+def _sources(found: IdentificationResult) -> str:
     names = list(dict.fromkeys(reading.used.source for reading in found.readings))
     text = ", ".join(names)
     return text if len(text) < 50 else f"{len(names)} records"
 
 
-def _rows(found: Identified) -> tuple[dict[str, tuple[str, str]], str]:
+def _rows(found: IdentificationResult) -> tuple[dict[str, tuple[str, str]], str]:
     """Value and remark for each element name, and the expression of the network."""
     rows: dict[str, tuple[str, str]] = {}
     order = []
@@ -100,7 +100,7 @@ def _possible(element: Element) -> Iterator[str]:
     yield from (f"{label}{count}" for count in range(2, 1000))
 
 
-def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
+def _entry(found: IdentificationResult, free: Element, best: Element) -> tuple[str, str]:
     number = best.value
     assert not isinstance(number, Free | Tied)
     value = f'"{format_quantity(number, best.unit, _MOST_DIGITS)}"'
@@ -108,6 +108,6 @@ def _entry(found: Identified, free: Element, best: Element) -> tuple[str, str]:
         return value, "as given"
     name = str(free.value.name)
     shown, interval = value_and_interval(found, name)
-    if known(found, name) is Known.VALUE:
+    if result_kind(found, name) is ResultKind.VALUE:
         return value, f"95 %: {interval}"
     return value, f"{shown}: {interval}" if interval else shown

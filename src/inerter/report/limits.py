@@ -11,18 +11,18 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
+    format_list,
     index_title,
     indices,
     infeasible,
     layouts,
-    listed,
     one_method,
-    printed,
     swept_places,
     swept_text,
     swept_words,
-    titled,
+    title_with_name,
     typeset,
+    typeset_quantity,
     with_unit,
 )
 from inerter.report.question import of_each
@@ -36,12 +36,12 @@ def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     if "limit" not in results.dims:
         return
     for limit in results["limit"].values.tolist():
-        yield from wrap(f"within {_spoken(results, limit)}:", width, initial_indent="  ", subsequent_indent="    ")
+        yield from wrap(f"within {_limit_text(results, limit)}:", width, initial_indent="  ", subsequent_indent="    ")
         for name in layouts(results):
-            told = ", ".join(filter(None, _told(_entry(results, name, index, limit), index)))
+            told = ", ".join(filter(None, _describe_limit(_entry(results, name, index, limit), index)))
             yield from wrap(f"{name}: {told}", width, initial_indent="    ", subsequent_indent="      ")
     for name in layouts(results) if swept_places(results) else ():
-        none = _where(_entry(results, name, index), _missed(_entry(results, name, index)))
+        none = _where(_entry(results, name, index), _is_infeasible(_entry(results, name, index)))
         if none[0]:
             text = f"no {name} keeps the limits {none[0]}{f', {none[1]}' if none[1] else ''}"
             yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
@@ -59,20 +59,20 @@ def _table(results: xr.Dataset, index: str) -> Table:
     limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        told = [_told(_entry(results, name, index, limit), index, printed) for limit in limits]
+        told = [_describe_limit(_entry(results, name, index, limit), index, typeset_quantity) for limit in limits]
         entry = _entry(results, name, index)
-        told += [_where(entry, _missed(entry), printed)] if swept else []
+        told += [_where(entry, _is_infeasible(entry), typeset_quantity)] if swept else []
         rows.append(Row(name, [Cell(text or "–", remark.replace(" -", " \N{MINUS SIGN}")) for text, remark in told]))
-    caption = f"Limits of the designs that are best for {titled(index_title(results, index), index)}"
+    caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
     over = f", over {' and '.join(swept_words(results))}" if swept else ""
     return Table(
         f"{caption}{over}",
-        ["Layout", *(_spoken(results, limit) for limit in limits), *(["No design keeps all"] if swept else [])],
+        ["Layout", *(_limit_text(results, limit) for limit in limits), *(["No design keeps all"] if swept else [])],
         rows,
     )
 
 
-def _spoken(results: xr.Dataset, limit: str) -> str:
+def _limit_text(results: xr.Dataset, limit: str) -> str:
     """Limit in words, with the part to which it applies if to each separately."""
     name, space, value = limit.partition(" ")
     return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{typeset(value)}"
@@ -83,10 +83,10 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
     return one_method(results).sel(where)
 
 
-def _told(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
+def _describe_limit(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
     """Value of a limited quantity, and a text on an active limit and its sensitivity; over a sweep, where active."""
     if swept_places(entry):
-        where, which = _where(entry, entry["limit_active"].values & ~_missed(entry), write)
+        where, which = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry), write)
         return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
     value, cost = float(entry["limit_value"]), float(entry["limit_cost"])
     part = str(entry["limit.part"].item())
@@ -98,7 +98,7 @@ def _told(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str
     return text, "at its limit" + ("" if np.isnan(cost) else f": 1 % more of it changes {index} by {cost:+.2g} %")
 
 
-def _missed(entry: xr.Dataset) -> NDArray[np.bool_]:
+def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(infeasible(entry).values)
 
 
@@ -121,4 +121,4 @@ def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_un
     ]
     ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
     told = [" to ".join(swept_text(entry, place, end, write) for end in pair) for pair in ends]
-    return f"at {count} of {size} values", f"{words} = {listed(told)}" if len(told) <= _MOST_RANGES else ""
+    return f"at {count} of {size} values", f"{words} = {format_list(told)}" if len(told) <= _MOST_RANGES else ""

@@ -12,15 +12,15 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from inerter.figures.labels import capital, printed, swept_places, together, typeset
+from inerter.figures.labels import capital, swept_places, together, typeset, typeset_quantity
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
 from inerter.files.study.plausibility import roads_sentence
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.files.study.written import write_resolved
 from inerter.report.answers import answers
 from inerter.report.by_method import method_tables
 from inerter.report.findings import over_the_sweep
@@ -83,7 +83,7 @@ def report(
             swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[
-                *map(printed_sentence, answers(results, study, found, printed)),
+                *map(printed_sentence, answers(results, study, found, typeset_quantity)),
                 *([f"{road}."] if (road := roads_sentence(study)) else []),
             ],
             vehicle=vehicle_rows(study),
@@ -122,7 +122,7 @@ def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]
 
 def _remarks(results: xr.Dataset) -> list[str]:
     """Remarks below the tables of a sweep: where layouts outperform the baseline, and where to find omitted designs."""
-    told = over_the_sweep(results, printed) if results.attrs["baseline"] else []
+    told = over_the_sweep(results, typeset_quantity) if results.attrs["baseline"] else []
     return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
 
 

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.fields import Field, fields_of
-from inerter.figures.labels import capital, index_title, indices, infeasible, listed, titled
+from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of
 from inerter.files.study.places import places
+from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.files.study.ways import ways
-from inerter.files.study.written import as_written
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
@@ -58,10 +58,10 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     rows = [("Model", study.model.replace("-", " "))]
     swept = {sweep.words for sweep in study.sweeps}
     told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
-    rows += [(capital(name), unit if value is None else _given(study, value, unit)) for name, value, unit in told]
-    rows += [(capital(s.words), _told(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
+    rows += [(capital(name), unit if value is None else _value_text(study, value, unit)) for name, value, unit in told]
+    rows += [(capital(s.words), _number_text(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
-        rows += [("Speed", _told(study, "road.speed")), ("Road roughness", _roughness(study))]
+        rows += [("Speed", _number_text(study, "road.speed")), ("Road roughness", _roughness(study))]
         rows += [] if study.line is None else [("Road measured in", study.line.source)]
         rows += list(_coherence_rows(study))
     limited = [limit.of for limit in study.limits if study.knows(limit.of)]
@@ -69,32 +69,32 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         symbol, settings = study.symbol(name), study.settings_of(name)
         amplitude = amplitude_of(symbol)
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
-        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {name}", _value_text(study, settings[f.key], f.unit)) for f in given]
         texts = [one for one in index_choices(symbol) if one.key in settings]
         rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
         rows += list(_formed_rows(study, name))
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]
-        rows += [(f"{capital(f.in_words)} of {name}", _given(study, settings[f.key], f.unit)) for f in given]
+        rows += [(f"{capital(f.in_words)} of {name}", _value_text(study, settings[f.key], f.unit)) for f in given]
     return rows
 
 
 def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
     """Rows on the settings of a user-defined index that have value types other than quantities."""
     known = places(study)
-    for key, form, value in study.own_indices[name].formed if name in study.own_indices else ():
+    for key, form, value in study.own_indices[name].typed_settings if name in study.own_indices else ():
         for words, text in form.told(value):
             yield f"{words} of {name}", text
         for part, _ in form.codec.numbers(value, ""):
             place = ".".join(("indices", name, key, *part))
-            yield capital(known[place].words), _told(study, place)
+            yield capital(known[place].words), _number_text(study, place)
 
 
 def _roughness(study: Study) -> str:
     """Roughness as the file has it, or as fitted to a profile, with the digits that the fit justifies."""
     swept = any(sweep.label == "road.roughness" for sweep in study.sweeps)
     if study.line is None or study.road is None or swept:
-        return _told(study, "road.roughness")
+        return _number_text(study, "road.roughness")
     return _with_also(format_quantity(study.road.roughness, _ROUGHNESS), study.road.roughness, _ROUGHNESS)
 
 
@@ -103,30 +103,30 @@ def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
     for key, value in study.coherence.items():
         label = f"road.coherence.{key}"
         words = known[label].words if label in known else f"{key} of the coherence"
-        yield capital(words), _told(study, label) if label in known else f"{value:g}"
+        yield capital(words), _number_text(study, label) if label in known else f"{value:g}"
 
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
-    return [(name, element.key, _told(study, name)) for name, element in study.elements.items()]
+    return [(name, element.key, _number_text(study, name)) for name, element in study.elements.items()]
 
 
 def further_rows(study: Study) -> list[tuple[str, str]]:
     """Rows on constraints and tasks."""
-    given = {"Limits": [f"{limit_words(study, one)} {_given(study, one.value, one.unit)}" for one in study.limits]}
+    given = {"Limits": [f"{limit_words(study, one)} {_value_text(study, one.value, one.unit)}" for one in study.limits]}
     for task in tasks():
         given |= task.description(study)
     return [(what, ", ".join(told)) for what, told in given.items() if told]
 
 
-def spoken(words: str) -> str:
+def key_in_words(words: str) -> str:
     """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
     return words.replace("-", " ").replace(".", " of ")
 
 
 def of_each(name: str, each: str) -> str:
     """Limited quantity in words, with the part to which the limit applies if to each separately."""
-    return f"{spoken(name)}, {each}," if each else spoken(name)
+    return f"{key_in_words(name)}, {each}," if each else key_in_words(name)
 
 
 def limit_words(study: Study, limit: StudyLimit) -> str:
@@ -139,7 +139,9 @@ def condition_rows(study: Study) -> list[tuple[str, str, str]]:
     total, known = sum(condition.share for condition in study.conditions), places(study)
     rows = []
     for i, condition in enumerate(study.conditions, start=1):
-        numbers = [f"{label} = {_given(study, value, known[label].unit)}" for label, value in condition.numbers.items()]
+        numbers = [
+            f"{label} = {_value_text(study, value, known[label].unit)}" for label, value in condition.numbers.items()
+        ]
         told = ", ".join(numbers) or "as above"
         rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
     return rows
@@ -156,8 +158,8 @@ def layout_rows(study: Study) -> list[LayoutText]:
 
 def indices_asked(results: xr.Dataset) -> str:
     """The indices in a sentence."""
-    names = [titled(index_title(results, index), index) for index in indices(results)]
-    return f"The {'index is' if len(names) == 1 else 'indices are'} {listed(names)}."
+    names = [title_with_name(index_title(results, index), index) for index in indices(results)]
+    return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
 
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
@@ -181,7 +183,7 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
     if study.limits:
         limits = "; ".join(
-            f"{limit_words(study, limit)} {_given(study, limit.value, limit.unit)}" for limit in study.limits
+            f"{limit_words(study, limit)} {_value_text(study, limit.value, limit.unit)}" for limit in study.limits
         )
         yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
     if study.conditions:
@@ -207,26 +209,26 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
     for name in asked or amplitudes:
         field, settings = amplitude_of(study.symbol(name)), study.settings_of(name)
         if isinstance(field, Field) and field.key in settings:
-            amplitude = _given(study, settings[field.key], field.unit)
+            amplitude = _value_text(study, settings[field.key], field.unit)
             yield f"The sinusoidal force of {name} has an amplitude of {amplitude}."
 
 
-def _told(study: Study, place: str) -> str:
+def _number_text(study: Study, place: str) -> str:
     """Number at a place as text: its value, its bounds if free, or the ends of its sweep."""
     number = places(study)[place]
     for sweep in study.sweeps:
         if sweep.label == place:
-            ends = _given(study, min(sweep.values), sweep.unit), _given(study, max(sweep.values), sweep.unit)
+            ends = _value_text(study, min(sweep.values), sweep.unit), _value_text(study, max(sweep.values), sweep.unit)
             return f"swept, {len(sweep.values)} values from {ends[0]} to {ends[1]}"
     value = number.value
     if isinstance(value, Free):
-        return f"free, {_given(study, value.lower, number.unit)} to {_given(study, value.upper, number.unit)}"
+        return f"free, {_value_text(study, value.lower, number.unit)} to {_value_text(study, value.upper, number.unit)}"
     if isinstance(value, Tied):
         return f"tied, {value}"
-    return "" if value is None else _given(study, value, number.unit)
+    return "" if value is None else _value_text(study, value, number.unit)
 
 
-def _given(study: Study, value: float, unit: str) -> str:
+def _value_text(study: Study, value: float, unit: str) -> str:
     """Value as the study file has it, else with 12 digits, without a line break before its unit."""
     return _with_also(as_written(study, value, unit) or format_quantity(value, unit, digits=12), value, unit)
 

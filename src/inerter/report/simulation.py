@@ -28,7 +28,7 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
     run, request = result.run, result.request
     energy, repetition = run.energy, run.repetition
     data = {
-        **request.resolved(),
+        **request.to_tables(),
         "time": [float(run.time[0]), float(run.time[-1])],
         "status": str(run.status),
         "rms": {name: {"value": result.rms(name), "unit": run.unit(name)} for name in result.main_outputs},
@@ -96,8 +96,8 @@ def _elements(result: SimulationResult) -> Iterator[str]:
             drop_whitespace=False,
             subsequent_indent=" " * (kinds + width + 13),
         )
-    if result.unrecorded:
-        names = ", ".join(result.unrecorded)
+    if result.unrecorded_elements:
+        names = ", ".join(result.unrecorded_elements)
         yield from wrap(f"Note: this integrator keeps no events of {names}; the event-driven one does.", WIDTH)
 
 

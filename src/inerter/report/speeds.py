@@ -63,7 +63,7 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
         if where is None:
             continue
         if np.isfinite(results["at_speeds.value"].sel(where)).all():
-            lost, sentence = _told(results, where, write)
+            lost, sentence = _speed_sentence(results, where, write)
             late = np.ptp(_beyond_speed(results, where)) > 1e-6
             doubts = _messages(results, where)
             if doubts:
@@ -82,7 +82,7 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
     return found
 
 
-def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
+def _speed_sentence(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
     """Whether the design is doubtful at other speeds, and a sentence on its values there."""
     index, layout, baseline = where["index"], where["layout"], results.attrs["baseline"]
     values, better = results["at_speeds.value"].sel(where).values, _improvements(results, where)
@@ -91,12 +91,10 @@ def _told(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple
     of = _of(results, where, write)
     by = f" by {' and '.join(brief_words_of(one) for one in method.split())}"
     ends = [
-        f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_compared(better[i], baseline, layout)}"
+        f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_versus(better[i], baseline, layout)}"
         for i in (0, 2)
     ]
-    here = (
-        f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_compared(better[1], baseline, layout)}"
-    )
+    here = f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_versus(better[1], baseline, layout)}"
     tuned = bool(max(beyond[0], beyond[2]) > 1.0 + _TUNED)
     lost = np.isfinite(better[1]) and better[1] >= NOTICEABLE and min(better[0], better[2]) < _LOST * better[1]
     doubt = bool(lost or tuned)
@@ -139,7 +137,7 @@ def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[A
         return np.asarray(values / values[1] / np.sqrt(speeds / speeds[1]))
 
 
-def _compared(better: float, baseline: str, layout: str) -> str:
+def _versus(better: float, baseline: str, layout: str) -> str:
     if not np.isfinite(better) or not baseline or layout == baseline:
         return ""
     if abs(better) < NOTICEABLE:

@@ -11,28 +11,28 @@ from inerter.figures.labels import (
     by_method,
     by_which,
     capital,
-    compared,
+    compared_layouts,
     error_of,
     flat_range,
+    format_uncertain,
     improvement_text,
     index_title,
     index_unit,
     indices,
     infeasible,
     layouts,
-    measured,
     methods,
     one_method,
     plain_number,
-    printed,
     scale,
     shows_error,
     swept_element,
     swept_places,
     swept_scale,
     swept_words,
-    titled,
+    title_with_name,
     typeset,
+    typeset_quantity,
     way,
     with_unit,
 )
@@ -77,12 +77,12 @@ def sweep_tables(results: xr.Dataset) -> list[Table]:
 def map_tables(results: xr.Dataset) -> list[Table]:
     """Tables of the improvement, or the value, at some pairs of swept values, one per index and layout."""
     results = one_method(results)
-    names = compared(results) or layouts(results)
+    names = compared_layouts(results) or layouts(results)
     return [_map_table(results, index, name) for index in indices(results) for name in names]
 
 
 def _title(results: xr.Dataset, index: str) -> str:
-    return titled(index_title(results, index), index)
+    return title_with_name(index_title(results, index), index)
 
 
 def _improvement(design: xr.Dataset, baseline: str) -> str:
@@ -103,12 +103,12 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
     for name in layouts(results):
         design = at_index.sel(layout=name)
         unit = index_unit(results, index)
-        cells = [Cell(printed(float(design["value"]), unit, error_of(design), bound_of(design)))]
-        cells += [Cell(_improvement(design, baseline))] if compared(results) else []
+        cells = [Cell(typeset_quantity(float(design["value"]), unit, error_of(design), bound_of(design)))]
+        cells += [Cell(_improvement(design, baseline))] if compared_layouts(results) else []
         cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
         cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
         rows.append(Row(name, cells, name == best, _problem(design)))
-    header = ["Layout", index, *(["Improvement"] if compared(results) else []), *parameters]
+    header = ["Layout", index, *(["Improvement"] if compared_layouts(results) else []), *parameters]
     return Table(
         f"Best for {_title(results, index)}{by_which(results)}", header + (["Agreement"] if searched else []), rows
     )
@@ -120,7 +120,7 @@ def _parameter(entry: xr.Dataset) -> Cell:
         return Cell("–")
     flat = flat_range(entry)
     remark = f"at its {bound} bound" if bound else f"{typeset(flat)} are as good" if flat else ""
-    return Cell(printed(value, str(entry["parameter_unit"].item())), remark)
+    return Cell(typeset_quantity(value, str(entry["parameter_unit"].item())), remark)
 
 
 def _problem(design: xr.Dataset) -> str:
@@ -142,7 +142,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
 
 def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> str:
     bound = float(design["other_error_bound"]) if "other_error_bound" in design else np.nan
-    return printed(float(design["other_value"]), index_unit(results, other), bound=bound)
+    return typeset_quantity(float(design["other_value"]), index_unit(results, other), bound=bound)
 
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
@@ -156,7 +156,7 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
         cells = []
         for name in layouts(results):
             design = here.sel(layout=name)
-            improvement = _improvement(design, results.attrs["baseline"]) if name in compared(results) else ""
+            improvement = _improvement(design, results.attrs["baseline"]) if name in compared_layouts(results) else ""
             cells.append(Cell(_number(design, values), improvement))
         rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
@@ -181,11 +181,11 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
         for j in _spread(data.sizes[second], _MOST_ACROSS):
             design = data.isel({first: i, second: j})
             number = _number(design, values)
-            cells.append(Cell(_percent(design), number) if compared(results) else Cell(number))
+            cells.append(Cell(_percent(design), number) if compared_layouts(results) else Cell(number))
         rows.append(Row(typeset(f"{float(data[first][i]) * down.factor:.4g}"), cells))
     columns = data[second].values[list(_spread(data.sizes[second], _MOST_ACROSS))] * across.factor
     words = [f"{w} in {typeset(u.unit)}" for w, u in zip(swept_words(results), (down, across), strict=True)]
-    what = f"improvement over {results.attrs['baseline']} and its value" if compared(results) else "value"
+    what = f"improvement over {results.attrs['baseline']} and its value" if compared_layouts(results) else "value"
     caption = (
         f"{layout}, best {_title(results, index)}: {what} in {typeset(values.unit)}, over {words[0]} in rows and "
         f"{words[1]} in columns{by_which(results)}"
@@ -216,7 +216,7 @@ def _some(data: xr.Dataset, element: str) -> list[int]:
     size = data.sizes[element]
     places = {*range(0, size, _step(size)), size - 1}
     if _are_far(size):
-        names, what = (compared(data), "improvement") if compared(data) else (layouts(data), "value")
+        names, what = (compared_layouts(data), "improvement") if compared_layouts(data) else (layouts(data), "value")
         for name in names:
             row = data[what].sel(layout=name).values
             known = np.flatnonzero(np.isfinite(row))
@@ -236,7 +236,7 @@ def _are_far(size: int) -> bool:
 def _number(design: xr.Dataset, unit: Scale) -> str:
     value, error, bound = float(design["value"]) * unit.factor, error_of(design) * unit.factor, bound_of(design)
     if shows_error(value, error, bound):
-        return typeset(measured(value, error, bound))
+        return typeset(format_uncertain(value, error, bound))
     return typeset(plain_number(value, bound)) if np.isfinite(value) else with_unit(value, "").strip()
 
 
@@ -250,6 +250,6 @@ def _failures(data: xr.Dataset) -> list[str]:
     for name, point in bad[:_MOST_FAILURES]:
         status = data["status"].sel(layout=name)[point]
         place = {swept: float(status[swept]) for swept in swept_places(data)}
-        lines.append(f"{name} at {place_text(data, place, printed, named=True)}: {status.item()}")
+        lines.append(f"{name} at {place_text(data, place, typeset_quantity, named=True)}: {status.item()}")
     more = len(bad) - _MOST_FAILURES
     return lines if more <= 0 else [*lines, f"and {more} more, which are in the table of results"]

@@ -13,7 +13,7 @@ import xarray as xr
 from inerter.figures.labels import (
     bound_of,
     by_which,
-    compared,
+    compared_layouts,
     error_of,
     flat_range,
     improvement_text,
@@ -49,7 +49,7 @@ class _TextRow:
     status: str
 
 
-def wrapped(text: str, **indents: str) -> list[str]:
+def wrap_text(text: str, **indents: str) -> list[str]:
     """Lines of a text for a terminal, without breaks between a number, its standard error and its unit."""
     joined = _MEASURED.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
     return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
@@ -67,7 +67,7 @@ def summary_table(results: xr.Dataset) -> str:
     blocks = [
         [
             *block(results, index),
-            *_compared(every, index),
+            *_sweep_lines(every, index),
             *limit_lines(every, index, WIDTH),
             *(["", *method_lines(every, index, WIDTH)] if several else []),
         ]
@@ -78,7 +78,7 @@ def summary_table(results: xr.Dataset) -> str:
 
 
 def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
-    unit, versus = index_unit(results, index), bool(compared(results))
+    unit, versus = index_unit(results, index), bool(compared_layouts(results))
     yield from wrap(_heading(results, index), WIDTH, subsequent_indent="    ")
     table = []
     for name in layouts(results):
@@ -98,12 +98,12 @@ def _improvement(design: xr.Dataset) -> str:
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
-    versus = bool(compared(results))
+    versus = bool(compared_layouts(results))
     rows = results["improvement" if versus else "value"].sel(index=index)
     heading = f"{_heading(results, index)}, over {' and '.join(swept_words(results))}"
     yield from wrap(heading, WIDTH, subsequent_indent="    ")
     table = []
-    for name in compared(results) or layouts(results):
+    for name in compared_layouts(results) or layouts(results):
         ends = extremes(rows.sel(layout=name)) or ((np.nan, {}),) * 2
         texts = [
             f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {place_text(results, at)}"
@@ -114,15 +114,15 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     yield from _lines(["layout", "best"], "worst", table)
 
 
-def _compared(results: xr.Dataset, index: str) -> Iterator[str]:
+def _sweep_lines(results: xr.Dataset, index: str) -> Iterator[str]:
     """Lines on where layouts outperform the baseline over a sweep."""
-    if swept_places(results) and compared(results):
+    if swept_places(results) and compared_layouts(results):
         for _, sentence in over_the_sweep(results.sel(index=[index])):
-            yield from wrapped(sentence, initial_indent="  ", subsequent_indent="    ")
+            yield from wrap_text(sentence, initial_indent="  ", subsequent_indent="    ")
 
 
 def _heading(results: xr.Dataset, index: str) -> str:
-    baseline = f", compared with {results.attrs['baseline']}" if compared(results) else ""
+    baseline = f", compared with {results.attrs['baseline']}" if compared_layouts(results) else ""
     return f"{index}: {index_title(results, index)}{by_which(results)}{baseline}"
 
 
@@ -157,14 +157,14 @@ def _lines(header: list[str], last: str, table: Sequence[_TextRow]) -> Iterator[
         if not cells[0]:
             yield f"  {row.name}"
         first = "  " + "".join(f"{text:<{width}}  " for text, width in zip(cells, widths, strict=True))
-        items = _packed(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
+        items = _pack_items(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
         yield (first + items[0]).rstrip()
         yield from (" " * indent + line for line in items[1:])
         if row.status != "ok":
             yield from wrap(row.status, WIDTH, initial_indent="    ! ", subsequent_indent="      ")
 
 
-def _packed(items: Sequence[str], width: int) -> list[str]:
+def _pack_items(items: Sequence[str], width: int) -> list[str]:
     """The items, separated by commas, on lines of `width`; a line ends between two items where it can."""
     lines: list[str] = []
     for i, item in enumerate(items):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import capital, index_title, listed, printed, with_unit
+from inerter.figures.labels import capital, format_list, index_title, typeset_quantity, with_unit
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, Outcome
@@ -64,7 +64,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         more = "" if sure else deciding(budget_method(study), said)
         return self._answer(study, found, found.status.kind.value, said + more)
 
-    def failed(self, study: Study, message: str) -> BudgetAnswer:
+    def failure_answer(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""
         return self._answer(study, None, StatusKind.FAILED.value, message)
 
@@ -178,7 +178,7 @@ class Budgets(Task[BudgetAnswer]):
             rows = []
             for layout in dict.fromkeys(one.layout for one in found):
                 own = [one for one in found if one.layout == layout]
-                remarks = [f"{one.index}: {text}" for one in own if (text := _remark(one, printed))]
+                remarks = [f"{one.index}: {text}" for one in own if (text := _remark(one, typeset_quantity))]
                 rows.append(Row(layout, [Cell(_cell(one)) for one in own], status="; ".join(remarks)))
             header = ["Layout", *results.study.indices]
             tables.append(Table(_caption(name, found[0], results.study), header, rows))
@@ -194,7 +194,7 @@ class Budgets(Task[BudgetAnswer]):
                 what = capital(f"{study.elements[element].key} {element}")
                 sound = [found for found in own if not found.doubt]
                 ends = [f"{end} in {index_title(data, o.index)}" for o in sound if (end := _end_of_range(o, write))]
-                told = [f"{what}: {layout} is better than {study.baseline} {listed(ends)}."] if ends else []
+                told = [f"{what}: {layout} is better than {study.baseline} {format_list(ends)}."] if ends else []
                 others = [found for found in sound if not _end_of_range(found, write)]
                 for message, of in _alike(data, others, lambda found: found.message):
                     told.append(f"{what}, {layout}, {of}: {message}.")
@@ -216,7 +216,7 @@ def design_value(study: Study, outcome: Outcome, element: str) -> float:
 
 
 def _cell(found: BudgetAnswer) -> str:
-    end = _end_of_range(found, printed) or "–"
+    end = _end_of_range(found, typeset_quantity) or "–"
     return f"not certain: {end}" if found.doubt else end
 
 
@@ -268,4 +268,4 @@ def _alike(
     """Distinct sentences, each with the titles of the indices to which it applies."""
     for message in dict.fromkeys(said(one).rstrip(".") for one in found):
         if message:
-            yield message, listed([index_title(data, o.index) for o in found if said(o).rstrip(".") == message])
+            yield message, format_list([index_title(data, o.index) for o in found if said(o).rstrip(".") == message])

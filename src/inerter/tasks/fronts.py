@@ -13,10 +13,10 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import (
     criteria,
     criterion_unit,
+    format_list,
     layouts,
-    listed,
-    printed,
     trade_off_title,
+    typeset_quantity,
     which_front,
     with_unit,
 )
@@ -26,7 +26,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
 from inerter.methods.registry import deciding
-from inerter.report.question import spoken
+from inerter.report.question import key_in_words
 from inerter.table import Cell, Row, Table, Writer
 from inerter.trade_off.front import Front
 from inerter.trade_off.pareto import pareto
@@ -54,14 +54,14 @@ class FrontPart(TaskPart["FrontAnswer"]):
     def answer(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
         """Pareto front of the layout."""
         limits = [limit for several in limits_in(study) for limit in several]
-        indices = [study.asked(name, self.layout) for name in study.trade_off]
+        indices = [study.resolve_index(name, self.layout) for name in study.trade_off]
         method = study.method(str(study.optimise), threads)
         design = study.design(self.layout)
         vehicle = design if study.conditions else design.mechanism()
         found = pareto(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
         return _answer(self.layout, found, str(study.optimise))
 
-    def failed(self, study: Study, message: str) -> FrontAnswer:
+    def failure_answer(self, study: Study, message: str) -> FrontAnswer:
         """Answer without points, with status `failed`."""
         return _without(self.layout, StatusKind.FAILED.value, message)
 
@@ -116,7 +116,7 @@ class Fronts(Task[FrontAnswer]):
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Indices of the trade-off, by the heading of the report."""
-        return {"Trade-off": [" against ".join(map(spoken, study.trade_off))] if study.trade_off else []}
+        return {"Trade-off": [" against ".join(map(key_in_words, study.trade_off))] if study.trade_off else []}
 
     def csv(self, study: Study, answers: Sequence[FrontAnswer]) -> Iterator[Sequence[object]]:
         """Header and one row per point; one row with the status for an empty front."""
@@ -148,7 +148,7 @@ class Fronts(Task[FrontAnswer]):
                 designs[row, i] = [design.get(name, np.nan) for name in parameters]
             knees[row, [] if front.knee is None else [front.knee]] = True
             leaps[row, front.jumps] = True
-        indices = {name: study.asked(name, layouts[0]) for name in study.trade_off}
+        indices = {name: study.resolve_index(name, layouts[0]) for name in study.trade_off}
         labelled = data.assign_coords(
             criterion=list(indices),
             criterion_title=("criterion", [index.title for index in indices.values()]),
@@ -186,9 +186,13 @@ class Fronts(Task[FrontAnswer]):
         rows = []
         for layout in layouts(data):
             for what, point in _told_points(data, layout):
-                cells = [Cell(text) for text in _values(data, layout, point, printed, bare=True)]
+                cells = [Cell(text) for text in _values(data, layout, point, typeset_quantity, bare=True)]
                 told = dict(
-                    zip(_own(data, layout, point), _parameters(data, layout, point, printed, bare=True), strict=True)
+                    zip(
+                        _own(data, layout, point),
+                        _parameters(data, layout, point, typeset_quantity, bare=True),
+                        strict=True,
+                    )
                 )
                 rows.append(Row(f"{layout}, {what}", [*cells, *(Cell(told.get(name, "–")) for name in parameters)]))
         return [Table(trade_off_title(data), ["Design", *names, *parameters], rows)]
@@ -210,13 +214,13 @@ class Fronts(Task[FrontAnswer]):
             if not knee.size:
                 continue
             values = data["front_value"].sel(layout=layout).values[knee[0]]
-            told = listed(
+            told = format_list(
                 [
                     write(float(value), criterion_unit(data, name), np.nan)
                     for name, value in zip(names, values, strict=True)
                 ]
             )
-            better = _bettered(data, layout, baseline) if baseline and layout != baseline else ""
+            better = _dominance_clause(data, layout, baseline) if baseline and layout != baseline else ""
             status = str(data["front_status"].sel(layout=layout).item())
             if status != StatusKind.OK:
                 doubts.append(f"{layout}, {status}")
@@ -282,7 +286,7 @@ def _has(data: xr.Dataset, parameter: str) -> bool:
     return bool(np.isfinite(data["front_parameter"].sel(parameter=parameter)).any())
 
 
-def _bettered(data: xr.Dataset, layout: str, baseline: str) -> str:
+def _dominance_clause(data: xr.Dataset, layout: str, baseline: str) -> str:
     """Clause on how many designs of the baseline's front `layout` strictly dominates; empty without points."""
     ours, theirs = (data["front_value"].sel(layout=name).values for name in (layout, baseline))
     ours, theirs = (values[np.isfinite(values).all(axis=1)] for values in (ours, theirs))

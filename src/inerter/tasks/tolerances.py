@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import index_title, printed, with_unit
+from inerter.figures.labels import index_title, typeset_quantity, with_unit
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
@@ -62,7 +62,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
         )
 
-    def failed(self, study: Study, message: str) -> ToleranceAnswer:
+    def failure_answer(self, study: Study, message: str) -> ToleranceAnswer:
         """Answer without numbers, with status `failed`."""
         return ToleranceAnswer(
             layout=self.layout,
@@ -145,7 +145,7 @@ class Tolerances(Task[ToleranceAnswer]):
         """Single table with one row per design."""
         rows = []
         for one in results.answers:
-            cells = [Cell(text) for text in _texts(one, printed)]
+            cells = [Cell(text) for text in _texts(one, typeset_quantity)]
             rows.append(Row(f"{one.layout}, {one.index}", [*cells, Cell(_due(one), prose=True)], status=one.doubt))
         return [Table("Best designs with tolerances", ["Design", *_HEADER], rows)]
 

@@ -120,7 +120,7 @@ class Declaration:
 
 
 def key(codec: Codec, sentence: str = "", example: str = "", *, default: Any = REQUIRED, **more: Any) -> Any:
-    """Field of a `declared` class that is a key of a file; arguments are those of `Declaration`.
+    """Field of a `keyed_dataclass` that is a key of a file; arguments are those of `Declaration`.
 
     It has the name of the field unless another `name` is given, as one that is a keyword of Python needs.
     """
@@ -134,13 +134,13 @@ def section(name: str, codec: Codec, sentence: str = "", example: str = "", defa
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, field))
-def declared(kind: type[Kind]) -> type[Kind]:
+def keyed_dataclass(kind: type[Kind]) -> type[Kind]:
     """A frozen dataclass, of keyword arguments alone, whose fields may be keys."""
     return dataclass(frozen=True, kw_only=True)(kind)
 
 
 def keys_in(kind: Any) -> tuple[Declaration, ...]:
-    """The keys that a declared class states, in their order."""
+    """The keys that a keyed dataclass states, in their order."""
     every = [(f, f.metadata[_DECLARATION]) for f in dataclasses.fields(kind) if _DECLARATION in f.metadata]
     return tuple(
         replace(one, name=one.name or f.name, attribute=f.name, words=one.words or f.name.replace("_", " "))
@@ -160,7 +160,7 @@ def attributes(value: Any) -> Mapping[str, Any]:
 
 @dataclass(frozen=True)
 class TableCodec(Codec):
-    """A table that becomes `make(**values)`, an object of a declared class or a dictionary.
+    """A table that becomes `make(**values)`, an object of a keyed dataclass or a dictionary.
 
     `before` may change the raw table and `check` the value; both raise ValueError for what is wrong as a whole. One of
     several kinds has a tag: the key that decides that it is this one, its word there, and a sentence.
@@ -265,7 +265,7 @@ class TableCodec(Codec):
 
 
 def table_of(kind: Any, **more: Any) -> TableCodec:
-    """Codec of the table of a declared class, whose value is an object of the class; as `TableCodec`."""
+    """Codec of the table of a keyed dataclass, whose value is an object of the class; as `TableCodec`."""
     return TableCodec(**{"keys": keys_in(kind), "make": kind, **more})
 
 

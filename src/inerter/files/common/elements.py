@@ -49,8 +49,8 @@ def _range(lower: Amount, upper: Amount) -> Range:
 
 RANGE = TableCodec(
     (
-        Declaration(AMOUNT, "The least it may be.", 'from = "100 N s/m"', name=LOWER, attribute="lower"),
-        Declaration(AMOUNT, "The most it may be.", 'to = "100 kN s/m"', name=UPPER, attribute="upper"),
+        Declaration(AMOUNT, "Lower bound.", 'from = "100 N s/m"', name=LOWER, attribute="lower"),
+        Declaration(AMOUNT, "Upper bound.", 'to = "100 kN s/m"', name=UPPER, attribute="upper"),
     ),
     make=_range,
     about="A free value: an optimiser chooses it between two bounds.",

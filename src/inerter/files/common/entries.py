@@ -28,7 +28,7 @@ EXPRESSION_SCHEMA: dict[str, Any] = {
     "type": "string",
     "minLength": 1,
     "maxLength": _LONGEST_EXPRESSION,
-    "description": "A network: | puts parts side by side, - end to end and binds tighter.",
+    "description": "Network: | means in parallel; - means in series and binds tighter.",
     "examples": ["k | c - b"],
 }
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
@@ -386,7 +386,7 @@ SWEEP_LIST = Scalar(
     quantity_list,
     lambda: {
         **list_schema(quantity_schema()),
-        "description": "Its values, one by one, or from one end to the other.",
+        "description": "Swept values: a list, or a range with its number of values.",
         "examples": [["60 kN/m", "120 kN/m", "240 kN/m"]],
         "minItems": 2,
         "maxItems": MOST_POINTS,

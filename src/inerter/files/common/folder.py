@@ -89,7 +89,7 @@ def claimed(intent: Intent) -> Iterator[Results]:
     `WorkError` if the disk is full, or a file of the user's has come in the way meanwhile.
     """
     _check(intent)
-    with _full_disk_reported(intent), _locked(intent.folder, wait=0.0):
+    with _full_disk_reported(intent), _folder_lock(intent.folder, wait=0.0):
         _check(intent)
         _clean(intent.folder)
         with undisturbed():
@@ -134,7 +134,7 @@ def single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> Ite
     """
     check_single(path, by=by, inputs=inputs, force=force)
     folder = path.parent
-    with _full_disk_reported(None, path), _locked(folder, wait=10.0):
+    with _full_disk_reported(None, path), _folder_lock(folder, wait=10.0):
         check_single(path, by=by, inputs=inputs, force=force)
         with scratch(folder / MARK) as draft:
             yield draft / path.name
@@ -185,11 +185,11 @@ def _check_files(intent: Intent, known: Listing) -> None:
         there = [name for name in there if name not in own or not own[name].journal or is_linked(folder, name)]
     strange = [name for name in there if not (_is_folder if name.endswith("/") else _is_ours)(folder, name, own)]
     if strange:
-        raise StudyError(f"{folder}: {_told_apart(strange)} Move that away, or {_ELSEWHERE}.")
+        raise StudyError(f"{folder}: {_kept_files_note(strange)} Move that away, or {_ELSEWHERE}.")
     read = [name for name in there if intent.force and _is_input(folder / name, intent.inputs)]
     if read:
         raise StudyError(
-            f"{folder}: {_enumerated(read)} is what this command reads, and --force would replace it. "
+            f"{folder}: {_name_list(read)} is what this command reads, and --force would replace it. "
             f"Copy it to another place, or {_ELSEWHERE}."
         )
 
@@ -205,7 +205,7 @@ def _is_folder(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
 def _not_ours(intent: Intent, commands: Iterable[str]) -> str:
     folder = intent.folder
     if commands:
-        return f"{folder}: holds the results of inerter {_enumerated(sorted(commands))}. Choose another folder with -o."
+        return f"{folder}: holds the results of inerter {_name_list(sorted(commands))}. Choose another folder with -o."
     unknown = f"it has no list ({MARK}/files.json) of what inerter wrote there"
     if intent.resume:
         return f"{folder}: holds nothing that --resume could continue: {unknown}. Choose another folder with -o."
@@ -217,14 +217,12 @@ def _not_ours(intent: Intent, commands: Iterable[str]) -> str:
     return f"{folder}: is not empty, and holds no results. Choose another folder with -o."
 
 
-def _told_apart(names: list[str]) -> str:
-    was, they, stay = ("was", "it is", "stays") if len(names) == 1 else ("were", "they are", "stay")
-    return (
-        f"{_enumerated(names)} {was} not written by inerter, or changed since, so {they} taken for your own and {stay}."
-    )
+def _kept_files_note(names: list[str]) -> str:
+    was, they = ("was", "it is") if len(names) == 1 else ("were", "they are")
+    return f"{_name_list(names)} {was} not written by inerter, or edited since; {they} kept."
 
 
-def _enumerated(names: list[str]) -> str:
+def _name_list(names: list[str]) -> str:
     shown = ", ".join(name.rstrip("/") for name in names[:_SHOWN])
     return shown if len(names) <= _SHOWN else f"{shown} and {len(names) - _SHOWN} more"
 
@@ -279,7 +277,7 @@ def _move(
     strange = [name for name in moved if not _may_replace(target, name, known, moved[name].by, inputs)]
     strange += [name for name in stale if not is_own(target, name, known)]
     if strange:
-        raise WorkError(f"{target}: {_told_apart(strange)} Move that away, and repeat the command.")
+        raise WorkError(f"{target}: {_kept_files_note(strange)} Move that away, and repeat the command.")
     for name in moved:
         settle(source / name)
     both = {
@@ -324,7 +322,7 @@ def _prune(folder: Path, names: Iterable[str]) -> None:
 
 
 @contextmanager
-def _locked(folder: Path, wait: float) -> Iterator[None]:
+def _folder_lock(folder: Path, wait: float) -> Iterator[None]:
     """Hold the lock of a folder, created if missing; unused folders created for it are removed again."""
     made = [path for path in (folder / MARK, folder, *folder.parents) if not path.exists()]
     try:

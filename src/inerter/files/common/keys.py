@@ -47,13 +47,13 @@ def below(keys: Iterable[Key], section: Key) -> list[Key]:
     return [key for key in keys if key.place.startswith(f"{section.place}.")]
 
 
-def found(keys: Iterable[Key], wanted: str) -> list[Key]:
+def find_keys(keys: Iterable[Key], wanted: str) -> list[Key]:
     """The keys that `wanted` may mean: a place, the end of one, or a place with a name of the author's own in it."""
     parts = wanted.strip().strip("[]").split(".")
-    return _merged(key for key in keys if _ends(key, parts))
+    return _merge_equal_keys(key for key in keys if _ends(key, parts))
 
 
-def _merged(keys: Iterable[Key]) -> list[Key]:
+def _merge_equal_keys(keys: Iterable[Key]) -> list[Key]:
     """Keys of several models as one where they say the same."""
     alike: dict[tuple[str, ...], list[Key]] = {}
     for key in keys:
@@ -75,7 +75,7 @@ def _ends(key: Key, parts: list[str]) -> bool:
 def _below(schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]:
     """The keys that a table has."""
     for one in _alternatives(schema):
-        own, needed = _decided(one) or of, one.get("required", ())
+        own, needed = _model_of_table(one) or of, one.get("required", ())
         for name, key in one.get("properties", {}).items():
             yield from _key(key, f"{place}.{name}" if place else name, name in needed, own)
         if isinstance(more := one.get("additionalProperties"), dict):
@@ -109,7 +109,7 @@ def _alternatives(schema: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
         yield from _alternatives(one)
 
 
-def _decided(schema: Mapping[str, Any]) -> str:
+def _model_of_table(schema: Mapping[str, Any]) -> str:
     """The model or kind that alone has this table."""
     decided = (schema.get("properties", {}).get(key, {}).get("const", "") for key in _DECIDES)
     return next(filter(None, decided), "")

@@ -15,7 +15,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.ties import with_known_values
 from inerter.files.common.vehicle_tables import SEAT
-from inerter.files.common.vehicles import MountEntry, made, mounts, parts_of
+from inerter.files.common.vehicles import MountEntry, build_vehicle, mounts, parts_of
 from inerter.networks.elements import Element
 from inerter.networks.parser import names, network
 from inerter.units import shown
@@ -32,7 +32,7 @@ class StrutLayout:
     def design(self, model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element]) -> Vehicle:
         """The vehicle with these struts, made of `elements`."""
         known = with_known_values(elements)
-        return made(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
+        return build_vehicle(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
             section(
                 name,
                 EXPRESSION,
-                f"The network at {name}.",
+                f"Network in the mount {name}.",
                 f'{name} = "k | c"',
                 REQUIRED if mount.needed else mount.network,
             )

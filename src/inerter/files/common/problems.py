@@ -25,12 +25,12 @@ class FileError(StudyError):
 def refusal(path: Path, problems: Iterable[Problem]) -> FileError:
     """The error that reports the `problems` of the file, one a line: so many as a reader may want to see."""
     every = list(problems)
-    lines = [f"{path.name}: {shortened(str(problem))}" for problem in every[:_MOST]]
+    lines = [f"{path.name}: {shorten_line(str(problem))}" for problem in every[:_MOST]]
     if len(every) > _MOST:
         lines.append(f"{path.name}: and {len(every) - _MOST} problems more.")
     return FileError("\n".join(lines), tuple(every))
 
 
-def shortened(line: str) -> str:
+def shorten_line(line: str) -> str:
     """A line without its middle if it is long, as names in it may be."""
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 205]} ... {line[-200:]}"

@@ -17,8 +17,8 @@ from inerter.files.common.codec import (
     REQUIRED,
     Scalar,
     TableCodec,
-    declared,
     key,
+    keyed_dataclass,
     keys_in,
     section,
     table_of,
@@ -54,21 +54,23 @@ def _from_minus_one(value: Any) -> float:
 _LEVELS = Scalar(_from_minus_one, lambda: {"type": "number", "minimum": -1, "maximum": 1})
 
 
-@declared
+@keyed_dataclass
 class CoherenceTable:
     """How alike left and right track are: as on an isotropic surface, everywhere alike, or of first order."""
 
     track: float | None = key(
         QuantityCodec("m", if_given=True),
-        "From track to track, of a surface as rough in every direction.",
+        "Distance between the tracks, on an isotropic surface.",
         'track = "1.5 m"',
         default=None,
         words="track of the coherence",
     )
-    level: float | None = key(_LEVELS, "At all wavenumbers, or in long waves.", "level = 0.6", default=None)
+    level: float | None = key(
+        _LEVELS, "Coherence at all spatial frequencies, or its limit for long waves.", "level = 0.6", default=None
+    )
     wavenumber: float | None = key(
         QuantityCodec("cycle/m", if_given=True),
-        "Of first order: where it is half of its level.",
+        "Spatial frequency at which the first-order coherence falls to half its level.",
         'wavenumber = "0.2 cycle/m"',
         default=None,
         words="wavenumber of the coherence",
@@ -88,52 +90,51 @@ def _of_one_form(values: dict[str, float]) -> dict[str, float]:
 COHERENCE = table_of(CoherenceTable, make=without_none, check=_of_one_form, about=CoherenceTable.__doc__)
 
 
-@declared
+@keyed_dataclass
 class RoadSource:
     """Source of a roughness that the file does not say: a class, or a measured profile."""
 
     letter: str | None = key(
         word("a class of ISO 8608", ROAD_CLASSES),
-        "Of ISO 8608, in place of a roughness.",
+        "Road class of ISO 8608, as an alternative to a roughness.",
         'class = "C"',
         default=None,
         name="class",
     )
     profile: str | None = key(
         TEXT,
-        "A file of measured heights, in place of a roughness: the road is the line of waviness 2 through "
-        "their spectrum.",
+        "File of a measured elevation profile, as an alternative to a roughness; the road is the spectrum of "
+        "waviness 2 fitted to it.",
         'profile = "road.csv"',
         default=None,
     )
     track: str | None = key(
         word("a track", _SIDES),
-        "Of a profile of two tracks: the one that is taken; their mean if left out.",
+        "Track of a profile with two tracks; default: their mean.",
         'track = "left"',
         default=None,
     )
     columns: dict[str, str | int] | None = key(
         Scalar(profiles.columns, lambda: profiles.COLUMNS_SCHEMA),
-        "Of a profile: which column is which, by name or number from 0, where that is not obvious.",
+        "Columns of a profile, by name or number from 0, if they are not recognised.",
         profiles.COLUMNS_EXAMPLE,
         default=None,
     )
     units: dict[str, str] | None = key(
         Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA),
-        "Of a profile whose table has none.",
+        "Units of a profile whose table has none.",
         profiles.UNITS_EXAMPLE,
         default=None,
     )
     interval: float | None = key(
         QuantityCodec("m", if_given=True),
-        "Of a profile without distances: from row to row.",
+        "Distance between rows of a profile without a distance column.",
         profiles.SPACING_EXAMPLE,
         default=None,
     )
     sampling: str | None = key(
         word("a sampling", SAMPLING),
-        "Of a profile: its heights are those of points (if left out), averages over an interval, or were filtered "
-        "before.",
+        "Heights of a profile: points (default), averages over an interval, or filtered.",
         'sampling = "filtered"',
         default=None,
     )

@@ -52,7 +52,7 @@ def _frequency(name: str, value: str, default: Any = REQUIRED) -> SignalKey:
     return SignalKey("Hz", f'{name} = "{value} Hz"', default)
 
 
-def _braced(example: str) -> str:
+def _escape_braces(example: str) -> str:
     """Example with its braces doubled, so that formatting keeps them."""
     return example.replace("{", "{{").replace("}", "}}")
 
@@ -82,7 +82,7 @@ class SignalKind:
     random: bool = False  # a road with the coherence that [road] says
 
 
-def _measured(file: str, track: str, speed: float, **reading: Any) -> Signal | Mapping[str, Signal]:
+def _measured_road(file: str, track: str, speed: float, **reading: Any) -> Signal | Mapping[str, Signal]:
     try:
         measured = profiles.read(file, **reading)
     except RecordError as problem:
@@ -163,18 +163,21 @@ _OWN = (
     ),
     SignalKind(
         "profile",
-        _measured,
+        _measured_road,
         {
             "file": _FILE,
             "track": SignalKey("", 'track = "left"', "", _plain(word("a track", (*TRACKS, BOTH)))),
             "columns": SignalKey(
                 "",
-                _braced(profiles.COLUMNS_EXAMPLE),
+                _escape_braces(profiles.COLUMNS_EXAMPLE),
                 None,
                 _plain(Scalar(profiles.columns, lambda: profiles.COLUMNS_SCHEMA)),
             ),
             "units": SignalKey(
-                "", _braced(profiles.UNITS_EXAMPLE), None, _plain(Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA))
+                "",
+                _escape_braces(profiles.UNITS_EXAMPLE),
+                None,
+                _plain(Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA)),
             ),
             "interval": SignalKey("m", profiles.SPACING_EXAMPLE, None),
         },

@@ -50,7 +50,7 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
 
 def tie_schema() -> dict[str, Any]:
     """JSON Schema of a tied entry."""
-    about = f"What the value follows from: {_EXAMPLE}."
+    about = f"Expression for the value: {_EXAMPLE}."
     text = {"type": "string", "minLength": 1, "maxLength": _LONGEST, "description": about}
     text |= {"examples": ["0.8 * c_front"]}
     return {"type": "object", "properties": {TIED: text}, "required": [TIED], "additionalProperties": False}
@@ -71,7 +71,7 @@ def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) ->
 def with_known_values(elements: Mapping[str, Element]) -> dict[str, Element]:
     """The elements, with the numbers of those that are fixed in what is tied to them."""
     known = {name: element.value for name, element in elements.items() if isinstance(element.value, float)}
-    return {name: _settled(element, known) for name, element in elements.items()}
+    return {name: _substitute_ties(element, known) for name, element in elements.items()}
 
 
 def tie_text(value: Tied) -> str:
@@ -87,7 +87,7 @@ def tie_text(value: Tied) -> str:
     return text.removeprefix("(").removesuffix(")") if text.startswith("(") else text
 
 
-def _settled(element: Element, known: Mapping[str, float]) -> Element:
+def _substitute_ties(element: Element, known: Mapping[str, float]) -> Element:
     value = element.value
     if not isinstance(value, Tied):
         return element
@@ -117,11 +117,11 @@ def _part(node: ast.expr, text: str, elements: Mapping[str, Element]) -> _Part:
         if not are_alike(first.unit, second.unit):
             fault = f"{first.unit} and {second.unit} cannot be added or subtracted"
             raise EntryError(got=shown(text), fault=fault, expected="values of one unit")
-        return _Part(_joined(sign, first.value, second.value), first.unit)
-    return _Part(_joined(sign, first.value, second.value), product(first.unit, sign, second.unit))
+        return _Part(_apply_operator(sign, first.value, second.value), first.unit)
+    return _Part(_apply_operator(sign, first.value, second.value), product(first.unit, sign, second.unit))
 
 
-def _joined(sign: str, first: Tied | float, second: Tied | float) -> Tied | float:
+def _apply_operator(sign: str, first: Tied | float, second: Tied | float) -> Tied | float:
     match sign:
         case "+":
             return first + second

@@ -10,7 +10,17 @@ from typing import Any
 from inerter.checks import is_number
 from inerter.errors import RowError, UnitError
 from inerter.fields import fields_of
-from inerter.files.common.codec import Codec, KeyPath, LoadContext, Scalar, TableCodec, declared, key, keys_in, table_of
+from inerter.files.common.codec import (
+    Codec,
+    KeyPath,
+    LoadContext,
+    Scalar,
+    TableCodec,
+    key,
+    keyed_dataclass,
+    keys_in,
+    table_of,
+)
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
 from inerter.files.common.entries import EXPRESSION, TEXT, declaration_of, not_negative, positive, word
 from inerter.files.common.number import Number
@@ -116,67 +126,81 @@ PORT = PortCodec(least=1)
 SOME_PORT = PortCodec()
 
 
-@declared
+@keyed_dataclass
 class StrutTable:
     """Between two ports; without a lower one it is on the ground."""
 
     upper: Mapping[str, float] = key(
-        PORT, "The port at its upper end: coordinates with their levers.", 'upper = { body = 1, pitch = "1.2 m" }'
+        PORT, "Upper port: coordinates with their lever arms.", 'upper = { body = 1, pitch = "1.2 m" }'
     )
     lower: Mapping[str, float] = key(
-        SOME_PORT, "The port at its lower end; the ground if left out.", "lower = { wheel = 1 }", default=NOTHING
+        SOME_PORT, "Lower port; default: the ground.", "lower = { wheel = 1 }", default=NOTHING
     )
-    network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "k | c"', default=None)
+    network: str | None = key(EXPRESSION, "Network that is common to all layouts.", 'network = "k | c"', default=None)
 
 
-@declared
+@keyed_dataclass
 class TyreTable:
     """Between a port and a road."""
 
-    port: Mapping[str, float] = key(PORT, "What it carries: coordinates with their levers.", "port = { wheel = 1 }")
-    road: str = key(TEXT, "The road below it.", 'road = "road"')
-    network: str | None = key(EXPRESSION, "A network that all layouts have there.", 'network = "kt"', default=None)
+    port: Mapping[str, float] = key(
+        PORT, "Port that the tyre carries: coordinates with their lever arms.", "port = { wheel = 1 }"
+    )
+    road: str = key(TEXT, "Road input of the tyre.", 'road = "road"')
+    network: str | None = key(EXPRESSION, "Network that is common to all layouts.", 'network = "kt"', default=None)
 
 
-@declared
+@keyed_dataclass
 class RoadPlace:
-    """Where the mechanism meets the road."""
+    """Position of a road input."""
 
-    distance: float = key(not_negative("m"), "Behind the first axle.", 'distance = "2.5 m"', default=0.0)
-    track: str = key(word("a track", TRACKS), "Left or right, where there are two.", 'track = "left"', default="")
+    distance: float = key(
+        not_negative("m"), "Distance behind the first axle; it determines the delay.", 'distance = "2.5 m"', default=0.0
+    )
+    track: str = key(
+        word("a track", TRACKS),
+        "Track of the road input: left or right, for roads with two tracks.",
+        'track = "left"',
+        default="",
+    )
 
 
-@declared
+@keyed_dataclass
 class MeasureTable:
     """Which outputs answer the questions of indices."""
 
     comfort: Mapping[str, float] = key(
         SOME_PORT,
-        "Outputs that ride comfort is about, with their weights.",
+        "Outputs of ride comfort J1, with their weights.",
         "comfort = { body_acceleration = 1 }",
         default=NOTHING,
     )
     tyre_load: Mapping[str, float] | None = key(
         SOME_PORT,
-        "Outputs that tyre load is about, with their weights.",
+        "Outputs of the dynamic tyre load J3, with their weights.",
         "tyre_load = { wheel_load = 1 }",
         default=None,
     )
     load_input: str | None = key(TEXT, "The force of load carrying.", 'load_input = "load"', default=None)
-    load_output: str | None = key(TEXT, "What it moves.", 'load_output = "body_displacement"', default=None)
+    load_output: str | None = key(
+        TEXT, "Displacement output of load carrying J5.", 'load_output = "body_displacement"', default=None
+    )
 
 
-@declared
+@keyed_dataclass
 class SeatTable:
     """A seat with its occupant, on any vehicle."""
 
     mass: float = key(
-        positive("kg"), "The occupant, with what moves along of the seat.", 'mass = "60 kg"', words="mass on the seat"
+        positive("kg"),
+        "Mass of the occupant and of the moving part of the seat.",
+        'mass = "60 kg"',
+        words="mass on the seat",
     )
-    network: str = key(EXPRESSION, "Between floor and occupant.", 'network = "ks | cs"')
+    network: str = key(EXPRESSION, "Network between floor and occupant.", 'network = "ks | cs"')
     place: Mapping[str, float] | None = key(
         PORT,
-        "Where it stands: coordinates with their levers.",
+        "Position of the seat: coordinates with their lever arms.",
         'place = { sprung = 1, pitch = "0.3 m" }',
         default=None,
     )
@@ -186,42 +210,42 @@ def _parts_of(kind: Any) -> TableCodec:
     return table_of(kind, make=dict, about=(kind.__doc__ or "").partition("\n\n")[0])
 
 
-@declared
+@keyed_dataclass
 class MechanismTable:
     """A vehicle of masses, levers, networks and roads."""
 
     coordinates: Mapping[str, float] = key(
         NamesCodec(InertiaCodec(), part_name, least=1),
-        "What moves: each with its mass, or its moment of inertia.",
+        "Degrees of freedom: the mass or moment of inertia of each.",
         'a section [vehicle.coordinates] with lines such as body = "250 kg"',
     )
     struts: Mapping[str, Any] = key(
         NamesCodec(_parts_of(StrutTable), part_name),
-        "What is between two ports.",
+        "Networks between two ports.",
         "a section [vehicle.struts] with lines such as s = { upper = { body = 1 }, lower = { wheel = 1 } }",
         default=NOTHING,
     )
     tyres: Mapping[str, Any] = key(
         NamesCodec(_parts_of(TyreTable), part_name),
-        "What is between a port and a road.",
+        "Networks between a port and a road.",
         'a section [vehicle.tyres] with lines such as tyre = { port = { wheel = 1 }, road = "road" }',
         default=NOTHING,
     )
     roads: Mapping[str, Any] = key(
         NamesCodec(_parts_of(RoadPlace), part_name),
-        "Where the roads are met.",
+        "Road inputs with their positions.",
         'a section [vehicle.roads] with lines such as rear = { distance = "2.5 m" }',
         default=NOTHING,
     )
     forces: Mapping[str, Mapping[str, float]] = key(
         NamesCodec(SOME_PORT, part_name),
-        "External forces and moments, by where they act.",
+        "External forces and moments, by the port on which they act.",
         "a section [vehicle.forces] with lines such as load = { body = 1 }",
         default=NOTHING,
     )
     measures: Mapping[str, Any] = key(
         _parts_of(MeasureTable),
-        "Which outputs answer which index.",
+        "Performance outputs of each index.",
         "a section [vehicle.measures] with comfort = { body_acceleration = 1 }",
         default=NO_MEASURES,
     )

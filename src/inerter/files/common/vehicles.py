@@ -61,12 +61,12 @@ def mounts(model: str, values: Values) -> dict[str, MountEntry]:
     return {**_form(model).mounts(values), **seat}
 
 
-def made(model: str, values: Values, networks: Networks) -> Vehicle:
+def build_vehicle(model: str, values: Values, networks: Networks) -> Vehicle:
     """The vehicle with these networks in its mounts."""
     if SEAT not in values:
-        return _form(model).made(values, networks)
+        return _form(model).build(values, networks)
     seat = values[SEAT]
-    vehicle = made(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
+    vehicle = build_vehicle(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
     place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
     return Seat(vehicle, seat["mass"], networks[SEAT], **place)
 
@@ -89,7 +89,7 @@ def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
     yield from problems
     if SEAT in values and not problems:
         place = values[SEAT]["place"] or {"sprung": 1.0}
-        car = made(model, _without_seat(values), dict.fromkeys(own, _ANY))
+        car = build_vehicle(model, _without_seat(values), dict.fromkeys(own, _ANY))
         known = {c.name: c.angle for c in car.mechanism().coordinates}
         yield from _port_problems(("vehicle", SEAT, "place"), place, known, ())
 
@@ -105,7 +105,7 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
         return None
     own = _without_seat(values)
     try:
-        roads = made(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
+        roads = build_vehicle(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
     except InerterError:
         return None
     return {road.name: road.track for road in roads}
@@ -114,7 +114,7 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
 class _Form(Protocol):
     def mounts(self, values: Values) -> dict[str, MountEntry]: ...
 
-    def made(self, values: Values, networks: Networks) -> Vehicle: ...
+    def build(self, values: Values, networks: Networks) -> Vehicle: ...
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]: ...
 
@@ -141,7 +141,7 @@ class _Model:
         kind = VEHICLES[self.model]
         return {name: MountEntry(needed=name in needed_mounts_of(kind)) for name in mounts_of(kind)}
 
-    def made(self, values: Values, networks: Networks) -> Vehicle:
+    def build(self, values: Values, networks: Networks) -> Vehicle:
         arguments: dict[str, Any] = {**values, **networks}
         return VEHICLES[self.model](**arguments)
 
@@ -169,7 +169,7 @@ class _OwnMechanism:
         parts = {**values["struts"], **values["tyres"]}
         return {name: MountEntry(part["network"] is None, part["network"]) for name, part in parts.items()}
 
-    def made(self, values: Values, networks: Networks) -> Vehicle:
+    def build(self, values: Values, networks: Networks) -> Vehicle:
         given = values["measures"]
         loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
         ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
@@ -221,7 +221,7 @@ class _OwnMechanism:
             found += _port_problems(("vehicle", "forces", name), port, known, ())
         if not found:
             try:
-                self.made(values, dict.fromkeys(self.mounts(values), _ANY))
+                self.build(values, dict.fromkeys(self.mounts(values), _ANY))
             except MechanismError as error:
                 found.append(at(("vehicle",), str(error)))
         yield from found

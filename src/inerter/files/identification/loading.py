@@ -53,11 +53,11 @@ class IdentificationRequest:
                 f"Which model? Name one of {known} with --model, or write [model] and [elements] in a --config."
             )
         if self.name == CHOOSE:
-            return {name: _replaced(model, self.elements) for name, model in MODELS.items()}
+            return {name: _replace_elements(model, self.elements) for name, model in MODELS.items()}
         if self.name not in MODELS:
             hint = nearest(self.name, (*MODELS, CHOOSE))
             raise StudyError(str(EntryError(got=f"--model {self.name}", expected=f"one of {known}", hint=hint)))
-        return {self.name: _replaced(MODELS[self.name], self.elements)}
+        return {self.name: _replace_elements(MODELS[self.name], self.elements)}
 
 
 def load_identification(path: str | Path) -> IdentificationRequest:
@@ -126,6 +126,6 @@ def _of_named(request: IdentificationRequest) -> Iterator[Problem]:
             yield at(("elements", name), got=f"a value in {element.unit}", expected=f"one in {units[name]}")
 
 
-def _replaced(model: Network, elements: Mapping[str, Element]) -> Network:
+def _replace_elements(model: Network, elements: Mapping[str, Element]) -> Network:
     """A model with the values of some of its elements fixed, or free within other bounds."""
     return map_elements(model, lambda element: elements.get(element.label, element))

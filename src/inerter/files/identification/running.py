@@ -59,7 +59,7 @@ class Responses:
 
 
 @dataclass(frozen=True, eq=False)
-class Identified:
+class IdentificationResult:
     """Identification result with everything that its report contains."""
 
     title: str
@@ -121,39 +121,41 @@ def run_identification(
     request: IdentificationRequest,
     progress: Progress | None = None,
     executor: Executor | None = None,
-) -> Identified:
+) -> IdentificationResult:
     """Fit the model, or choose one, to the records; an `executor` shares the work.
 
     Raises what `identify` raises.
     """
     with running_on(executor):
-        return _identified(readings, request, progress)
+        return _identify(readings, request, progress)
 
 
-def _identified(readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None) -> Identified:
+def _identify(
+    readings: Sequence[Reading], request: IdentificationRequest, progress: Progress | None
+) -> IdentificationResult:
     records = [r.used for r in readings]
     settings = dict(request.settings)
     title = request.title or ", ".join(dict.fromkeys(r.source for r in records))
     if request.chooses:
-        return _chosen(title, readings, request, settings, progress)
+        return _select_model(title, readings, request, settings, progress)
     ((name, model),) = request.models().items()
     fit = identify(records, with_mount(model), FitOptions(**settings), progress=progress)
     named = Rig(model).device
-    return Identified(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
+    return IdentificationResult(title, name, named, _with_best(named, fit), tuple(readings), fit, settings)
 
 
-def _chosen(
+def _select_model(
     title: str,
     readings: Sequence[Reading],
     request: IdentificationRequest,
     settings: dict[str, Any],
     progress: Progress | None,
-) -> Identified:
+) -> IdentificationResult:
     models = request.models()
     given = {name: models[name] for name in VISCOUS} if request.elements else None
     choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
-    return Identified(
+    return IdentificationResult(
         *(title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings),
         candidates=choice.candidates,
         choice=choice.findings,
@@ -164,10 +166,10 @@ def _with_best(model: Network, fit: Fit) -> Network:
     return with_values(model, {name: p.best for name, p in fit.parameters.items()})
 
 
-def responses(found: Identified) -> Responses:
+def responses(found: IdentificationResult) -> Responses:
     """Frequency responses of the records, corrected by the fitted gain and delay of the sensors, and of the model."""
     values = {name: p.best for name, p in found.fit.parameters.items()}
-    records = [_corrected(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
+    records = [_correct_force(c, values.get(GAIN, 1.0), values.get(DELAY, 0.0)) for c in found.fit.comparisons]
     try:
         measured = frequency_response(records)
     except InerterError as error:
@@ -188,12 +190,12 @@ def responses(found: Identified) -> Responses:
     return Responses(measured, model, linear, tuple(notes))
 
 
-def model_title(found: Identified) -> str:
+def model_title(found: IdentificationResult) -> str:
     """The model in words."""
     return "the model of the configuration" if found.name == CUSTOM else f"the model {found.name}"
 
 
-def _corrected(comparison: RecordFit, gain: float, delay: float) -> Record:
+def _correct_force(comparison: RecordFit, gain: float, delay: float) -> Record:
     moved = (comparison.record.fixture_mass or 0.0) * comparison.experiment.motion.acceleration
     record = comparison.record.with_notes(force=(comparison.record.force - comparison.offset) / gain - moved)
     return shift_force(record, delay) if delay else record

@@ -5,7 +5,16 @@ from __future__ import annotations
 from dataclasses import field
 from typing import Any
 
-from inerter.files.common.codec import Scalar, TableCodec, declared, key, keys_in, section, table_of, without_none
+from inerter.files.common.codec import (
+    Scalar,
+    TableCodec,
+    key,
+    keyed_dataclass,
+    keys_in,
+    section,
+    table_of,
+    without_none,
+)
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import (
     EXPRESSION,
@@ -91,7 +100,7 @@ _SCALE = Scalar(parse_uncertain, lambda: {"anyOf": [{"type": "number"}, TEXT_SCH
 _ANY_TIME = any_quantity("s")
 
 
-@declared
+@keyed_dataclass
 class RecordRequest:
     """Arguments of `read_record` for the files, and the preparation of their records."""
 
@@ -117,7 +126,7 @@ class RecordRequest:
 AS_RECORDED = RecordRequest()
 
 
-@declared
+@keyed_dataclass
 class ModelRequest:
     """The device: one of the catalogue, or a network of the section [elements]."""
 
@@ -125,7 +134,7 @@ class ModelRequest:
     layout: str | None = key(EXPRESSION, "Network of the elements.", default=None)
 
 
-@declared
+@keyed_dataclass
 class FitSettings:
     """Settings of the fit, as `identify` takes them."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from inerter.files.common.codec import TableCodec, declared, key, section, table_of, without_none
+from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section, table_of, without_none
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
 from inerter.files.common.layouts import layouts_codec
@@ -11,7 +11,7 @@ from inerter.rows import made_of_rows
 from inerter.vehicle.rig import Rig
 
 
-@declared
+@keyed_dataclass
 class RigSettings:
     """Duration of the measurement, and the sensors; omitted values are those of `VirtualRig`."""
 

@@ -7,7 +7,7 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any, cast
 
-from inerter.files.common.codec import declared
+from inerter.files.common.codec import keyed_dataclass
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.roads import MeasuredLine, remark
 from inerter.files.common.signals import SignalRequest
@@ -21,7 +21,7 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.vehicle.vehicle import Vehicle
 
 
-@declared
+@keyed_dataclass
 class SimulationRequest(SimulationSettings):
     """Contents of a simulation file, with defaults. Equal requests may come from different files."""
 
@@ -86,17 +86,17 @@ class SimulationRequest(SimulationSettings):
     def check(self) -> int:
         """The number of steps; raises what `simulate` would raise before it integrates."""
         settings = RunSettings(**self._settings)
-        return check_simulation(self.design(), self._driven(), settings)
+        return check_simulation(self.design(), self._input_arguments(), settings)
 
     def run(self, progress: Callable[[float], None] | None = None) -> Trajectory:
         """Simulate it; raises what `simulate` raises."""
-        return simulate(self.design(), **self._driven(), **self._settings, progress=progress)
+        return simulate(self.design(), **self._input_arguments(), **self._settings, progress=progress)
 
     @property
     def _settings(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("duration", "step", "integrator", "every", "energy")}
 
-    def _driven(self) -> Driven:
+    def _input_arguments(self) -> Driven:
         signals = self.signals()
         signal = signals.get("", signals)
         moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
@@ -104,7 +104,7 @@ class SimulationRequest(SimulationSettings):
             moved = {"displacement": signal}
         return cast(Driven, {**moved, "speed": self.speed, "initial": self.initial})
 
-    def resolved(self) -> dict[str, Any]:
+    def to_tables(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""
         return simulation_codec().dump(
             {
@@ -120,5 +120,5 @@ class SimulationRequest(SimulationSettings):
 
 
 def write_simulation(request: SimulationRequest) -> str:
-    """`request.resolved()` as TOML. `load_simulation` reads an equal request from it, to the last bit."""
-    return remark(request.line) + as_toml(request.resolved())
+    """`request.to_tables()` as TOML. `load_simulation` reads an equal request from it, to the last bit."""
+    return remark(request.line) + as_toml(request.to_tables())

@@ -99,7 +99,7 @@ class SimulationResult:
         """State statistics of every friction and gap; empty if the integrator records no events."""
         found = []
         length = float(self.run.time[-1] - self.run.time[0]) or 1.0
-        for strut, label, element in self._placed():
+        for strut, label, element in self._elements_by_mount():
             if label in self.run.states and element.switch is not None:
                 switch = element.switch
                 shares = {
@@ -111,16 +111,18 @@ class SimulationResult:
         return tuple(found)
 
     @property
-    def unrecorded(self) -> tuple[str, ...]:
+    def unrecorded_elements(self) -> tuple[str, ...]:
         """Frictions and gaps whose events the integrator does not record."""
         known = self.run.states
-        return tuple(n for _, n, element in self._placed() if element.switch is not None and n not in known)
+        return tuple(n for _, n, element in self._elements_by_mount() if element.switch is not None and n not in known)
 
     def inerters(self, strut: str) -> tuple[str, ...]:
         """Inerters of a strut, by output name."""
-        return tuple(n for mount, n, element in self._placed() if mount == strut and element.linear is Linear.MASS)
+        return tuple(
+            n for mount, n, element in self._elements_by_mount() if mount == strut and element.linear is Linear.MASS
+        )
 
-    def _placed(self) -> Iterator[tuple[str, str, Element]]:
+    def _elements_by_mount(self) -> Iterator[tuple[str, str, Element]]:
         mechanism = switching(self.mechanism)
         branches = iter(full_graph(mechanism).branches)
         for mount in mechanism.mounts():

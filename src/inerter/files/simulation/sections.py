@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.files.common.codec import TableCodec, declared, key, section, table_of
+from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section, table_of
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whole, word
 from inerter.files.common.layouts import layouts_codec
@@ -19,7 +19,7 @@ INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
 
 
-@declared
+@keyed_dataclass
 class SimulationSettings:
     """Settings of the integration, and of the samples that are kept."""
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError, Status, StatusKind, worst_of
-from inerter.files.study.limits import kept, limits_in
+from inerter.files.study.limits import limit_results, limits_in
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
@@ -70,9 +70,9 @@ class Cases:
     def __getitem__(self, number: int) -> Case:
         design, point = divmod(number, self.points)
         layout, index = divmod(design, len(self.indices))
-        return Case(self.layouts[layout], self.indices[index], point, self.swept(point))
+        return Case(self.layouts[layout], self.indices[index], point, self.sweep_values(point))
 
-    def swept(self, point: int) -> tuple[float, ...]:
+    def sweep_values(self, point: int) -> tuple[float, ...]:
         """Value of each sweep at the point of that number."""
         values = []
         for axis in reversed(self.axes):
@@ -158,15 +158,15 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
         ):
             return _run(study, case, threads)
     except FAILURES as error:
-        return _failed(study, case, str(error))
+        return _failure_outcome(study, case, str(error))
 
 
 def lost_case(study: Study, case: Case) -> Outcome:
     """Outcome of a case whose worker processes ended at every attempt."""
-    return _failed(study, case, ENDED)
+    return _failure_outcome(study, case, ENDED)
 
 
-def _failed(study: Study, case: Case, why: str) -> Outcome:
+def _failure_outcome(study: Study, case: Case, why: str) -> Outcome:
     failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
     return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, why)
 
@@ -204,19 +204,19 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         method = study.method(study.optimise, threads)
         limits = [limit for several in limits_in(study) for limit in several]
         free = vehicle
-        asked = study.asked(case.index, case.layout)
+        asked = study.resolve_index(case.index, case.layout)
         with within("search", 0.0, _SEARCHED):
             found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
         fields = {name: getattr(found, name) for name in fields}
-        fields["limits"] = [list(one) for one in kept(study, free, found.limits)]
+        fields["limits"] = [list(one) for one in limit_results(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:
         report(f"values by {method}", share=_SEARCHED if found is not None else None)
         if found is not None and (method, index) == (study.optimise, case.index):
             return found.estimate
         try:
-            return evaluate(vehicle, study.asked(index, case.layout), study.method(method, threads))
+            return evaluate(vehicle, study.resolve_index(index, case.layout), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise

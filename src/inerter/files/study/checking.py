@@ -69,12 +69,12 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     if study is _sound:
         return
     problems, every = [], cases(study)
-    tried = _tried(every)
+    tried = _points_to_check(every)
     for number, layout in enumerate(study.layouts):
         for done, point in enumerate(tried, start=number * len(tried)):
             tell(done, len(tried) * len(study.layouts))
             try:
-                _check_design(study.at(every.swept(point)), layout)
+                _check_design(study.at(every.sweep_values(point)), layout)
             except InerterError as error:
                 problems.append(at(("layouts", layout), str(error)))
                 break
@@ -83,7 +83,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     _sound = study
 
 
-def _tried(every: Cases) -> list[int]:
+def _points_to_check(every: Cases) -> list[int]:
     """All of some points; of many the ends, those of the extremes of each sweep, and others evenly between."""
     tried = {*np.linspace(0, every.points - 1, min(every.points, _MOST_TRIED), dtype=int).tolist()}
     if len(tried) < every.points:
@@ -113,7 +113,7 @@ def _check_design(study: Study, layout: str) -> None:
         check_free(vehicle)
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
-            objective_of(vehicle, study.asked(name, layout), method)
+            objective_of(vehicle, study.resolve_index(name, layout), method)
         bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
 
 

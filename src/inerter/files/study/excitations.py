@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, declared, key, keys_in
+from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, key, keyed_dataclass, keys_in
 from inerter.files.common.entries import TEXT, Amount, QuantityCodec
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
@@ -22,7 +22,7 @@ _OF_GROUND = "(m/s^2)^2/Hz"
 _OF_FORCES = {"N^2/Hz": "force", "(N m)^2/Hz": "moment"}
 
 
-class Named(NamedTuple):
+class NameReference(NamedTuple):
     """Name in an entry that must exist in the vehicle: its keys, and whether it is an "output", "input" or "force"."""
 
     keys: KeyPath
@@ -30,7 +30,7 @@ class Named(NamedTuple):
     name: str
 
 
-class Sized(NamedTuple):
+class SizeReference(NamedTuple):
     """Size in an entry whose unit depends on that of the input: its keys, its unit, and the units expected."""
 
     keys: KeyPath
@@ -75,27 +75,27 @@ def in_words(name: str) -> str:
     return name.replace("_", " ")
 
 
-@declared
+@keyed_dataclass
 class StatedExcitation:
-    """What excites the vehicle: white acceleration of the ground, a white force, or the road; perhaps shaped."""
+    """Excitation of the vehicle: white acceleration of the ground, a white force, or the road; perhaps shaped."""
 
     ground_acceleration: float | None = key(
         QuantityCodec(_OF_GROUND, if_given=True),
-        "White acceleration of the ground: its spectral density, two-sided.",
+        "Two-sided spectral density of a white ground acceleration.",
         'ground_acceleration = "0.01 (m/s^2)^2/Hz"',
         default=None,
         words="intensity of the ground acceleration",
     )
-    force: str | None = key(TEXT, "A white force of the vehicle.", 'force = "sprung_force"', default=None)
+    force: str | None = key(TEXT, "Name of the force that is white noise.", 'force = "sprung_force"', default=None)
     intensity: Amount | None = key(
         AmountCodec(_OF_FORCES, "white force"),
-        "Of the force: its spectral density, two-sided; of a moment in (N m)^2/Hz.",
+        "Two-sided spectral density of the force; of a moment in (N m)^2/Hz.",
         'intensity = "1 N^2/Hz"',
         default=None,
     )
     shaping: Filter | None = key(
         FILTER,
-        "A filter through which it arrives.",
+        "Shaping filter between white noise and vehicle.",
         "shaping = { numerator = [1.0], denominator = [1.0, 2.0] }",
         default=None,
     )
@@ -112,7 +112,7 @@ class StatedExcitation:
         words = plain if self.ground_acceleration is None else in_words(_GROUND)
         return words if self.shaping is None else f"{words} before its filter"
 
-    def made(self, road: Road | None) -> Road | Excitation | None:
+    def to_excitation(self, road: Road | None) -> Road | Excitation | None:
         """Excitation as an index takes it; `road` is used if neither ground nor force is stated."""
         plain: Road | Excitation | None = road
         if self.ground_acceleration is not None:
@@ -121,20 +121,20 @@ class StatedExcitation:
             plain = WhiteForce(self.force, self.intensity.value)
         return plain if self.shaping is None or plain is None else Shaped(plain, self.shaping)
 
-    def told(self) -> Iterator[tuple[str, str]]:
+    def report_rows(self) -> Iterator[tuple[str, str]]:
         """Rows of a report on the excitation, in addition to its numbers."""
         if self.shaping is not None:
             yield "Shaping filter", in_s(self.shaping)
 
-    def named(self) -> Iterator[Named]:
+    def name_references(self) -> Iterator[NameReference]:
         """The force that the vehicle has to have."""
         if self.force is not None:
-            yield Named(("force",), "force", self.force)
+            yield NameReference(("force",), "force", self.force)
 
-    def sized(self) -> Iterator[Sized]:
+    def size_references(self) -> Iterator[SizeReference]:
         """The intensity, whose unit follows from that of the force."""
         if self.intensity is not None:
-            yield Sized((_INTENSITY,), self.intensity.unit, _density)
+            yield SizeReference((_INTENSITY,), self.intensity.unit, _density)
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def in_s(value: Filter) -> str:
     ('(-s + 2) / (s^2 + 0.5 s + 2.5)', '3 / (s + 3)')
     """
     top, bottom = (_polynomial([float(c) for c in part]) for part in (value.numerator, value.denominator))
-    return f"{_bracketed(top)} / {_bracketed(bottom)}"
+    return f"{_parenthesise(top)} / {_parenthesise(bottom)}"
 
 
 def _polynomial(coefficients: list[float]) -> str:
@@ -68,5 +68,5 @@ def _polynomial(coefficients: list[float]) -> str:
     return text.removeprefix(" + ") if text.startswith(" + ") else f"-{text.removeprefix(' - ')}"
 
 
-def _bracketed(text: str) -> str:
+def _parenthesise(text: str) -> str:
     return f"({text})" if " " in text else text

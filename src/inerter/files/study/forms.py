@@ -17,7 +17,14 @@ from inerter.files.common.codec import REQUIRED, Codec, Declaration, Scalar
 from inerter.files.common.codecs import NamesCodec
 from inerter.files.common.entries import TEXT
 from inerter.files.common.problem import EntryError
-from inerter.files.study.excitations import EXCITATION, AmountCodec, Named, Sized, StatedExcitation, in_words
+from inerter.files.study.excitations import (
+    EXCITATION,
+    AmountCodec,
+    NameReference,
+    SizeReference,
+    StatedExcitation,
+    in_words,
+)
 from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
@@ -35,8 +42,8 @@ class Form:
     made: Callable[[Any, Road | None], Any] = lambda value, road: value  # in Python, on that road if it is on one
     on_road: Callable[[Any], bool] = lambda value: False  # whether that needs a road
     source: Callable[[Any], str] = lambda value: ""  # what it says that excites the vehicle, in words
-    named: Callable[[Any], Iterable[Named]] = lambda value: ()
-    sized: Callable[[Any], Iterable[Sized]] = lambda value: ()
+    named: Callable[[Any], Iterable[NameReference]] = lambda value: ()
+    sized: Callable[[Any], Iterable[SizeReference]] = lambda value: ()
 
 
 def form_declaration(setting: Formed) -> Declaration:
@@ -77,7 +84,7 @@ def _name(what: str) -> Form:
     return Form(
         TEXT,
         told=lambda name: [(what.capitalize(), in_words(name))],
-        named=lambda name: [Named((), what, name)],
+        named=lambda name: [NameReference((), what, name)],
     )
 
 
@@ -90,22 +97,22 @@ FORMS: dict[str, Form] = {
         _OUTPUTS,
         made=lambda weights, road: FixedWeights(weights),
         told=lambda weights: [("Outputs" if len(weights) > 1 else "Output", _sum(weights))],
-        named=lambda weights: [Named((name,), "output", name) for name in weights],
+        named=lambda weights: [NameReference((name,), "output", name) for name in weights],
     ),
     "excitation": Form(
         EXCITATION,
-        told=StatedExcitation.told,
-        made=StatedExcitation.made,
+        told=StatedExcitation.report_rows,
+        made=StatedExcitation.to_excitation,
         on_road=lambda value: value.on_road,
         source=lambda value: value.source,
-        named=StatedExcitation.named,
-        sized=StatedExcitation.sized,
+        named=StatedExcitation.name_references,
+        sized=StatedExcitation.size_references,
     ),
     "input": _name("input"),
     "output": _name("output"),
     "amplitude": Form(
         AmountCodec(_OF_INPUTS, "input"),
         made=lambda amount, road: amount.value,
-        sized=lambda amount: [Sized((), amount.unit, str)],
+        sized=lambda amount: [SizeReference((), amount.unit, str)],
     ),
 }

@@ -19,7 +19,7 @@ NAME = "journal.jsonl"
 
 def journal_of(study: Study, path: Path) -> Journal:
     """Journal at `path`, valid for this study only."""
-    text = json.dumps(study.resolved(), sort_keys=True)
+    text = json.dumps(study.to_tables(), sort_keys=True)
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from inerter.errors import InerterError
-from inerter.files.common.codec import Codec, KeyPath, Scalar, declared, key, table_of, without_none
+from inerter.files.common.codec import Codec, KeyPath, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
@@ -64,13 +64,13 @@ def _limit_text(value: Any) -> str | float:
 _LIMIT = Scalar(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})
 
 
-@declared
+@keyed_dataclass
 class LimitTable:
     """The sides on which an index is limited."""
 
-    at_most: str | float | None = key(_LIMIT, "The most that it may be.", 'at_most = "3 mm"', default=None)
-    at_least: str | float | None = key(_LIMIT, "The least that it may be.", 'at_least = "1 mm"', default=None)
-    equal: str | float | None = key(_LIMIT, "What it has to be.", 'equal = "120 kN/m"', default=None)
+    at_most: str | float | None = key(_LIMIT, "Upper limit.", 'at_most = "3 mm"', default=None)
+    at_least: str | float | None = key(_LIMIT, "Lower limit.", 'at_least = "1 mm"', default=None)
+    equal: str | float | None = key(_LIMIT, "Required value.", 'equal = "120 kN/m"', default=None)
 
 
 _SIDES = table_of(LimitTable, make=without_none, about=LimitTable.__doc__)
@@ -192,7 +192,9 @@ def part_words(vehicle: Vehicle, output: str) -> str:
     return output.replace("_", " ")
 
 
-def kept(study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]) -> list[tuple[float, bool, float, str]]:
+def limit_results(
+    study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]
+) -> list[tuple[float, bool, float, str]]:
     """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], and its part.
 
     The part is the tyre or strut of that value where the limit applies to each of several; else empty.

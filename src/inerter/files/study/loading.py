@@ -17,14 +17,14 @@ from inerter.files.common.toml import read_tables, value_of
 from inerter.files.common.vehicles import parts_of, tracks, vehicle_problems
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
-from inerter.files.study.named import name_problems
 from inerter.files.study.own_indices import bare_index_problems, own_index_problems
+from inerter.files.study.quantity_texts import texts_of
+from inerter.files.study.reference_checks import name_problems
 from inerter.files.study.scatter import tolerance_of
 from inerter.files.study.sections import ROAD_EXAMPLE, study_codec
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tasks import tasks
-from inerter.files.study.written import texts_of
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Element, Free
 from inerter.units import shown

@@ -54,12 +54,12 @@ class Notes:
     def texts(self, layouts: Sequence[str]) -> list[str]:
         """Each note with the layouts that it concerns, in the order of the cases."""
         return [
-            f"{', '.join(name for name in layouts if name in alike.layouts)}: {_ranged(alike)}"
+            f"{', '.join(name for name in layouts if name in alike.layouts)}: {_note_with_ranges(alike)}"
             for alike in sorted(self._alike.values(), key=lambda alike: alike.first)
         ]
 
 
-def _ranged(alike: _Alike) -> str:
+def _note_with_ranges(alike: _Alike) -> str:
     """Note with the range of each number that differs."""
     texts = []
     for ends in zip(alike.low, alike.high, strict=True):

@@ -29,7 +29,7 @@ class OwnIndex:
     settings: dict[str, Any]  # by their keys: numbers, texts, and what forms have made of the others
 
     @property
-    def formed(self) -> list[tuple[str, Form, Any]]:
+    def typed_settings(self) -> list[tuple[str, Form, Any]]:
         """Key, value type and value of each setting that has a value type other than a quantity."""
         given = [one for one in index_forms(self.symbol) if one.key in self.settings]
         return [(one.key, form_of(one), self.settings[one.key]) for one in given]
@@ -45,11 +45,11 @@ class OwnIndex:
     @property
     def excited_by(self) -> str:
         """Excitation stated for the index, in words; empty if none is stated."""
-        return next((words for _, form, value in self.formed if (words := form.source(value))), "")
+        return next((words for _, form, value in self.typed_settings if (words := form.source(value))), "")
 
-    def made(self, road: Road | None) -> dict[str, Any]:
+    def constructor_arguments(self, road: Road | None) -> dict[str, Any]:
         """Settings of the index by key, converted for its constructor; `road` is used where a setting is on a road."""
-        return {**self.settings, **{key: form.made(value, road) for key, form, value in self.formed}}
+        return {**self.settings, **{key: form.made(value, road) for key, form, value in self.typed_settings}}
 
 
 def indices_of(tables: Mapping[str, Any]) -> list[str]:
@@ -89,7 +89,7 @@ def _index_table(name: str, symbol: str) -> TableCodec:
     taken = [_KIND, *(one.name for one in keys)]
     if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:
         raise RowError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
-    return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Which index it is."))
+    return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Kind of index."))
 
 
 def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:

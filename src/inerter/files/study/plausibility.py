@@ -9,8 +9,8 @@ from inerter.errors import InerterError
 from inerter.files.common.plausibility import class_words, is_on_road, road_sentence, road_warnings, vehicle_warnings
 from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
+from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.written import as_written
 from inerter.signals.road import Road
 from inerter.units import format_quantity
 

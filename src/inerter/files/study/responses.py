@@ -60,7 +60,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
         units = [unit_of(mechanism, [o.output]) for o in question.outputs]
-        names = [_weighted(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
+        names = [_output_label(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
 
@@ -85,7 +85,7 @@ def _words(study: Study, index: str) -> str:
     return f"gain from {source}" if source else study.index(index).response
 
 
-def _weighted(output: Weighted, own: str, unit: str) -> str:
+def _output_label(output: Weighted, own: str, unit: str) -> str:
     """Label of an output of unit `own` in an index of that `unit`: times a weight, or over a reference quantity."""
     if output.weight == 1.0:
         return output.output

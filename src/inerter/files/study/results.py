@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 _OK, _INFEASIBLE = StatusKind.OK.value, StatusKind.INFEASIBLE.value
 
 
-class Gathered:
+class DatasetBuilder:
     """The outcomes of a study, put into the arrays of its dataset as they come, in any order.
 
     Of each no more is kept than those ask for: samples where improvements have standard errors, and the outcome itself
@@ -48,7 +48,7 @@ class Gathered:
         self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
         self._parameters = study.free_units
-        self._data = _labelled(study, self._parameters)
+        self._data = _empty_dataset(study, self._parameters)
         self._columns = {name: i for i, name in enumerate(self._parameters)}
         self._arrays = {str(name): by_case(self._data, str(name)) for name in self._data.data_vars}
 
@@ -162,7 +162,7 @@ class Gathered:
 class Pending:
     """The cases that had no outcome when this was made, each made when its turn comes."""
 
-    def __init__(self, found: Gathered) -> None:
+    def __init__(self, found: DatasetBuilder) -> None:
         self._cases = found.cases
         self._numbers = np.flatnonzero(~found.done)
 
@@ -179,7 +179,7 @@ def dataset(study: Study, outcomes: Mapping[Case, Outcome]) -> xr.Dataset:
     Improvements are per cent below the baseline's own optimum of the same index, method and swept value. Where a method
     other than the norm is used, there are standard errors and numbers of realisations too.
     """
-    found = Gathered(study)
+    found = DatasetBuilder(study)
     for outcome in outcomes.values():
         found.enter(outcome)
     return found.dataset()
@@ -191,9 +191,9 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
     return array.reshape(data["status"].size, *array.shape[data["status"].ndim :])
 
 
-def _labelled(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
+def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    indices = {name: study.asked(name, next(iter(study.layouts))) for name in study.indices}
+    indices = {name: study.resolve_index(name, next(iter(study.layouts))) for name in study.indices}
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
     design = ("layout", "index", *swept)
     sizes = {

@@ -21,7 +21,8 @@ from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claime
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.results import Gathered, Pending
+from inerter.files.study.quantity_texts import write_resolved
+from inerter.files.study.results import DatasetBuilder, Pending
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_rows import TASKS
@@ -35,7 +36,6 @@ from inerter.files.study.tasks import (
     lost_part,
     parts_of,
 )
-from inerter.files.study.written import write_resolved
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept, Row, joined, kept_by, resuming
@@ -118,7 +118,7 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
-        gathered, done, computed = _computed(study, results, pool, progress, compiling)
+        gathered, done, computed = _compute_outcomes(study, results, pool, progress, compiling)
         answers = tuple(done[part] for part in parts_of(study))
         data = gathered.dataset()
         write_text(results.draft / RESOLVED, write_resolved(study))
@@ -171,12 +171,12 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
         yield results
 
 
-def _computed(
+def _compute_outcomes(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
-) -> tuple[Gathered, _Done, int]:
+) -> tuple[DatasetBuilder, _Done, int]:
     """All cases and parts of tasks, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
-    found = Gathered(study)
+    found = DatasetBuilder(study)
     done, known = _read(journal, found) if results.resume else ({}, {})
     parts = parts_of(study)
     pending = found.pending()
@@ -210,7 +210,7 @@ def _computed(
     return found, done, len(pending)
 
 
-def _read(journal: Journal, found: Gathered) -> tuple[_Done, _Known]:
+def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
     """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
     done: _Done = {}
     searches: dict[str, list[Kept]] = {}
@@ -238,7 +238,7 @@ def _run_case(study: Study, known: _Known, case: Case, threads: int = 1) -> Outc
 
 
 def _answers(
-    study: Study, found: Gathered, pending: list[_AnyPart], pool: Pool, known: _Known
+    study: Study, found: DatasetBuilder, pending: list[_AnyPart], pool: Pool, known: _Known
 ) -> Iterator[list[Answer]]:
     """Lists of answers, in the order in which they are completed."""
     run = partial(_resumed_answer, portable(study), found.designs, known)

@@ -12,8 +12,8 @@ from inerter.files.common.codec import (
     Codec,
     Scalar,
     TableCodec,
-    declared,
     key,
+    keyed_dataclass,
     keys_in,
     section,
     table_of,
@@ -67,7 +67,7 @@ _NONE: dict[str, Any] = {}
 _NO_ROWS: list[Any] = []
 
 
-@declared
+@keyed_dataclass
 class SweepRange:
     """Values of a number from one end to the other."""
 
@@ -79,7 +79,7 @@ class SweepRange:
     )
 
 
-@declared
+@keyed_dataclass
 class ConditionEntry:
     """Numbers by their places, and how much of the time they are so."""
 
@@ -152,7 +152,7 @@ def _scatter(given: Any) -> float:
 _SCATTER = Scalar(_scatter, lambda: {"anyOf": [SHARE_SCHEMA, {"type": "string", "pattern": r"%\s*$"}]})
 
 
-@declared
+@keyed_dataclass
 class Settings:
     """Indices to compute, and the methods that compute them."""
 
@@ -182,7 +182,7 @@ class Settings:
     )
     sweeps: tuple[Sweep, ...] = key(
         SweepsCodec(),
-        "Numbers of this file, by place, with the values to step through; two make a map.",
+        "Swept numbers of this file, by key path, with their values; two make a map.",
         'sweep = { k = { from = "10 kN/m", to = "300 kN/m", points = 30 } }',
         default=(),
         name="sweep",
@@ -202,13 +202,13 @@ class Settings:
     )
     budgets: tuple[str, ...] = key(
         some_names("f"),
-        "Elements: range of values in which a layout is better than the baseline.",
+        "Elements whose break-even value against the baseline is computed.",
         'budgets = ["f"]',
         default=(),
     )
     limits: tuple[StudyLimit, ...] = key(
         LimitsCodec(),
-        "Constraints on other indices, kept by the optimum.",
+        "Constraints on indices or static stiffness that every design must satisfy.",
         'subject_to = { tyre-load = { at_most = "600 N" } }',
         default=(),
         name="subject_to",
@@ -223,10 +223,10 @@ class Settings:
     trade_off: tuple[str, ...] = key(
         _INDICES, "Two or three indices whose Pareto front is computed.", 'trade_off = ["J1", "J3"]', default=()
     )
-    points: int = key(whole(3, _MOST_OF_FRONT), "Number of designs of a front.", "points = 25", default=POINTS)
+    points: int = key(whole(3, _MOST_OF_FRONT), "Number of designs on a Pareto front.", "points = 25", default=POINTS)
     tolerance: Mapping[str, float] = key(
         ByPlaceCodec(_SCATTER),
-        "Relative tolerances: distribution of the index, and the values that matter most.",
+        "Relative tolerance of each value, for the distribution of the index and its Sobol' indices.",
         'tolerance = { c = "10 %", b = "5 %" }',
         default=_NONE,
     )
@@ -320,7 +320,7 @@ def study_codec() -> TableCodec:
         section(
             "conditions",
             RowsCodec(_CONDITION),
-            "Numbers of this file, by place, in one operating condition.",
+            "Numbers of this file, by key path, in one operating condition.",
             '[[conditions]] with "road.speed" = "15 m/s"',
             _NO_ROWS,
         ),

@@ -42,7 +42,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     """
     if not study.needs_road(index):
         return {}, ""
-    asked, method = study.asked(index, layout), quick_method(study, vehicle)
+    asked, method = study.resolve_index(index, layout), quick_method(study, vehicle)
     if not (_is_late(vehicle, asked) or (not is_blind(method) and _rubs(vehicle))):
         return {}, ""
     found = [_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
@@ -56,7 +56,7 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
     assert study.road is not None
     speed = factor * study.road.speed
     there = with_numbers(study, [(place_of(SPEED), speed)])
-    question, way = there.asked(index, layout), there.method(method)
+    question, way = there.resolve_index(index, layout), there.method(method)
     try:
         if isinstance(way, Doubting) and any(way.share_unsure(*one, {}) for one in asked_of(vehicle, question)):
             return np.nan, "it takes more digits than double precision has"

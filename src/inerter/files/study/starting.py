@@ -40,19 +40,19 @@ _PARTS = (  # a quarter car, part by part
     'body = "250 kg"',
     'wheel = "35 kg"',
     "",
-    "[vehicle.struts]                          # What is between two ports; without a lower one, on the ground",
+    "[vehicle.struts]                          # Networks between two ports; without a lower one, to the ground",
     "strut = { upper = { body = 1 }, lower = { wheel = 1 } }",
     "",
-    "[vehicle.tyres]                           # What is between a port and a road",
+    "[vehicle.tyres]                           # Networks between a port and a road",
     'tyre = { port = { wheel = 1 }, road = "road", network = "kt" }',
     "",
-    "[vehicle.roads]                           # Where the roads are met",
+    "[vehicle.roads]                           # Road inputs with their positions",
     "road = {}",
     "",
-    "[vehicle.forces]                          # External forces, by where they act",
+    "[vehicle.forces]                          # External forces, by the port on which they act",
     "load = { body = 1 }",
     "",
-    "[vehicle.measures]                        # Which outputs answer which index",
+    "[vehicle.measures]                        # Performance outputs of each index",
     "comfort = { body_acceleration = 1 }",
     'load_input = "load"',
     'load_output = "body_displacement"',
@@ -109,7 +109,7 @@ def _quantities(fields: Iterable[Field]) -> Iterator[str]:
 
 
 def _moved_by_road(kind: type[VehicleModel]) -> bool:
-    return bool(_made(kind).mechanism().roads)
+    return bool(_unit_vehicle(kind).mechanism().roads)
 
 
 def _elements(kind: type[VehicleModel]) -> Iterator[str]:
@@ -150,7 +150,7 @@ def _settings(kind: type[VehicleModel]) -> Iterator[str]:
             yield f"# {as_line(key.name, key.example)}"
 
 
-def _made(kind: type[VehicleModel]) -> VehicleModel:
+def _unit_vehicle(kind: type[VehicleModel]) -> VehicleModel:
     """Vehicle of a model with unit values."""
     network: Network = Spring(1.0) | Damper(1.0)
     values: dict[str, Any] = {field.name: 1.0 for field in fields_of(kind)}
@@ -164,7 +164,7 @@ def _answers(kind: type[VehicleModel], symbol: str) -> bool:
     if bare - {"road"}:
         return False
     try:
-        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_made(kind).mechanism())
+        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_unit_vehicle(kind).mechanism())
     except InerterError:
         return False
     return True

@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.errors import NetworkError, StudyError
 from inerter.fields import fields_of
-from inerter.files.common.codec import declared
+from inerter.files.common.codec import keyed_dataclass
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
 from inerter.files.common.roads import MeasuredLine
@@ -36,7 +36,7 @@ from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
 
-@declared
+@keyed_dataclass
 class Study(Settings):
     """Contents of a study file, with defaults. Equal studies may come from different files."""
 
@@ -78,7 +78,7 @@ class Study(Settings):
     def index(self, name: str) -> Index:
         """Index of that name with the settings of the study."""
         own = self.own_indices.get(name)
-        given = {**self.settings_of(name), **own.made(self.road)} if own else self.settings_of(name)
+        given = {**self.settings_of(name), **own.constructor_arguments(self.road)} if own else self.settings_of(name)
         return make_index(self.symbol(name), self.road, given)
 
     def needs_road(self, name: str) -> bool:
@@ -86,7 +86,7 @@ class Study(Settings):
         own = self.own_indices.get(name)
         return own.needs_road if own else excitation_of(self.symbol(name)) is not None
 
-    def asked(self, name: str, layout: str) -> Asked:
+    def resolve_index(self, name: str, layout: str) -> Asked:
         """Objective of a layout for an index: over the conditions, and at the quantile, if the study has them."""
         index = self.over_conditions(name)
         if self.quantile is None or not (spread := self.spread(layout)):
@@ -180,7 +180,7 @@ class Study(Settings):
         sections = ((name, "elements" if name in self.elements else "vehicle") for name in values)
         return with_numbers(self, [(Place(section, name), values[name]) for name, section in sections])
 
-    def resolved(self) -> dict[str, Any]:
+    def to_tables(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.
 
         Two studies that ask the same of the same vehicle have the same dictionary, wherever their files are.
@@ -193,7 +193,7 @@ def elements_used(study: Study) -> dict[str, list[str]]:
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
         named = [name for text in struts.struts.values() for name in _names(text)]
-        for element in dict.fromkeys([*named, *(other for name in named for other in _followed(study, name))]):
+        for element in dict.fromkeys([*named, *(other for name in named for other in _tied_names(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
 
@@ -203,7 +203,7 @@ def scattering(study: Study, layout: str) -> set[str]:
     return {name for text in study.layouts[layout].struts.values() for name in _names(text)}
 
 
-def _followed(study: Study, name: str) -> tuple[str, ...]:
+def _tied_names(study: Study, name: str) -> tuple[str, ...]:
     """Names of the elements on which a tied element depends; empty if it is not tied."""
     value = study.elements[name].value if name in study.elements else None
     return value.names if isinstance(value, Tied) else ()

@@ -85,7 +85,7 @@ class TaskPart(ABC, Generic[AnswerT]):
         """Answer for the best designs. What it raises of `FAILURES` becomes that of `failed`."""
 
     @abstractmethod
-    def failed(self, study: Study, message: str) -> AnswerT:
+    def failure_answer(self, study: Study, message: str) -> AnswerT:
         """Answer without numbers, with `message` as the reason."""
 
 
@@ -165,12 +165,12 @@ def answer_part(study: Study, designs: Designs, part: TaskPart[AnswerT], threads
         with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return part.answer(study, designs, threads)
     except FAILURES as error:
-        return part.failed(study, str(error))
+        return part.failure_answer(study, str(error))
 
 
 def lost_part(study: Study, part: TaskPart[AnswerT]) -> AnswerT:
     """Answer of a task part whose worker processes ended at every attempt."""
-    return part.failed(study, ENDED)
+    return part.failure_answer(study, ENDED)
 
 
 def by_task(answers: Iterable[Answer]) -> dict[Task[Any], list[Any]]:

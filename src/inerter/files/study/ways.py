@@ -19,7 +19,7 @@ def ways(study: Study) -> dict[str, str]:
     Two methods that see the same are told apart by what they are.
     """
     there = _losses(study)
-    told = {method: _told(there, _SEEN[what_is_seen(method)]) for method in study.evaluate}
+    told = {method: _describe_guards(there, _SEEN[what_is_seen(method)]) for method in study.evaluate}
     count = Counter(told.values())
     return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
 
@@ -32,7 +32,7 @@ def _losses(study: Study) -> dict[str, Guard]:
     return dict(sorted(found.items(), key=lambda one: list(Guard).index(one[1])))
 
 
-def _told(there: dict[str, Guard], seen: tuple[Guard, ...]) -> str:
+def _describe_guards(there: dict[str, Guard], seen: tuple[Guard, ...]) -> str:
     with_, without = ([word for word, by in there.items() if (by in seen) == wanted] for wanted in (True, False))
     words = [f"with {' and '.join(with_)}"] * bool(with_) + [f"without {' or '.join(without)}"] * bool(without)
     return ", ".join(words)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import inerter as it
 from inerter.figures.labels import with_unit
-from inerter.files.common.codec import declared, key
+from inerter.files.common.codec import key, keyed_dataclass
 from inerter.files.common.entries import SWEEP_LIST, TEXT
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case, run_case
@@ -17,7 +17,7 @@ from inerter.table import Cell, Row, Table, Writer
 from inerter.units import parse_quantity
 
 
-@declared
+@keyed_dataclass
 class CatalogueKeys:
     """What [study] says of it."""
 
@@ -64,7 +64,7 @@ class CataloguePart(TaskPart["CatalogueAnswer"]):
             message=outcome.message,
         )
 
-    def failed(self, study: Study, message: str) -> CatalogueAnswer:
+    def failure_answer(self, study: Study, message: str) -> CatalogueAnswer:
         """The answer without numbers."""
         return CatalogueAnswer(
             layout=self.layout,

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from inerter.figures.identification import MotionCurve, response_figure, time_figure
 from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices, scale
-from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, styled
+from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, style_context
 from inerter.papers.wang_su_2008.paper import (
     FIGURE_8,
     FIGURE_9,
@@ -57,7 +57,7 @@ def draw_figure_11(results: xr.Dataset, folder: Path) -> list[Path]:
 
 def draw_figure_12(road: Road, folder: Path) -> list[Path]:
     """A road of eq. (17)."""
-    with styled():
+    with style_context():
         figure, (ax,) = new_figure(height=2.0)
         signal = multisine(road, seed=0)
         ax.plot(np.arange(10001) * 1e-3, 1e3 * signal.grid(0.0, 1e-3, 10001)[0], color=colour(0), linewidth=0.8)
@@ -74,7 +74,7 @@ def draw_figure_13(results: xr.Dataset, folder: Path) -> list[Path]:
 
 def draw_figure_14(results: xr.Dataset, folder: Path) -> list[Path]:
     """Effects of friction and elasticity together, S2 on the left, S3 on the right."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(2 * results.sizes["index"], 2, height=2.15)
         for row, index in enumerate(indices(results)):
             for column, layout in enumerate(("S2", "S3")):
@@ -95,7 +95,7 @@ def draw_figure_14(results: xr.Dataset, folder: Path) -> list[Path]:
 def draw_methods(points: Sequence[Mapping[str, Any]], methods: Mapping[str, str], folder: Path) -> list[Path]:
     """Change of J1 and J3 by friction over its size, by each of the `methods` (name and title)."""
     panels = list(dict.fromkeys((p["index"], p["layout"]) for p in points))
-    with styled():
+    with style_context():
         figure, axes = new_figure(len(panels), 2, height=2.3)
         for ax, (index, layout) in zip(axes, panels, strict=True):
             mine = [p for p in points if (p["index"], p["layout"]) == (index, layout)]
@@ -127,13 +127,13 @@ def draw_methods(points: Sequence[Mapping[str, Any]], methods: Mapping[str, str]
 
 
 def _draw(figure: Figure, folder: Path, name: str) -> list[Path]:
-    with styled():
+    with style_context():
         return save(figure, folder, name, pdf=True)
 
 
 def _values_and_improvements(results: xr.Dataset, kinds: Mapping[str, str]) -> Figure:
     """A row for each index: optimal values on the left, improvements over S1 on the right."""
-    with styled():
+    with style_context():
         figure, axes = new_figure(2 * results.sizes["index"], 2, height=2.15)
         styles = {"S1": _BASELINE}
         for layout in ("S2", "S3"):

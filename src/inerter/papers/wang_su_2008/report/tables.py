@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from inerter.figures.labels import printed, typeset
+from inerter.figures.labels import typeset, typeset_quantity
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.report.data import reason
 from inerter.papers.wang_su_2008.report.text import budget_value, digits, rig_value, share, signed, with_error
@@ -121,7 +121,7 @@ def rig_table(found: Reproduction) -> Table | None:
         Row(
             p.name,
             [
-                Cell(printed(p.printed, p.unit)),
+                Cell(typeset_quantity(p.printed, p.unit)),
                 *(Cell(typeset(text)) for text in rig_value(p)),
                 Cell(typeset(f"{signed(100.0 * p.difference)} %") if p.value == p.value else ""),
             ],

@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import printed
+from inerter.figures.labels import typeset_quantity
 from inerter.papers.wang_su_2008.judging import RULE, Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.paper import PAPER
@@ -144,7 +144,7 @@ def budget_value(numbers: dict[str, Any]) -> str:
         return str(numbers["message"] if numbers["kind"] == StatusKind.UNBOUNDED else numbers["status"])
     error = numbers["error"]
     about = f" ± {format_quantity(error, numbers['unit'], digits=2)}" if error else ""
-    return f"{printed(numbers['value'], numbers['unit'])}{about}".replace("\N{NO-BREAK SPACE}", " ")
+    return f"{typeset_quantity(numbers['value'], numbers['unit'])}{about}".replace("\N{NO-BREAK SPACE}", " ")
 
 
 def _claim_lines(claim: Claim) -> Iterator[str]:

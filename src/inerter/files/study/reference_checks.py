@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from inerter.errors import InerterError, with_article
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.excitations import Named, Sized
+from inerter.files.study.excitations import NameReference, SizeReference
 from inerter.files.study.study import Study
 from inerter.indices.question import Question
 from inerter.systems.graph import full_graph
@@ -19,10 +19,10 @@ from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 def name_problems(study: Study) -> Iterator[Problem]:
     """Problems of names that no layout has, and of units that differ from that of their input."""
     for name, own in study.own_indices.items():
-        formed = own.formed
+        formed = own.typed_settings
         named = [((key, *one.keys), one) for key, form, value in formed for one in form.named(value)]
         sized = [((key, *one.keys), one) for key, form, value in formed for one in form.sized(value)]
-        asked = _asked(study, name) if named or sized else []
+        asked = _layout_questions(study, name) if named or sized else []
         if not asked:
             continue
         for keys, one in named:
@@ -33,7 +33,7 @@ def name_problems(study: Study) -> Iterator[Problem]:
             yield from _of_size(("indices", name, *keys), size, *asked[0])
 
 
-def _asked(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
+def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
     """Mechanism and index definition for each layout; empty if one cannot be built, which is reported elsewhere."""
     try:
         mechanisms = [study.design(layout).mechanism() for layout in study.layouts]
@@ -42,7 +42,7 @@ def _asked(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
         return []
 
 
-def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question: Question) -> Problem | None:
+def _of_name(place: Sequence[str], named: NameReference, mechanism: Mechanism, question: Question) -> Problem | None:
     """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
     driven = question.drive.driven(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
@@ -65,7 +65,7 @@ def _of_name(place: Sequence[str], named: Named, mechanism: Mechanism, question:
     return at(place, got=shown(named.name), fault=fault, expected=others, hint=close)
 
 
-def _of_size(place: Sequence[str], size: Sized, mechanism: Mechanism, question: Question) -> Iterator[Problem]:
+def _of_size(place: Sequence[str], size: SizeReference, mechanism: Mechanism, question: Question) -> Iterator[Problem]:
     """Problem of a size whose unit does not match that of its input."""
     (arrival, *_) = _inputs(mechanism, question) or ("",)
     unit = input_unit(mechanism, arrival)

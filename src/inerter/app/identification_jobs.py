@@ -13,7 +13,7 @@ from inerter.errors import RecordError
 from inerter.files.common.folder import Intent, claimed
 from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
-from inerter.files.identification.running import Identified, read, run_identification
+from inerter.files.identification.running import IdentificationResult, read, run_identification
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identified_values import elements_block, value_and_interval
@@ -41,6 +41,6 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
     return {**identification_data(found), "shown": shown, "device": _device(found)}
 
 
-def _device(found: Identified) -> dict[str, Any] | None:
+def _device(found: IdentificationResult) -> dict[str, Any] | None:
     """The device as tables of a study document; None where its values are withheld: then there is none to hand on."""
     return tables_of(elements_block(found).encode(), PATH, "a device") if found.explains else None

@@ -15,7 +15,7 @@ from inerter.files.study.sweeps import number_of
 from inerter.units import format_quantity
 
 
-def checked(document: object) -> dict[str, Any]:
+def check_document(document: object) -> dict[str, Any]:
     """Problems and notes of a document, the networks of its layouts, and its numbers that can be swept."""
     try:
         study = study_from(document)

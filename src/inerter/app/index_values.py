@@ -23,24 +23,24 @@ from inerter.vehicle.vehicle import Vehicle
 _REMEMBERED = 2000  # values of designs
 
 
-def valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     """Estimate of an index; nan with a status if it cannot be computed."""
     asked: tuple[Any, ...] = vehicle, index, method
     try:
         hash(asked)
     except TypeError:  # a mechanism, or an index with matrices
-        return _valued(*asked)
+        return _estimate_index(*asked)
     return _remembered(*asked)
 
 
-def _valued(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def _estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     try:
         return evaluate(vehicle, index, method)
     except FAILURES as error:
         return Estimate(nan, index.unit, Status(StatusKind.FAILED, str(error)))
 
 
-_remembered = lru_cache(_REMEMBERED)(_valued)  # a step of a slider leaves most designs as they were
+_remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leaves most designs as they were
 
 
 def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
@@ -52,7 +52,7 @@ def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
 def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
     try:
         single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
-        held = [ConstraintResult(limit, valued(vehicle, limit.of, method), False, 0.0) for limit in single]
+        held = [ConstraintResult(limit, estimate_index(vehicle, limit.of, method), False, 0.0) for limit in single]
         closest = max(held, key=lambda one: inf if isnan(one.value) else one.excess)
         worst, part = closest.estimate, part_words(vehicle, output_of(closest.limit.of))
         kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)

@@ -46,11 +46,11 @@ def _values(texts: tuple[str, ...], unit: str) -> dict[float, str]:
 
 
 def write_resolved(study: Study) -> str:
-    """`study.resolved()` as TOML, with its quantities as the file wrote them.
+    """`study.to_tables()` as TOML, with its quantities as the file wrote them.
 
     `load_study` reads an equal study from it, to the last bit of every value.
     """
-    return remark(study.line) + as_toml(_rewritten(study, study.resolved()))
+    return remark(study.line) + as_toml(_rewritten(study, study.to_tables()))
 
 
 def _rewritten(study: Study, entry: Any) -> Any:

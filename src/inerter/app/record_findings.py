@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from inerter.figures.curves import thinned
+from inerter.figures.curves import thin_curve
 from inerter.files.identification.running import read
 from inerter.files.identification.sections import RecordRequest
 from inerter.records.record import CHANNELS
@@ -26,7 +26,7 @@ def found_in(path: str) -> dict[str, Any]:
         "duration": float(record.time[-1] - record.time[0]),
         "channels": [
             {
-                **dict(zip(("name", "time", "values"), (name, *thinned(record.time, values, _SHOWN)), strict=True)),
+                **dict(zip(("name", "time", "values"), (name, *thin_curve(record.time, values, _SHOWN)), strict=True)),
                 "unit": CHANNELS[name],
             }
             for name, values in record.channels().items()

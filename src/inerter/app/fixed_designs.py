@@ -16,14 +16,14 @@ from inerter.files.study.study import Study
 _SEARCH = ("optimise", "budgets", "sweep", "subject_to", "trade_off", "points")
 
 
-def fixed(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
+def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:
     """Document with the layouts of these designs only, their design variables fixed to the last digit.
 
     An element that has several values becomes several elements, each with the name of its layout.
 
     Raises `DesignError` if the designs have several values for a number of the vehicle.
     """
-    names, elements = _renamed(study, designs)
+    names, elements = _rename_elements(study, designs)
     made = deepcopy(dict(document))
     made["vehicle"] |= _vehicle(study, designs)
     free = {name for design in designs for name in design.values}
@@ -61,7 +61,7 @@ def _keys(designs: Sequence[Design]) -> list[str]:
     return keys
 
 
-def _renamed(study: Study, designs: Sequence[Design]) -> tuple[dict[tuple[str, str], str], dict[str, str]]:
+def _rename_elements(study: Study, designs: Sequence[Design]) -> tuple[dict[tuple[str, str], str], dict[str, str]]:
     """New names of elements by layout and old name, and the value of each new element as text."""
     keys = _keys(designs)
     names: dict[tuple[str, str], str] = {}

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from inerter.app.answers import optimum
-from inerter.app.comparing import compared
+from inerter.app.comparing import compare_designs
 from inerter.app.documents import study_from
-from inerter.app.kinds import RESULTS, Stopped, Tell
+from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
@@ -33,7 +33,7 @@ def optimise(body: Body, folder: Path, tell: Tell) -> Any:
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
-    return _studied(study_from(body["study"]), folder, tell)
+    return _run_study(study_from(body["study"]), folder, tell)
 
 
 def sweep(body: Body, folder: Path, tell: Tell) -> Any:
@@ -53,10 +53,10 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _studied(replace(study, layouts=layouts), folder, tell)
+    return _run_study(replace(study, layouts=layouts), folder, tell)
 
 
-def _studied(study: Study, folder: Path, tell: Tell) -> Any:
+def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
     """Run a study as `inerter run` does, into the folder of the job; returns the results as data."""
 
     def show(result: StudyResult, into: Path) -> None:
@@ -64,7 +64,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         draw_study(result.data, into / FIGURES)
         write_report(result.data, study, into / FIGURES, into / REPORT, result.answers)
 
-    def told(count: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
+    def on_case_done(count: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
         done[0] = count
         tell(count, total, last.name if isinstance(last, Answer) else f"{last.layout} {last.index}" if last else "")
 
@@ -72,7 +72,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         tell(0, 0, f"preparing {count} of {total}")
 
     def compiling(title: str, number: int, total: int) -> None:
-        with suppress(Stopped):  # other threads tell this too; the next design will stop
+        with suppress(JobStopped):  # other threads tell this too; the next design will stop
             tell(0, 0, f"compiling kernels {number} of {total}: {title}")
 
     done = [0]
@@ -81,7 +81,7 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
         study,
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
-        progress=told,
+        progress=on_case_done,
         compiling=compiling,
         finish=show,
     )
@@ -89,4 +89,4 @@ def _studied(study: Study, folder: Path, tell: Tell) -> Any:
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:
-    return compared(study_from(body["study"]), body, tell)
+    return compare_designs(study_from(body["study"]), body, tell)

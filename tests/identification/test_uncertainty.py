@@ -52,8 +52,11 @@ def test_of_errors_that_stay_for_a_stroke_there_are_as_many_as_strokes() -> None
     assert 0.5 * (high - low) == pytest.approx(expected, rel=0.1)
 
 
+@pytest.mark.parametrize("biased", [False, True])
 @pytest.mark.parametrize("draws", [3, 5, 12])
-def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_interval_of_few_draws_is_that_of_another_draw(
+    draws: int, biased: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Student's prediction interval, where scatter and curvature contradict each other; the prior is one draw more."""
     table = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=0)
     experiment = experiment_of(table.run(it.cosine(1e-3, 3.0), duration=1.0))
@@ -61,6 +64,7 @@ def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypat
     problem = FitProblem(rig, space_of(rig), [experiment], [uniform_whitening(experiment.kept, 0.12)])
     optimum = replace(best_fit_of(problem, problem.space.coordinates_of({"b": 113.0})), widening=np.ones(1))
     scatter = np.random.default_rng(draws).normal(0.0, 50.0 * optimum.errors, (draws, 1))
+    scatter += (4.0 * np.std(scatter) if biased else 0.0) - np.mean(scatter)  # significant, or none at all
     left = iter(scatter)
 
     def improve(*arguments: Any) -> tuple[Any, ...]:
@@ -68,8 +72,9 @@ def test_the_interval_of_few_draws_is_that_of_another_draw(draws: int, monkeypat
 
     monkeypatch.setattr(bootstrapping, "improve", improve)
     found = bootstrapping.bootstrap(problem, optimum, seed=0, draws=draws)
-    expected = t.ppf(0.975, draws) * np.std(scatter, axis=0, ddof=0) * np.sqrt(1.0 + 1.0 / draws)
+    expected = t.ppf(0.975, draws) * np.std(scatter, axis=0, ddof=0) * np.sqrt(1.0 + biased / draws)
     assert norm.ppf(0.975) * found.optimum.errors == pytest.approx(expected, rel=1e-3)
+    assert found.bias == pytest.approx(min(4.0 * np.std(scatter), 2.0 * found.optimum.errors[0]) if biased else 0.0)
 
 
 @pytest.mark.parametrize("draws", [5, 12])

@@ -61,7 +61,7 @@ def opaque(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(shown, "sentence", property(lambda found: TOKEN))
     for error in (InerterError, RecordError):
         patch.setattr(error, "__str__", lambda error: TOKEN)
-    patch.setattr(identified_values, "_WORDS", dict.fromkeys(identified_values.Known, TOKEN))
+    patch.setattr(identified_values, "_WORDS", dict.fromkeys(identified_values.ResultKind, TOKEN))
     made = Status.__init__
 
     def other(status: Status, kind: StatusKind = StatusKind.OK, message: str = "") -> None:

@@ -826,3 +826,9 @@ def test_any_names_and_texts_are_a_study_or_a_study_error(tmp_path_factory, entr
         lines = []
         assert [study.design(layout).strut for layout in study.layouts]
     assert [line for line in lines if not line.startswith("study.toml: ")] == []
+
+
+def test_the_old_name_of_the_tables_of_a_study_warns() -> None:
+    study = load_study(ROOT / "examples" / "quarter-car.toml")
+    with pytest.warns(DeprecationWarning, match="`resolved` is now `to_tables`"):
+        assert study.resolved() == study.to_tables()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
@@ -186,6 +187,11 @@ class Study(Settings):
         Two studies that ask the same of the same vehicle have the same dictionary, wherever their files are.
         """
         return study_codec().dump(sections_of(self))
+
+    def resolved(self) -> dict[str, Any]:
+        """The old name of `to_tables`."""
+        warnings.warn("`resolved` is now `to_tables`; the old name goes with the next version.", DeprecationWarning, 2)
+        return self.to_tables()
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:

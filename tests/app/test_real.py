@@ -23,6 +23,7 @@ from app.conftest import DOCUMENT, EXAMPLES
 
 import inerter as it
 from inerter.app.documents import study_from
+from inerter.app.running import _text_of
 from inerter.cli.main import call
 
 START = "from inerter.cli.start import main; main()"
@@ -236,3 +237,12 @@ def test_a_folder_that_can_be_none_is_a_sentence(tmp_path: Path) -> None:
     assert told.returncode == 2
     assert "mine.txt: cannot be a folder for work" in told.stderr
     assert len(told.stderr.splitlines()) == 1
+
+
+def test_a_study_object_is_served_as_the_file_that_asks_the_same(tmp_path: Path) -> None:
+    study = it.load_study(EXAMPLES / "limits.toml")
+    named = _text_of(study)
+    assert named is not None
+    path = tmp_path / named[0]
+    path.write_text(named[1], encoding="utf-8")
+    assert it.load_study(path).to_tables() == study.to_tables()

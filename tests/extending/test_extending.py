@@ -114,9 +114,14 @@ class Session:
         return out, err
 
 
+def _with_path(place: Path) -> str:
+    """`PYTHONPATH` with a folder first, so that the package that is tested stays the same."""
+    return os.pathsep.join(filter(None, [str(place), os.environ.get("PYTHONPATH")]))
+
+
 @pytest.fixture(scope="module")
 def session(place: Path) -> Iterator[Session]:
-    command, environment = [sys.executable, "-c", SESSION], {**os.environ, "PYTHONPATH": str(place)}
+    command, environment = [sys.executable, "-c", SESSION], {**os.environ, "PYTHONPATH": _with_path(place)}
     pipe = subprocess.PIPE
     with subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True) as process:
         yield Session(process)
@@ -137,7 +142,7 @@ def python(place: Path, program: str, cwd: Path) -> str:
 
 
 def started(place: Path, cwd: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command, environment = [sys.executable, *arguments], {**os.environ, "PYTHONPATH": str(place)}
+    command, environment = [sys.executable, *arguments], {**os.environ, "PYTHONPATH": _with_path(place)}
     return subprocess.run(command, capture_output=True, text=True, cwd=cwd, env=environment, timeout=280, check=False)
 
 

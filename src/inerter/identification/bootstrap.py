@@ -1,8 +1,8 @@
 """Effect of sensor noise on the estimates, by a parametric bootstrap (Efron and Tibshirani 1993).
 
 Records are drawn from the best fit: the identified device is moved as the motion was measured, and the errors of the
-encoder and of the load cell are added. Each of them is fitted too. The scatter of these fits, and their bias against
-the device that generated them, enter the intervals in addition to the residuals:
+encoder and of the load cell are added. Each of them is fitted too. Their scatter widens the intervals, and their bias
+against the device that generated them is subtracted, for what the curvature at the best fit does not contain:
 
 - An encoder has a finite resolution. Near the turning points of a periodic motion, its rounding is the same in every
   period and does not average out.

@@ -322,3 +322,12 @@ def test_what_is_refused():
     stuck = paper_quarter_car(k | c | (Gap(0.0) | Friction(it.free(1.0, 5.0, "f"))) - Damper(1e3) - Friction(1.0))
     with pytest.raises(DesignError, match="no effect"):
         it.optimise(stuck, J1, METHOD)
+
+
+def test_the_bound_of_one_harmonic_falls_with_the_power_3_2_of_a_force_that_friction_stops():
+    """The third harmonic falls with the square of the ratio of friction to force, and the error with its power 3/4."""
+    car = paper_quarter_car(k | Damper(7544.2) - (Inerter(366.52) | Friction(1.0)))
+    forces = np.array([20.0, 40.0, 80.0])
+    bounds = [it.evaluate(car, it.LoadCarrying(force), it.StatisticalLinearisation()).error_bound for force in forces]
+    slopes = np.diff(np.log(bounds)) / np.diff(np.log(forces))
+    np.testing.assert_allclose(slopes, -1.5, atol=0.02)

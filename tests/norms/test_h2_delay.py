@@ -24,7 +24,8 @@ from inerter import (
     h2_norm,
 )
 from inerter.errors import LinearSystemError
-from inerter.norms.delay import pade, transfer
+from inerter.kernels.h2 import propagated
+from inerter.norms.delay import pade, propagate, transfer
 from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import h2
 
@@ -235,3 +236,25 @@ def test_a_stiff_design_keeps_its_digits(damping):
     system = assemble(car, ["road_front", "road_rear"], OUTPUTS[:1]).delayed("road", delays)
     expected = h2_by_quadrature(axles(car.mechanism(), OUTPUTS[:1])[OUTPUTS[0]], delays, edge=4000.0)
     assert h2_norm(system) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_the_rounding_bound_of_an_exponential_doubles_with_the_delay(compiled):
+    """Each squaring doubles the error of a rotation, which keeps its size (Higham, Functions of Matrices, 10.3)."""
+    A, u = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([0.6, 0.8])
+    none, nothing = np.zeros((2, 2)), (np.zeros(0, complex), np.zeros(0, complex), 0.0)
+
+    def error_and_bound(time):
+        if compiled:
+            out, bound = np.empty(2), np.empty(2)
+            propagated(A, none, time, u, np.zeros(2), nothing, out, bound)
+        else:
+            moved, unsure = propagate(A, none, u[:, None], np.zeros((2, 1)), time, None)
+            out, bound = moved[:, 0], unsure[:, 0]
+        turned = np.array([[math.cos(time), math.sin(time)], [-math.sin(time), math.cos(time)]]) @ u
+        return np.abs(out - turned).max(), bound.max()
+
+    found = [error_and_bound(float(2**power)) for power in range(6, 14)]
+    assert all(error <= bound < 3e4 * max(error, 1e-16 * 2**i) for i, (error, bound) in enumerate(found))
+    ratios = [later / earlier for (_, earlier), (_, later) in pairwise(found)]
+    assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2.0, rel=0.05)

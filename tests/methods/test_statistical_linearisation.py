@@ -47,7 +47,7 @@ def covariance(system):
 def across(damper):
     """Velocity over a friction between body and wheel, and the indices, with a damper in its place."""
     car = paper_quarter_car(k | c - b | Damper(damper))
-    system = it.assemble(car, "road", ["sprung_velocity", "unsprung_velocity", "sprung_acceleration", "tyre_load"])
+    system = it.state_space(car, "road", ["sprung_velocity", "unsprung_velocity", "sprung_acceleration", "tyre_load"])
     rows = np.vstack([system.C[0] - system.C[1], system.C[2], system.C[3]])
     return covariance(it.LinearSystem(system.A, system.B, rows, np.zeros((3, 1))))
 
@@ -76,7 +76,7 @@ def test_both_struts_of_a_half_car(conventions):
     for _ in range(200):
         car = half_car(*map(Damper, dampers))
         names = ["sprung_velocity", "pitch_velocity", "unsprung_front_velocity", "unsprung_rear_velocity"]
-        system = it.assemble(car, ["road_front", "road_rear"], names)
+        system = it.state_space(car, ["road_front", "road_rear"], names)
         rows = np.array([[1.0, 0.775, -1.0, 0.0], [1.0, -1.265, 0.0, -1.0]])
         speeds = it.LinearSystem(
             system.A, system.B, rows @ system.C, rows @ system.D, delays=[0.0, delay], sources=("road", "road")
@@ -175,7 +175,7 @@ def test_one_friction_under_a_sine_by_hand():
             it.Strut("leg", Spring(stiffness) | Damper(500.0) | Friction(f), upper={"body": 1.0}, lower=it.GROUND),
         ),
         forces=(it.Force("push", {"body": 1.0}),),
-        measures=it.Measures(load_input="push", load_output="body_displacement"),
+        measures=it.PerformanceOutputs(load_input="push", load_output="body_displacement"),
     )
     omega = np.linspace(0.001, 60.0, 400001)
     limit, Y = 4.0 * f / math.pi, 500.0 + 1j * (m * omega - stiffness / omega)

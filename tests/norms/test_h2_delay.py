@@ -20,8 +20,8 @@ from inerter import (
     Spring,
     Strut,
     Tyre,
-    assemble,
     h2_norm,
+    state_space,
 )
 from inerter.errors import LinearSystemError
 from inerter.kernels.h2 import propagated
@@ -60,7 +60,7 @@ def axles(mechanism, outputs):
 def test_half_car_with_the_exact_delay(name, speed):
     car = paper_half_car(STRUTS[name], STRUTS[name])
     delays = [0.0, (car.distance_front + car.distance_rear) / speed]
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS).delayed("road", delays)
     exact, responses = h2(system).outputs, axles(car.mechanism(), OUTPUTS)
     for i, output in enumerate(OUTPUTS):
         expected = h2_by_quadrature(responses[output], delays, edge=4000.0)
@@ -91,7 +91,7 @@ def test_three_axles_two_delays_and_a_drift_that_cancels(name):
     mechanism = three_axles(STRUTS[name])
     delays = [road.distance / 20.0 for road in mechanism.roads]
     outputs = ["body_acceleration", "pitch_acceleration", "tyre0_load", "tyre1_load", "tyre2_load"]
-    system = assemble(mechanism, outputs=outputs).delayed("road", delays)
+    system = state_space(mechanism, outputs=outputs).delayed("road", delays)
     result, responses = h2(system), axles(mechanism, outputs)
     assert result.status.ok
     for i, output in enumerate(outputs):
@@ -149,7 +149,7 @@ def by_kronecker(system):
 @pytest.mark.parametrize("name", ["S1", "S3"])
 def test_half_car_with_a_pade_delay(order, name):
     car = paper_half_car(STRUTS[name], STRUTS[name])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
     expected = by_kronecker(with_chain(system, order, delays))
     np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
@@ -167,7 +167,7 @@ def test_two_pade_delays_in_a_chain(order):
 def test_the_norm_without_rounding_has_the_pade_delays_too(order):
     """A half car's road at two axles, from its transfer functions against the states of the approximant."""
     car = paper_half_car(STRUTS["S1"], STRUTS["S3"])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
     found, status = h2_exactly(system.delayed("road", delays), order)
     assert status.ok
@@ -192,7 +192,7 @@ def test_orders_that_there_are_not(order):
 
 def test_the_pade_norm_tends_to_the_exact_one():
     car = paper_half_car(STRUTS["S1"], STRUTS["S1"])
-    system = assemble(car, ["road_front", "road_rear"], "sprung_acceleration").delayed("road", [0.0, 0.0816])
+    system = state_space(car, ["road_front", "road_rear"], "sprung_acceleration").delayed("road", [0.0, 0.0816])
     exact = h2_norm(system)
     errors = [abs(h2_norm(system, order) / exact - 1.0) for order in (2, 4, 6, 8, 10)]
     assert all(later < 0.1 * earlier for earlier, later in pairwise(errors))
@@ -210,7 +210,7 @@ def test_no_delay_is_one_input_and_an_endless_one_is_two(seed):
 def test_only_differences_of_delays_count_and_not_the_order_of_inputs(seed):
     rng = np.random.default_rng(seed)
     car = random_half_car(rng, STRUTS["S1"], STRUTS["S3"])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     base = h2(system.delayed("road", [0.0, 0.1])).outputs
     np.testing.assert_allclose(h2(system.delayed("road", [0.4, 0.5])).outputs, base, rtol=1e-9)
     turned = system.select(["road_rear", "road_front"]).delayed("road", [0.1, 0.0])
@@ -220,7 +220,7 @@ def test_only_differences_of_delays_count_and_not_the_order_of_inputs(seed):
 def test_driving_backwards_differs_for_one_output_but_not_for_a_symmetric_car():
     strut = STRUTS["S1"]
     car = type(paper_half_car(strut, strut))(400.0, 200.0, 25.0, 25.0, 1e5, 1e5, 1.0, 1.0, strut, strut)
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     forwards = h2(system.delayed("road", [0.0, 0.1])).outputs
     backwards = h2(system.delayed("road", [0.1, 0.0])).outputs
     np.testing.assert_allclose(forwards[:2], backwards[:2], rtol=1e-10)
@@ -233,7 +233,7 @@ def test_a_stiff_design_keeps_its_digits(damping):
     """A damper so hard that its rate is 1e6 times the car's must not cost the exponential of the delay its digits."""
     car = paper_half_car(k | c | Damper(damping) - Inerter(2.0), k | c | Damper(damping) - Inerter(2.0))
     delays = [0.0, 0.0816]
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS[:1]).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS[:1]).delayed("road", delays)
     expected = h2_by_quadrature(axles(car.mechanism(), OUTPUTS[:1])[OUTPUTS[0]], delays, edge=4000.0)
     assert h2_norm(system) == pytest.approx(expected, rel=1e-9)
 

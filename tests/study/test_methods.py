@@ -22,7 +22,7 @@ from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
-from inerter.optimisation.budget import budget
+from inerter.optimisation.budget import break_even
 from inerter.optimisation.optimise import optimise
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
@@ -136,7 +136,7 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyR
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
     c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
     designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
-    expected = budget(*designs, study.index("J1"), parameter="h", method=ROADS)
+    expected = break_even(*designs, study.index("J1"), parameter="h", method=ROADS)
     assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
     (row,) = rows(budgeted, "budgets.csv")
     assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")

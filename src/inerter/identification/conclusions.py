@@ -24,7 +24,7 @@ from inerter.identification.solving import SolvedFit
 from inerter.identification.sticking import is_unobservable
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
 from inerter.records.saturation import saturated_samples
@@ -123,7 +123,9 @@ def _offset_findings(
 ) -> Iterator[Finding]:
     """Findings of offsets that may be asymmetric friction instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
-    friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
+    friction = sum(
+        v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is LinearRole.OPEN
+    )
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
             yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
@@ -132,7 +134,7 @@ def _offset_findings(
 def _mass_findings(problem: FitProblem) -> Iterator[Finding]:
     """Findings of inertances that include an unknown fixture mass."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
-    free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
+    free = [name for name, kind in names if kind is not None and kind.linear is LinearRole.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
         yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
 
@@ -223,7 +225,7 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
         gaps = {
             _label_of(b): b.switch.middle
             for b in problem.rig.device.elements()
-            if b.switch is not None and b.switches_by(Guard.ELONGATION)
+            if b.switch is not None and b.switches_by(GuardRole.ELONGATION)
         }
         openings = {
             g: sum(event.element == g and event.after == loose for event in run.events) for g, loose in gaps.items()

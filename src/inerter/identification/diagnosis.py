@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.fit import Explanation, Localisation, Misfit
+from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
@@ -51,7 +51,7 @@ _STEP = 0.02  # of the detectable size of an unknown, for differences
 class Causes:
     """Hypotheses on a misfit. Each process builds them, because their functions cannot be pickled."""
 
-    before: Misfit
+    before: NormalisedResidual
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
 
@@ -80,7 +80,7 @@ class Attempt:
 
 
 def explanations(
-    problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit, places: Sequence[Localisation] = ()
+    problem: FitProblem, optimum: BestFit, by: Judge, before: NormalisedResidual, places: Sequence[Localisation] = ()
 ) -> list[Explanation]:
     """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
@@ -253,7 +253,9 @@ def _step(space: Space, i: int, size: float) -> float:
     return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
 
 
-def _explanation(problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: Misfit) -> Explanation:
+def _explanation(
+    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: NormalisedResidual
+) -> Explanation:
     space, point = problem.space, fit.point
     after = by.misfit(problem, point, hypothesis.slow)
     values = space.values_by_name(point)

@@ -40,7 +40,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Misfit:
+class NormalisedResidual:
     """Normalised residual: r.m.s. whitened residual of a fit over that of sensor noise."""
 
     fitted: float
@@ -69,7 +69,7 @@ class Explanation:
 
     name: Suspect
     explained: float  # share of the squared misfit beyond sensor noise; on the validation data if present there
-    misfit: Misfit  # under the hypothesis
+    misfit: NormalisedResidual  # under the hypothesis
     values: dict[str, float]  # of the unknowns of the hypothesis
     estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
     details: Details = field(default_factory=dict)  # the numbers of its sentence
@@ -164,7 +164,7 @@ class Fit:
     costs: tuple[float, ...]  # of the different fits to half of the records reached by the best starts, sorted
     simulations: int
     predicted: float  # share of the variance of the force that encoder noise does not change
-    misfit: Misfit
+    misfit: NormalisedResidual
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the most likely first
     localisations: tuple[Localisation, ...] = ()  # of the misfit, if there is one, in each record
     status: Status = OK

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
-from inerter.indices.excitation import Excitation, Shaped, stand_ins_of
+from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
-from inerter.systems.arrivals import Arrival
+from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
 from inerter.vehicle.mechanism import Mechanism
 
@@ -65,13 +65,13 @@ class MeasuredRoad:
 
     @property
     def _shaped(self) -> Excitation:
-        return Shaped(self.road, self.filter)
+        return FilteredExcitation(self.road, self.filter)
 
     def driven(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by a road."""
         return self._shaped.driven(mechanism)
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of a road, each with the filter."""
         return self._shaped.arrivals(mechanism)
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
@@ -95,7 +95,7 @@ def relative_change(values: Array, references: Array) -> float:
     return float(np.nanmax(np.abs(values[moving] / references[moving] - 1.0), initial=0.0))
 
 
-def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:
+def counterpart(mechanism: Mechanism, question: IndexDefinition, conventions: Conventions) -> Counterpart | None:
     """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:
         parts = equivalent(mechanism, slipping_freely(mechanism, question))

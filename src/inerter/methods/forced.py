@@ -17,7 +17,7 @@ from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
 from inerter.simulation.inputs import tabulate
 from inerter.simulation.start import initial_state
-from inerter.systems.arrivals import Arrival
+from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem
 
@@ -36,7 +36,7 @@ class Forced:
     """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
 
     system: PiecewiseSystem
-    arrival: Arrival  # a force, or a road's displacement or velocity
+    arrival: InputPath  # a force, or a road's displacement or velocity
     output: str
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
 from inerter.methods.objective import Objective
@@ -99,12 +99,12 @@ class Refusing(Protocol):
 class Compiled(Protocol):
     """A method that calls compiled code."""
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions called by an estimate, or by a search; the slowest to compile first."""
         ...
 
 
-class Sees(Enum):
+class NonlinearitySupport(Enum):
     """Nonlinearities that a method models, in ascending order."""
 
     NEITHER = auto()  # friction is left out, gaps are closed
@@ -132,7 +132,7 @@ class Method(Protocol):
         ...
 
     @property
-    def sees(self) -> Sees:
+    def sees(self) -> NonlinearitySupport:
         """Nonlinearities that the method models."""
         ...
 
@@ -247,7 +247,7 @@ def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
         _check_names(mechanism, one.question(mechanism))
 
 
-def _check_names(mechanism: Mechanism, question: Question) -> None:
+def _check_names(mechanism: Mechanism, question: IndexDefinition) -> None:
     driven = question.drive.driven(mechanism)
     check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
     unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]

@@ -9,7 +9,7 @@ from typing import Any
 from inerter.fields import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
-from inerter.methods.method import Method, Sees
+from inerter.methods.method import Method, NonlinearitySupport
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.rows import Rows
@@ -25,12 +25,12 @@ DEFAULT = Norm.name  # judges the designs of a study that names no method
 
 def is_blind(name: str) -> bool:
     """Whether the method models neither friction nor gaps."""
-    return _kind(name).sees is Sees.NEITHER
+    return _kind(name).sees is NonlinearitySupport.NEITHER
 
 
 def refuses_gaps(name: str) -> bool:
     """Whether the method does not support gaps."""
-    return _kind(name).sees is Sees.FRICTION
+    return _kind(name).sees is NonlinearitySupport.FRICTION
 
 
 def needs_amplitude(name: str) -> bool:
@@ -53,9 +53,9 @@ def brief_words_of(name: str) -> str:
     return str(getattr(_kind(name), "brief", name))
 
 
-def what_is_seen(name: str) -> Sees:
+def what_is_seen(name: str) -> NonlinearitySupport:
     """Nonlinearities that the method models."""
-    return Sees(_kind(name).sees)
+    return NonlinearitySupport(_kind(name).sees)
 
 
 def averages(name: str) -> bool:
@@ -72,8 +72,8 @@ def without_roads(name: str, *, has_play: bool) -> str:
 
 def deciding(name: str, message: str) -> str:
     """Clause on the method that can decide an uncertain result, to follow the message of its status."""
-    others = [other for other in METHODS if what_is_seen(other) is Sees.BOTH]
-    if what_is_seen(name) is Sees.BOTH or not others or any(other in message for other in others):
+    others = [other for other in METHODS if what_is_seen(other) is NonlinearitySupport.BOTH]
+    if what_is_seen(name) is NonlinearitySupport.BOTH or not others or any(other in message for other in others):
         return ""
     return f"; {others[0]} simulates it, and can decide"
 

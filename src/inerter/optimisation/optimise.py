@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Estimate, Method, Sees, check_request
+from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
@@ -156,7 +156,7 @@ def _best(
     quick = isinstance(objective, Differentiable) and is_smooth(problem.bounds)
     agreement = AGREEMENT if quick else COSTLY_AGREEMENT
     linear = None
-    if method.sees is not Sees.NEITHER:
+    if method.sees is not NonlinearitySupport.NEITHER:
         with within("best linear design", 0.0, 0.5 * _QUICK):
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     if quick:

@@ -1,4 +1,4 @@
-"""`tolerance`: distribution of an index under tolerances, and its Sobol' sensitivity indices."""
+"""`tolerance_analysis`: distribution of an index under tolerances, and its Sobol' sensitivity indices."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Tolerance:
         return Estimate(value, self.unit, self.status, error, interval, self.values.size)
 
 
-def tolerance(
+def tolerance_analysis(
     design: Vehicle,
     index: Asked,
     method: Method,
@@ -107,7 +107,7 @@ def tolerance(
     >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-    >>> found = it.tolerance(car, comfort, it.Norm(), spread={"c": 0.1, "b": 0.05, "k": 0.05}, samples=256)
+    >>> found = it.tolerance_analysis(car, comfort, it.Norm(), spread={"c": 0.1, "b": 0.05, "k": 0.05}, samples=256)
     >>> round(found.mean, 3), round(found.quantile(0.95), 3), max(found.total, key=found.total.get)
     (2.431, 2.471, 'k')
     """

@@ -14,7 +14,7 @@ from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.start import initial_state
-from inerter.simulation.trajectory import Repetition
+from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -79,7 +79,9 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     return run, mismatch
 
 
-def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
+def settle(
+    system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool
+) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
     again = repeating(table)
     quick, settled = _repeated(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
@@ -97,7 +99,7 @@ def mean_squares(
     state: Matrix,
     most: int = FEW_PERIODS,
     repeats: float = _ENOUGH,
-) -> tuple[Matrix, Integration, Repetition]:
+) -> tuple[Matrix, Integration, PeriodicState]:
     """Mean squares of outputs over one period, once the state repeats, the integration, and how well it repeats.
 
     It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
@@ -110,7 +112,9 @@ def mean_squares(
     return integration.record.squares / (table.samples - 1), integration, settled
 
 
-def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
+def _repeated(
+    integration: Integration, again: InputTable, repeats: float, most: int
+) -> tuple[Integration, PeriodicState]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
@@ -124,9 +128,9 @@ def _repeated(integration: Integration, again: InputTable, repeats: float, most:
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)
-    return integration, Repetition(float(again.time[-1] - again.time[0]), periods, mismatch)
+    return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch)
 
 
-def _unsettled(found: Repetition) -> Status:
+def _unsettled(found: PeriodicState) -> Status:
     message = f"after {found.periods} periods the state still changes by {found.mismatch:.1e} of its size"
     return Status(StatusKind.INACCURATE, message)

@@ -64,7 +64,7 @@ class Energy:
 
 
 @dataclass(frozen=True)
-class Repetition:
+class PeriodicState:
     """Convergence of a periodic response: period, number of periods, and remaining change per period."""
 
     period: float  # [s]
@@ -83,7 +83,7 @@ class Repetition:
 
 
 @dataclass(frozen=True, eq=False)
-class Ending:
+class FinalState:
     """Contact state and scales with which, besides the state, another simulation of the mechanism continues exactly."""
 
     mechanism: Mechanism
@@ -103,7 +103,7 @@ class Trajectory:
     outputs: Mapping[str, Output]
     states: Mapping[str, str]  # state of every nonlinear element at the start
     energy: Energy | None = None  # if it was asked for
-    repetition: Repetition | None = None  # of a periodic steady state
+    repetition: PeriodicState | None = None  # of a periodic steady state
     final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals

@@ -147,7 +147,7 @@ class LinearSystem:
 def check_system(system: object) -> None:
     """Raises `LinearSystemError` unless `system` is a `LinearSystem`."""
     if not isinstance(system, LinearSystem):
-        raise LinearSystemError(f"Expected a LinearSystem, such as assemble(vehicle), got {system!r}.")
+        raise LinearSystemError(f"Expected a LinearSystem, such as state_space(vehicle), got {system!r}.")
 
 
 def check_names(what: str, names: object) -> tuple[str, ...]:

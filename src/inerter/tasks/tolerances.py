@@ -16,7 +16,7 @@ from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import deciding
-from inerter.scatter.tolerance import tolerance
+from inerter.scatter.tolerance import tolerance_analysis
 from inerter.table import Cell, Row, Table, Writer
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
     def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
         """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
-        found = tolerance(
+        found = tolerance_analysis(
             study.design(self.layout).with_values(designs[Case(self.layout, self.index)].parameters),
             study.over_conditions(self.index),
             study.method(method, threads),

@@ -25,7 +25,7 @@ class Quadrature:
     middle: float = field(default=20.0, metadata=it.quantity("rad/s", "Half of the frequencies lie below it.", "3 Hz"))
     name = "quadrature"
     words = "integrals of the squared gains of the linear model over all frequencies"
-    sees = it.Sees.NEITHER
+    sees = it.NonlinearitySupport.NEITHER
     needs_amplitude = False
     searches = False  # it gives no gradients
 
@@ -37,7 +37,7 @@ class Quadrature:
         names = [weighted.output for weighted in question.outputs]
         mechanism = question.drive.driven(mechanism)
         arrivals = question.arrivals(mechanism)
-        system = it.assemble(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
+        system = it.state_space(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
         omega, weights = _nodes(self.points, self.middle)
         s = 1j * omega
         resolvent = np.linalg.solve(s[:, None, None] * np.eye(system.order) - system.A, system.B + 0j)

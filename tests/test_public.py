@@ -86,9 +86,9 @@ def test_names_of_the_first_release() -> None:
     assert (system.A.shape[0], system.B.shape[1], system.C.shape[0]) == tuple(
         map(len, (system.states, system.inputs, system.outputs))
     )
-    compliance = system.select("sprung_force", "strut_travel")
+    compliance = system.subsystem("sprung_force", "strut_travel")
     assert it.hinf_norm(compliance).value == it.hinf_norm(compliance).peaks[0].gain
-    assert it.h2_norm(system.select("road", "sprung_acceleration")) * road.velocity_intensity == best.value
+    assert it.h2_norm(system.subsystem("road", "sprung_acceleration")) * road.velocity_intensity == best.value
     parts = {"k": it.Spring(120e3), "c": it.Damper(7544.2), "b": it.Inerter(366.52)}
     omega = np.array([1.0, 10.0])
     expected = 120e3 / (1j * omega) + 1.0 / (1.0 / 7544.2 + 1.0 / (366.52 * 1j * omega))

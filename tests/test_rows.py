@@ -23,7 +23,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
 from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
-from inerter.methods.registry import averages, with_gradients
+from inerter.methods.registry import averages, what_is_seen, with_gradients, words_of
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
 from inerter.units import parse_quantity
@@ -358,9 +358,9 @@ def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None
     taken = {key: value for key, value in given.items() if hasattr(method, key)}
     assert {key: getattr(method, key) for key in taken} == taken
     assert averages(name) == ("realisations" in taken)
-    assert isinstance(method.sees, it.NonlinearitySupport)
-    assert method.words[0].islower()
-    assert not method.words.endswith(".")
+    assert isinstance(method.nonlinearity_support, it.NonlinearitySupport)
+    assert method.description[0].islower()
+    assert not method.description.endswith(".")
 
 
 @pytest.fixture
@@ -371,13 +371,28 @@ def of_its_own() -> Iterator[type]:
         width: float = field(default=2.0, metadata=it.quantity("m", "How wide it looks.", "1 m", key="breadth"))
         seed: int = 0
         name = "of-its-own"
-        words = "guesses"
-        sees = it.NonlinearitySupport.BOTH
-        needs_amplitude = searches = False
+        description = "guesses"
+        nonlinearity_support = it.NonlinearitySupport.BOTH
+        needs_amplitude = supports_optimisation = False
         estimate = estimate_many = objective = it.Norm.estimate
 
     yield it.METHODS.add(OfItsOwn)  # type: ignore[arg-type]
     it.METHODS.remove(OfItsOwn)  # type: ignore[arg-type]
+
+
+def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
+    @dataclass(frozen=True)
+    class Older(it.Norm):
+        name = "older"
+        words = "older guesses"
+        sees = it.NonlinearitySupport.BOTH
+
+    with pytest.warns(DeprecationWarning, match="`Older.sees` is now `nonlinearity_support`"):
+        it.METHODS.add(Older)
+    try:
+        assert (words_of("older"), what_is_seen("older")) == ("older guesses", it.NonlinearitySupport.BOTH)
+    finally:
+        it.METHODS.remove(Older)
 
 
 def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:
@@ -443,7 +458,7 @@ def test_a_search_by_what_simulates_begins_where_a_row_with_gradients_ends(monke
     @dataclass(frozen=True)
     class Sharp(it.StatisticalLinearisation):
         name = "sharp"
-        sees = it.NonlinearitySupport.BOTH
+        nonlinearity_support = it.NonlinearitySupport.BOTH
 
         def objective(self, vehicle: Any, index: Any) -> Any:
             asked.append(self.conventions)

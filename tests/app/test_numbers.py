@@ -369,13 +369,13 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     study = study_from(DOCUMENT)
     car = study.design("S3").with_values({"c": 3000.0, "b": 60.0})
     found = it.tolerance_analysis(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
-    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total)
+    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total_order)
     assert told["quantiles"]["0.95"] == found.quantile(0.95)
     assert sum(told["histogram"]["counts"]) == found.values.size
     table = client.post("/api/export/csv", json={"panel": "tolerance", "request": body}).text
     rows = dict(list(csv.reader(io.StringIO(table)))[1:])
     assert (float(rows["mean"]), float(rows["quantile 0.95"])) == (found.mean, found.quantile(0.95))
-    assert float(rows["variance from c, total effect"]) == found.total["c"]
+    assert float(rows["variance from c, total effect"]) == found.total_order["c"]
 
 
 def test_tables_read_back_as_the_same(client: TestClient) -> None:

@@ -77,7 +77,7 @@ def high_passed(samples, step, corner):
 def outside(car, output, corner):
     """Mean square of a linear output from the road but for the lines of its multisine, by quadrature over frequency."""
     inputs = [r.name for r in car.mechanism().roads]
-    system = it.state_space(car, inputs, output).delayed("road", [0.0, LATE][: len(inputs)])
+    system = it.state_space(car, inputs, output).with_delays("road", [0.0, LATE][: len(inputs)])
 
     def gain(frequencies):
         s = 2j * np.pi * frequencies

@@ -280,7 +280,7 @@ def test_values_gradients_and_optima():
         best = it.optimise(car, index, METHOD)
         assert is_solved(best.estimate)
         assert best.value <= objective.values(points).min()
-        assert best.agreed > 1
+        assert best.n_converged > 1
     columns = dict(zip(car.free_values(), points.T, strict=True))
     many, trusted = it.evaluate_many(car, [J1, J5], columns, METHOD), set()
     for index, found in zip((J1, J5), many.T, strict=True):

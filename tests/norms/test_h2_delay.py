@@ -60,7 +60,7 @@ def axles(mechanism, outputs):
 def test_half_car_with_the_exact_delay(name, speed):
     car = paper_half_car(STRUTS[name], STRUTS[name])
     delays = [0.0, (car.distance_front + car.distance_rear) / speed]
-    system = state_space(car, ["road_front", "road_rear"], OUTPUTS).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS).with_delays("road", delays)
     exact, responses = h2(system).outputs, axles(car.mechanism(), OUTPUTS)
     for i, output in enumerate(OUTPUTS):
         expected = h2_by_quadrature(responses[output], delays, edge=4000.0)
@@ -91,14 +91,14 @@ def test_three_axles_two_delays_and_a_drift_that_cancels(name):
     mechanism = three_axles(STRUTS[name])
     delays = [road.distance / 20.0 for road in mechanism.roads]
     outputs = ["body_acceleration", "pitch_acceleration", "tyre0_load", "tyre1_load", "tyre2_load"]
-    system = state_space(mechanism, outputs=outputs).delayed("road", delays)
+    system = state_space(mechanism, outputs=outputs).with_delays("road", delays)
     result, responses = h2(system), axles(mechanism, outputs)
     assert result.status.ok
     for i, output in enumerate(outputs):
         expected = h2_by_quadrature(responses[output], delays, edge=4000.0)
         assert result.outputs[i] == pytest.approx(expected, rel=1e-8), output
         if output.endswith("load"):
-            assert h2_norm(system.select("road0", output)) == math.inf
+            assert h2_norm(system.subsystem("road0", output)) == math.inf
 
 
 def approximant(order, time):
@@ -152,7 +152,7 @@ def test_half_car_with_a_pade_delay(order, name):
     system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
     expected = by_kronecker(with_chain(system, order, delays))
-    np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
+    np.testing.assert_allclose(h2(system.with_delays("road", delays), order).outputs, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -160,7 +160,7 @@ def test_two_pade_delays_in_a_chain(order):
     system = random_stable(np.random.default_rng(order), 6, 3, 2, 0.05)
     delays = [0.0, 0.3, 0.75]
     expected = by_kronecker(with_chain(system, order, delays))
-    np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
+    np.testing.assert_allclose(h2(system.with_delays("road", delays), order).outputs, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -169,7 +169,7 @@ def test_the_norm_without_rounding_has_the_pade_delays_too(order):
     car = paper_half_car(STRUTS["S1"], STRUTS["S3"])
     system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
-    found, status = h2_exactly(system.delayed("road", delays), order)
+    found, status = h2_exactly(system.with_delays("road", delays), order)
     assert status.ok
     np.testing.assert_allclose(found, by_kronecker(with_chain(system, order, delays)), rtol=1e-8)
 
@@ -192,7 +192,7 @@ def test_orders_that_there_are_not(order):
 
 def test_the_pade_norm_tends_to_the_exact_one():
     car = paper_half_car(STRUTS["S1"], STRUTS["S1"])
-    system = state_space(car, ["road_front", "road_rear"], "sprung_acceleration").delayed("road", [0.0, 0.0816])
+    system = state_space(car, ["road_front", "road_rear"], "sprung_acceleration").with_delays("road", [0.0, 0.0816])
     exact = h2_norm(system)
     errors = [abs(h2_norm(system, order) / exact - 1.0) for order in (2, 4, 6, 8, 10)]
     assert all(later < 0.1 * earlier for earlier, later in pairwise(errors))
@@ -202,8 +202,8 @@ def test_the_pade_norm_tends_to_the_exact_one():
 def test_no_delay_is_one_input_and_an_endless_one_is_two(seed):
     system = random_stable(np.random.default_rng(seed), 8, 2, 2, 0.1)
     together = LinearSystem(system.A, system.B.sum(axis=1, keepdims=True), system.C, np.zeros((2, 1)))
-    assert h2_norm(system.delayed("road", [0.0, 0.0])) == pytest.approx(h2_norm(together), rel=1e-12)
-    assert h2_norm(system.delayed("road", [0.0, 1e5])) == pytest.approx(h2_norm(system), rel=1e-9)
+    assert h2_norm(system.with_delays("road", [0.0, 0.0])) == pytest.approx(h2_norm(together), rel=1e-12)
+    assert h2_norm(system.with_delays("road", [0.0, 1e5])) == pytest.approx(h2_norm(system), rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -211,9 +211,9 @@ def test_only_differences_of_delays_count_and_not_the_order_of_inputs(seed):
     rng = np.random.default_rng(seed)
     car = random_half_car(rng, STRUTS["S1"], STRUTS["S3"])
     system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
-    base = h2(system.delayed("road", [0.0, 0.1])).outputs
-    np.testing.assert_allclose(h2(system.delayed("road", [0.4, 0.5])).outputs, base, rtol=1e-9)
-    turned = system.select(["road_rear", "road_front"]).delayed("road", [0.1, 0.0])
+    base = h2(system.with_delays("road", [0.0, 0.1])).outputs
+    np.testing.assert_allclose(h2(system.with_delays("road", [0.4, 0.5])).outputs, base, rtol=1e-9)
+    turned = system.subsystem(["road_rear", "road_front"]).with_delays("road", [0.1, 0.0])
     np.testing.assert_allclose(h2(turned).outputs, base, rtol=1e-10)
 
 
@@ -221,8 +221,8 @@ def test_driving_backwards_differs_for_one_output_but_not_for_a_symmetric_car():
     strut = STRUTS["S1"]
     car = type(paper_half_car(strut, strut))(400.0, 200.0, 25.0, 25.0, 1e5, 1e5, 1.0, 1.0, strut, strut)
     system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
-    forwards = h2(system.delayed("road", [0.0, 0.1])).outputs
-    backwards = h2(system.delayed("road", [0.1, 0.0])).outputs
+    forwards = h2(system.with_delays("road", [0.0, 0.1])).outputs
+    backwards = h2(system.with_delays("road", [0.1, 0.0])).outputs
     np.testing.assert_allclose(forwards[:2], backwards[:2], rtol=1e-10)
     np.testing.assert_allclose(forwards[2:], backwards[3:1:-1], rtol=1e-10)
     assert abs(forwards[2] / forwards[3] - 1.0) > 1e-3
@@ -233,7 +233,7 @@ def test_a_stiff_design_keeps_its_digits(damping):
     """A damper so hard that its rate is 1e6 times the car's must not cost the exponential of the delay its digits."""
     car = paper_half_car(k | c | Damper(damping) - Inerter(2.0), k | c | Damper(damping) - Inerter(2.0))
     delays = [0.0, 0.0816]
-    system = state_space(car, ["road_front", "road_rear"], OUTPUTS[:1]).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS[:1]).with_delays("road", delays)
     expected = h2_by_quadrature(axles(car.mechanism(), OUTPUTS[:1])[OUTPUTS[0]], delays, edge=4000.0)
     assert h2_norm(system) == pytest.approx(expected, rel=1e-9)
 

@@ -71,8 +71,8 @@ def test_effects_are_those_of_a_product():
     variances = {"k1": (1e5 * 0.2) ** 2 / 3.0, "k2": (2e5 * 0.1) ** 2 / 3.0}
     whole = sum(variances.values())
     for name, variance in variances.items():
-        assert found.main[name] == pytest.approx(variance / whole, abs=0.01)
-        assert found.total[name] == pytest.approx(variance / whole, abs=0.01)
+        assert found.first_order[name] == pytest.approx(variance / whole, abs=0.01)
+        assert found.total_order[name] == pytest.approx(variance / whole, abs=0.01)
     assert found.mean == pytest.approx(3e5, rel=1e-4)
     assert found.standard_deviation == pytest.approx(np.sqrt(whole), rel=5e-3)
     assert found.worst == pytest.approx(1.2e5 + 2.2e5, rel=1e-12)
@@ -356,4 +356,4 @@ def test_a_value_without_effect_in_a_linear_design_is_no_fault() -> None:
     car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(22e3, "k") | it.Damper(2e4, "c"))
     found = it.tolerance_analysis(car, J5, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
     assert found.status.ok
-    assert found.total["c"] == pytest.approx(0.0, abs=1e-6)
+    assert found.total_order["c"] == pytest.approx(0.0, abs=1e-6)

@@ -163,7 +163,7 @@ def test_den_hartog_as_a_periodic_steady_state(ratio: float, friction: float) ->
     assert np.abs(settled["x_displacement"]).max() == pytest.approx(theory.amplitude, rel=1e-6)
     assert settled.energy is not None
     assert settled.energy.friction["f"] == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
-    assert settled.energy.put_in == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
+    assert settled.energy.input_work == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
 
 
 @pytest.mark.parametrize("ratio", [0.65, 0.8, 1.3, 1.7])
@@ -278,7 +278,7 @@ def test_an_element_alone_on_the_rig(duration: float) -> None:
         assert_close(spring["force"][:: round(2e-4 / step)], 3e4 * value[: end + 1], 1e-11)
         assert_close(damper["force"][:: round(2e-4 / step)], 500.0 * slope[: end + 1], 1e-11)
         assert inerter.energy is not None
-        assert inerter.energy.put_in == pytest.approx(40.0 * (slope[end] ** 2 - slope[0] ** 2), rel=1e-10)
+        assert inerter.energy.input_work == pytest.approx(40.0 * (slope[end] ** 2 - slope[0] ** 2), rel=1e-10)
 
 
 def bent(rng: np.random.Generator, duration: float, step: float, size: float) -> tuple[it.Signal, Array, Array]:
@@ -529,7 +529,7 @@ def test_sticking_for_the_whole_run() -> None:
     assert np.abs(result["f_velocity"]).max() <= 1e-15
     assert_close(result["f_force"], 2e4 * result["strut_travel"], 1e-10)
     assert result.energy is not None
-    assert abs(result.energy.friction["f"]) < 1e-12 * result.energy.put_in
+    assert abs(result.energy.friction["f"]) < 1e-12 * result.energy.input_work
 
 
 @pytest.mark.parametrize("excess", [-1e-9, 1e-9])

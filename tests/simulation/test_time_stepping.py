@@ -353,9 +353,9 @@ def test_energy_balance_closes_at_first_order(device: str) -> None:
                 if not isinstance(branch.element, Gap):
                     assert -work[work < 0.0].sum() < 2e-3 * work.sum()
         tyre = r.forces[:, -1]
-        put_in = np.zeros(r.time.size)
-        put_in[1:] = np.cumsum(-0.5 * (tyre[1:] + tyre[:-1]) * np.diff(bumpy(r.time)))
-        left.append(float(np.abs(put_in - stored - spent).max() / stored.max()))
+        input_work = np.zeros(r.time.size)
+        input_work[1:] = np.cumsum(-0.5 * (tyre[1:] + tyre[:-1]) * np.diff(bumpy(r.time)))
+        left.append(float(np.abs(input_work - stored - spent).max() / stored.max()))
     assert left[1] < 3e-3
     assert left[1] < 0.5 * left[0]
 

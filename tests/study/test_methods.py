@@ -192,7 +192,9 @@ def test_threads_change_no_digit(study: Study) -> None:
 def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(study: Study) -> None:
     simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2)
     outcome = run_case(simulated, Case("serial", "J1"))
-    expected = optimise(study.design("serial"), study.index("J1"), ExpectedValue(realisations=2, jobs=1)).over_linear
+    expected = optimise(
+        study.design("serial"), study.index("J1"), ExpectedValue(realisations=2, jobs=1)
+    ).gain_over_linear
     assert expected is not None
     assert outcome.over_linear == (-expected.percent, expected.percent_error)
     assert outcome.over_linear[0] >= 0.0

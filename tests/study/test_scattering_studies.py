@@ -51,7 +51,7 @@ def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
     )
     assert second.numbers["mean"] == by_hand.mean
     assert second.numbers["quantile"] == by_hand.quantile(0.95)
-    assert second.effects == {name: [by_hand.main[name], by_hand.total[name]] for name in ("c", "b")}
+    assert second.effects == {name: [by_hand.first_order[name], by_hand.total_order[name]] for name in ("c", "b")}
     assert list(first.effects) == ["c"]
     with (found.folder / "tolerances.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))

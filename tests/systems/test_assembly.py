@@ -303,7 +303,9 @@ def test_inputs_and_outputs_come_in_the_order_asked_for():
     part = state_space(car, inputs, outputs)
     assert (list(part.inputs), list(part.outputs)) == (inputs, outputs)
     np.testing.assert_allclose(
-        frequency_response(part, [3.0, 30.0]), frequency_response(whole.select(inputs, outputs), [3.0, 30.0]), rtol=1e-9
+        frequency_response(part, [3.0, 30.0]),
+        frequency_response(whole.subsystem(inputs, outputs), [3.0, 30.0]),
+        rtol=1e-9,
     )
 
 
@@ -311,7 +313,7 @@ def test_a_road_that_is_no_input_lies_still():
     car = paper_half_car(k | c, k | c)
     alone = state_space(car, "road_front", "tyre_rear_load")
     assert hinf_norm(alone).value == pytest.approx(
-        hinf_norm(state_space(car).select("road_front", "tyre_rear_load")).value
+        hinf_norm(state_space(car).subsystem("road_front", "tyre_rear_load")).value
     )
 
 

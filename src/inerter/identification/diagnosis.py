@@ -60,7 +60,7 @@ class Causes:
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            self.made = known if self.before.sound else [*known, *hypotheses(problem, self.places)]
+            self.made = known if self.before.is_noise_limited else [*known, *hypotheses(problem, self.places)]
         return self.made
 
     def __getstate__(self) -> dict[str, object]:
@@ -102,7 +102,7 @@ def explanations(
         partial(_fit_fully, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best))
     )
     last.sort(key=lambda attempt: attempt.cost)
-    if last and not before.sound and all(a.explanation.misfit.excess > _FAR for a in last):
+    if last and not before.is_noise_limited and all(a.explanation.misfit.excess > _FAR for a in last):
         restart = partial(_refit_from_stiff_shaft, causes, by)
         again = map_problems(
             restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED)

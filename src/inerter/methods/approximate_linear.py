@@ -94,11 +94,11 @@ class ApproximateLinear:
     seed: int = 0
     conventions: str = "exact"
     name = "approximate-linear"
-    words = "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
+    description = "norms of the gains, output over input at each frequency, of the nonlinear design on random inputs"
     brief = "measured gains"
-    sees = NonlinearitySupport.BOTH
+    nonlinearity_support = NonlinearitySupport.BOTH
     needs_amplitude = False
-    searches = True
+    supports_optimisation = True
     promise = PROMISE
 
     def __post_init__(self) -> None:

@@ -81,14 +81,14 @@ class ExpectedValue:
     jobs: int | None = None
     period: int | None = None
     name = "expected-value"
-    words = (
+    description = (
         "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
         "peak gain the largest response to a sinusoidal force"
     )
     brief = "simulation"
-    sees = NonlinearitySupport.BOTH
+    nonlinearity_support = NonlinearitySupport.BOTH
     needs_amplitude = True
-    searches = True
+    supports_optimisation = True
     promise = PROMISE
 
     def __post_init__(self) -> None:

@@ -127,12 +127,12 @@ class Method(Protocol):
         ...
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Description of the values, to follow "Values are" in a report."""
         ...
 
     @property
-    def sees(self) -> NonlinearitySupport:
+    def nonlinearity_support(self) -> NonlinearitySupport:
         """Nonlinearities that the method models."""
         ...
 
@@ -142,7 +142,7 @@ class Method(Protocol):
         ...
 
     @property
-    def searches(self) -> bool:
+    def supports_optimisation(self) -> bool:
         """Whether optimisers can use its `objective`."""
         ...
 

@@ -32,11 +32,11 @@ class Norm:
 
     conventions: str = "exact"
     name = "norm"
-    words = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+    description = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
     brief = "exact norms"
-    sees = NonlinearitySupport.NEITHER
+    nonlinearity_support = NonlinearitySupport.NEITHER
     needs_amplitude = False
-    searches = True
+    supports_optimisation = True
     has_gradients = True
     promise = PROMISE
 

@@ -17,20 +17,29 @@ from inerter.rows import Rows
 METHODS: Rows[type[Method]] = Rows(
     "method",
     "name",
-    ("words", "sees", "needs_amplitude", "searches", "estimate", "estimate_many", "objective"),
+    (
+        "description",
+        "nonlinearity_support",
+        "needs_amplitude",
+        "supports_optimisation",
+        "estimate",
+        "estimate_many",
+        "objective",
+    ),
     (Norm, StatisticalLinearisation, ExpectedValue, ApproximateLinear),
+    {"words": "description", "sees": "nonlinearity_support", "searches": "supports_optimisation"},
 )
 DEFAULT = Norm.name  # judges the designs of a study that names no method
 
 
 def is_blind(name: str) -> bool:
     """Whether the method models neither friction nor gaps."""
-    return _kind(name).sees is NonlinearitySupport.NEITHER
+    return _kind(name).nonlinearity_support is NonlinearitySupport.NEITHER
 
 
 def refuses_gaps(name: str) -> bool:
     """Whether the method does not support gaps."""
-    return _kind(name).sees is NonlinearitySupport.FRICTION
+    return _kind(name).nonlinearity_support is NonlinearitySupport.FRICTION
 
 
 def needs_amplitude(name: str) -> bool:
@@ -40,12 +49,12 @@ def needs_amplitude(name: str) -> bool:
 
 def searches(name: str) -> bool:
     """Whether the method supports optimisation."""
-    return bool(_kind(name).searches)
+    return bool(_kind(name).supports_optimisation)
 
 
 def words_of(name: str) -> str:
     """Description of the method's values, to follow "Values are"."""
-    return str(_kind(name).words)
+    return str(_kind(name).description)
 
 
 def brief_words_of(name: str) -> str:
@@ -55,7 +64,7 @@ def brief_words_of(name: str) -> str:
 
 def what_is_seen(name: str) -> NonlinearitySupport:
     """Nonlinearities that the method models."""
-    return NonlinearitySupport(_kind(name).sees)
+    return NonlinearitySupport(_kind(name).nonlinearity_support)
 
 
 def averages(name: str) -> bool:

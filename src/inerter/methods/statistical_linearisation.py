@@ -47,14 +47,14 @@ class StatisticalLinearisation:
 
     conventions: str = "exact"
     name = "statistical-linearisation"
-    words = (
+    description = (
         "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
         "results; for a peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
-    sees = NonlinearitySupport.FRICTION
+    nonlinearity_support = NonlinearitySupport.FRICTION
     needs_amplitude = True
-    searches = True
+    supports_optimisation = True
     has_gradients = True
     promise = PROMISE
 

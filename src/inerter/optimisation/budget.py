@@ -124,7 +124,7 @@ def _budget(
 ) -> BreakEven:
     lower, upper = between
     known: dict[float, Comparison] = {}
-    exact = method.sees is NonlinearitySupport.NEITHER
+    exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
     fixed = _as_many_roads(design, index, method)
     same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
 

@@ -128,7 +128,7 @@ def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: C
 
     `idle` names values without effect: with friction neglected, elements without force have none.
     """
-    if method.sees is not NonlinearitySupport.NEITHER:
+    if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
         return OK
     elements = [element for strut in vehicle.mechanism().struts for element in strut.network.elements()]
     switching = {element.label for element in elements if element.acts}

@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError, SimulationError, Status
+from inerter.renamed import RenamedAttribute
 from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads
@@ -46,14 +47,16 @@ class Energy:
     friction: Mapping[str, float]
 
     @property
-    def put_in(self) -> float:
+    def input_work(self) -> float:
         """Work of all inputs [J]."""
         return sum(self.inputs.values())
+
+    put_in = RenamedAttribute("input_work")
 
     @property
     def residual(self) -> float:
         """Residual of the energy balance [J]."""
-        return self.put_in - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
+        return self.input_work - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
 
     @property
     def relative_residual(self) -> float:

@@ -57,7 +57,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             method=method,
             unit=study.unit(self.index),
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
-            effects={name: [found.main[name], found.total[name]] for name in found.main},
+            effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             status=found.status.kind.value,
             message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
         )

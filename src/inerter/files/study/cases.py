@@ -222,7 +222,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
                 raise
             return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 
-    over = found.over_linear if found else None
+    over = found.gain_over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = worst_of((*(e.status for e in own.values()), *((found.status,) if found else ())))

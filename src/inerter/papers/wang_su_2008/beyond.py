@@ -36,7 +36,7 @@ def compute_optimum(name: str) -> dict[str, object]:
     index, layout = name.split()
     source = study("friction1")
     found = optimise(source.design(layout), index_of(index, source), _ROADS, seed=source.seed, starts=_STARTS)
-    over = found.over_linear
+    over = found.gain_over_linear
     assert over is not None
     return {
         "value": found.value,

@@ -24,10 +24,10 @@ class Quadrature:
     points: int = 600
     middle: float = field(default=20.0, metadata=it.quantity("rad/s", "Half of the frequencies lie below it.", "3 Hz"))
     name = "quadrature"
-    words = "integrals of the squared gains of the linear model over all frequencies"
-    sees = it.NonlinearitySupport.NEITHER
+    description = "integrals of the squared gains of the linear model over all frequencies"
+    nonlinearity_support = it.NonlinearitySupport.NEITHER
     needs_amplitude = False
-    searches = False  # it gives no gradients
+    supports_optimisation = False  # it gives no gradients
 
     def estimate(self, vehicle: Any, index: Any) -> it.Estimate:
         mechanism = vehicle.mechanism()

@@ -18,9 +18,10 @@ from inerter.errors import Status, StatusKind
 from inerter.figures.labels import with_unit
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.loading import load_study
+from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
-from inerter.files.study.tasks import TaskResults, answer_part, by_task, parts_of
+from inerter.files.study.tasks import TaskResults, by_task, parts_of
 from inerter.methods.compare import compare
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, statement, within
 from inerter.report.answers import answers
@@ -128,7 +129,7 @@ def judged_study(tmp_path, text=TEXT):
     path.write_text(text, encoding="utf-8")
     study = load_study(path)
     outcomes = {case: run_case(study, case) for case in cases(study)}
-    found = tuple(answer_part(study, outcomes, part) for part in parts_of(study))
+    found = tuple(run_part(study, outcomes, part) for part in parts_of(study))
     data = dataset(study, outcomes)
     for task, own in by_task(found).items():
         data = task.add_to_dataset(study, data, own)

@@ -13,8 +13,8 @@ from combinations import Plain, Tables, moved, opened, study_tables, with_place
 
 import inerter as it
 from inerter.files.study.cases import Case, Outcome, cases, run_case
+from inerter.files.study.parts import run_part
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import answer_part
 from inerter.tasks.tolerances import TolerancePart
 
 KEPT = 1e-6
@@ -160,7 +160,7 @@ def check_tolerance(tables: Tables, plain: Plain, folder: Path, found: Outcome, 
     tables["study"]["tolerance"] = spread
     study = opened(tables, folder)
     name = study.indices[0]
-    told = answer_part(study, {Case("one", name): found}, TolerancePart("one", name))
+    told = run_part(study, {Case("one", name): found}, TolerancePart("one", name))
     assert told.ok, told.message
     rows = []
     for number in range(len(plain.cases)):

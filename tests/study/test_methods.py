@@ -106,7 +106,7 @@ def test_bounds_of_values_and_of_improvements_are_in_the_dataset(study: Study) -
         )
         for layout, value in values.items()
     ]
-    data = dataset(study, {outcome.case: outcome for outcome in outcomes}).sel({"method": "norm", "index": "J1"})
+    data = dataset(study, {outcome.part: outcome for outcome in outcomes}).sel({"method": "norm", "index": "J1"})
     for layout, value in values.items():
         here = data.sel(layout=layout)
         assert here.error_bound.item() == here.other_error_bound.item() == bounds[layout]

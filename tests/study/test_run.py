@@ -261,7 +261,7 @@ def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
     run_study(study, tmp_path / "out")
     path = tmp_path / "out" / "journal.jsonl"
     found = list(outcomes(journal_of(study, path)))
-    assert [outcome.case for outcome in found] == list(cases(study))
+    assert [outcome.part for outcome in found] == list(cases(study))
     for outcome in found:
         assert isinstance(outcome, Outcome)
         assert Outcome(**json.loads(json.dumps(outcome.to_json()))) == outcome

@@ -15,7 +15,7 @@ from inerter.app.kinds import Tell
 from inerter.errors import DesignError
 from inerter.figures.labels import decimals_of
 from inerter.files.common.layouts import LayoutCodec
-from inerter.files.study.cases import FAILURES
+from inerter.files.study.parts import FAILURES
 from inerter.files.study.place import element_at, place_of
 from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used

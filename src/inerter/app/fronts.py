@@ -10,9 +10,9 @@ from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.errors import Status, StudyError
+from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of, csv_text
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import answer_part
 from inerter.methods.registry import methods_that, searches
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 from inerter.writing import write_text
@@ -31,7 +31,7 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     found: list[FrontAnswer] = []
     for number, layout in enumerate(layouts):
         tell(number, len(layouts), layout)
-        found.append(answer_part(asked, {}, FrontPart(layout)))
+        found.append(run_part(asked, {}, FrontPart(layout)))
     (folder / RESULTS).mkdir(exist_ok=True)
     write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(Fronts().csv(asked, found)))
     tell(len(layouts), len(layouts), "")

@@ -9,8 +9,8 @@ from typing import Any
 
 from inerter.app.designs import Design
 from inerter.errors import Status, StatusKind
-from inerter.files.study.cases import FAILURES
 from inerter.files.study.limits import StudyLimit, limits_in, part_words
+from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
 from inerter.methods.asking import Asked
 from inerter.methods.method import Estimate, Method, evaluate

@@ -17,11 +17,10 @@ from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.study.cases import Outcome
 from inerter.files.study.checking import check_study
+from inerter.files.study.parts import PartResult
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 
@@ -64,9 +63,9 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
         draw_study(result.data, into / FIGURES)
         write_report(result.data, study, into / FIGURES, into / REPORT, result.answers)
 
-    def on_case_done(count: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
+    def on_part_done(count: int, total: int, last: PartResult | None, not_ok: int) -> None:
         done[0] = count
-        tell(count, total, last.name if isinstance(last, Answer) else f"{last.layout} {last.index}" if last else "")
+        tell(count, total, last.name if last else "")
 
     def preparing(count: int, total: int) -> None:
         tell(0, 0, f"preparing {count} of {total}")
@@ -81,7 +80,7 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
         study,
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
-        progress=on_case_done,
+        progress=on_part_done,
         compiling=compiling,
         finish=show,
     )

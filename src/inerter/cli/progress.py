@@ -25,8 +25,8 @@ from rich.progress import (
 from inerter.cli.pace import Pace
 from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
+from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
-from inerter.files.study.tasks import Answer
 from inerter.kernels.prepare import Told
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
@@ -54,7 +54,7 @@ class _Study:
     begun: float | None = None
     compiling: str = ""
 
-    def count(self, done: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
+    def count(self, done: int, total: int, last: PartResult | None, not_ok: int) -> None:
         """Take note of what is done."""
         if self.begun is None:
             self.begun, self.kept = time.monotonic(), done
@@ -105,7 +105,7 @@ def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
     with pulse(study.words, study.pace.take) as printer:
 
-        def show(done: int, total: int, last: Outcome | Answer | None, not_ok: int) -> None:
+        def show(done: int, total: int, last: PartResult | None, not_ok: int) -> None:
             study.count(done, total, last, not_ok)
             if last is None and done < total:
                 kept = f", {done} of them done before" if done else ""

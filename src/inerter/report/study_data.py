@@ -12,7 +12,7 @@ import xarray as xr
 
 from inerter.figures.labels import decimals_of
 from inerter.files.study.running import StudyResult
-from inerter.files.study.tasks import by_task, to_json
+from inerter.files.study.tasks import by_task
 from inerter.report.json_data import json_data
 from inerter.report.speeds import at_speeds
 
@@ -22,7 +22,7 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces, so that a list of a million designs is never in memory."""
-    further = {task.key: list(map(to_json, own)) for task, own in by_task(result.answers).items()}
+    further = {task.key: [one.to_json() for one in own] for task, own in by_task(result.answers).items()}
     whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -11,30 +11,27 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError, Status, StatusKind, worst_of
+from inerter.errors import Status, StatusKind, worst_of
 from inerter.files.study.limits import limit_results, limits_in
+from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.note import after, parts_of
 from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.optimisation.threads import one_blas_thread
 from inerter.systems.descriptor import is_held_by_springs
 from inerter.systems.graph import linear_graph
 from inerter.vehicle.mechanism import Mechanism
-from inerter.work.pool import KILLS
 from inerter.work.progress import report, within
 
-FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
 _OK = StatusKind.OK.value
-ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
 _SEARCHED = 0.97  # share of the work on a case that the search takes
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
 
 
 @dataclass(frozen=True)
-class Case:
+class Case(StudyPart["Outcome"]):
     """Design to optimise and evaluate. `point` numbers the swept values, zero without a sweep."""
 
     layout: str
@@ -46,6 +43,15 @@ class Case:
     def name(self) -> str:
         """Name of the case in messages: layout, index, and point of the sweeps."""
         return f"{self.layout} {self.index}{f' at point {self.point + 1}' if self.point else ''}"
+
+    def answer(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> Outcome:
+        """The best design, evaluated by every method and index of the study."""
+        return _run(study, self, threads)
+
+    def failure_answer(self, study: Study, message: str) -> Outcome:
+        """Outcome without a design."""
+        failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
+        return Outcome(self.layout, self.index, self.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, message)
 
 
 @dataclass(frozen=True)
@@ -94,7 +100,7 @@ class Cases:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Outcome(PartResult):
     """The design of a case and its values; all of it survives JSON."""
 
     layout: str
@@ -120,7 +126,7 @@ class Outcome:
     speed_message: str = ""  # what makes those doubtful
 
     @property
-    def case(self) -> Case:
+    def part(self) -> Case:
         """Case to which the outcome belongs."""
         return Case(self.layout, self.index, self.point)
 
@@ -128,10 +134,6 @@ class Outcome:
     def kind(self) -> str:
         """The kind of its status: the first of all methods that is not ok."""
         return next((kind for kind in self.status.values() if kind != _OK), _OK)
-
-    def to_json(self) -> dict[str, Any]:
-        """A plain dictionary; `Outcome(**...)` undoes it."""
-        return dict(vars(self))
 
 
 def cases(study: Study) -> Cases:
@@ -145,30 +147,8 @@ def portable(study: Study) -> Study:
 
 
 def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
-    """Find the best design of one of the `cases` and judge it by every method and index of the study.
-
-    Methods that simulate use `threads`. A failure is an outcome with a status and a sentence, so that one case never
-    ends a study.
-    """
-    try:
-        with (
-            one_blas_thread(),
-            np.errstate(over="ignore", invalid="ignore", divide="ignore"),
-            within(case.name),
-        ):
-            return _run(study, case, threads)
-    except FAILURES as error:
-        return _failure_outcome(study, case, str(error))
-
-
-def lost_case(study: Study, case: Case) -> Outcome:
-    """Outcome of a case whose worker processes ended at every attempt."""
-    return _failure_outcome(study, case, ENDED)
-
-
-def _failure_outcome(study: Study, case: Case, why: str) -> Outcome:
-    failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
-    return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, why)
+    """Best design of one of the `cases`, evaluated by every method and index of the study; or its failure."""
+    return run_part(study, {}, case, threads)
 
 
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from inerter.errors import StudyError
 from inerter.files.study.cases import Outcome
+from inerter.files.study.parts import PartResult
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer, answer_of
+from inerter.files.study.tasks import answer_of
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept
 
@@ -23,8 +24,8 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
-def outcomes(journal: Journal) -> Iterator[Outcome | Answer | Kept]:
-    """Finished outcomes and answers, and the state of unfinished searches, one at a time.
+def results_of(journal: Journal) -> Iterator[PartResult | Kept]:
+    """Results of finished parts, and the state of unfinished searches, one at a time.
 
     Raises `StudyError` for an entry that is none of a study.
     """

@@ -58,7 +58,7 @@ class DatasetBuilder:
 
     def enter(self, outcome: Outcome) -> None:
         """Store an outcome in the arrays of the dataset."""
-        case = outcome.case
+        case = outcome.part
         number, arrays, kind = self.cases.number(case), self._arrays, outcome.kind
         if not self.done[number]:
             self.done[number] = True

@@ -10,6 +10,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -19,36 +20,27 @@ import xarray as xr
 from inerter.errors import StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
-from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_case
+from inerter.files.study.cases import Outcome, portable
 from inerter.files.study.checking import check_study, kernels
+from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
 from inerter.files.study.quantity_texts import write_resolved
-from inerter.files.study.results import DatasetBuilder, Pending
+from inerter.files.study.results import DatasetBuilder
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_rows import TASKS
-from inerter.files.study.tasks import (
-    Answer,
-    Designs,
-    TaskPart,
-    answer_part,
-    by_task,
-    journal_entry,
-    lost_part,
-    parts_of,
-)
+from inerter.files.study.tasks import Answer, Designs, by_task, journal_entry, parts_of
 from inerter.kernels.prepare import Told, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
-from inerter.work.progress import logging_steps, within
+from inerter.work.progress import logging_steps
 from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-_Known = Mapping[str, Sequence[Row]]  # searches of cases that have not ended, by the names of those
-_AnyPart = TaskPart[Any]
-_Done = dict[_AnyPart, Answer]
-Progress = Callable[[int, int, Outcome | Answer | None, int], None]
+_Known = Mapping[str, Sequence[Row]]  # searches of parts that have not ended, by the names of those
+_Done = dict[StudyPart[Any], Answer]
+Progress = Callable[[int, int, PartResult | None, int], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +176,13 @@ def _compute_outcomes(
         _prepare(pool, study, compiling)
     total = len(found.cases) + len(parts)
 
-    def tell(last: Outcome | Answer | None) -> None:
+    def enter(result: PartResult) -> None:
+        if isinstance(result, Outcome):
+            found.enter(result)
+        elif isinstance(result, Answer):
+            done[result.part] = result
+
+    def tell(last: PartResult | None) -> None:
         troubled = sum(not one.ok for one in done.values())
         progress(found.count + len(done), total, last, found.not_ok + troubled)
 
@@ -195,14 +193,12 @@ def _compute_outcomes(
         journal.appending(results.resume) as append,
         kept_by(lambda kept: append(kept.to_json())),
     ):
-        for several in _outcomes(study, pending, pool, known):
-            append(*(outcome.to_json() for outcome in several))
-            for outcome in several:
-                found.enter(outcome)
-            tell(several[-1])
-        for ready in _answers(study, found, [part for part in parts if part not in done], pool, known):
+        of_designs = _results(study, {}, pending, pool, known)
+        of_tasks = _results(study, found.designs, (part for part in parts if part not in done), pool, known)
+        for ready in chain(of_designs, of_tasks):
             append(*map(journal_entry, ready))
-            done |= {one.part: one for one in ready}
+            for result in ready:
+                enter(result)
             tell(ready[-1])
         lost = len(found.pending()) + len(set(parts) - set(done))
         if lost:
@@ -214,41 +210,32 @@ def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
     """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
     done: _Done = {}
     searches: dict[str, list[Kept]] = {}
-    for one in journals.outcomes(journal):
+    for one in journals.results_of(journal):
         if isinstance(one, Kept):
             searches.setdefault(one.name, []).append(one)
-        elif isinstance(one, Outcome):
+            continue
+        searches.pop(one.name, None)
+        if isinstance(one, Outcome):
             found.enter(one)
-            searches.pop(one.case.name, None)
-        else:
+        elif isinstance(one, Answer):
             done[one.part] = one
-            searches.pop(one.name, None)
     return done, {name: joined(several) for name, several in searches.items()}
 
 
-def _outcomes(study: Study, pending: Pending, pool: Pool, known: _Known) -> Iterator[list[Outcome]]:
-    """Lists of outcomes, in the order in which they are completed."""
-    run = partial(_run_case, portable(study), known)
-    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_case, portable(study)))
+def _results(
+    study: Study, designs: Designs, pending: Iterable[StudyPart[Any]], pool: Pool, known: _Known
+) -> Iterator[list[PartResult]]:
+    """Lists of results of parts, in the order in which they are completed."""
+    run = partial(_resumed_result, portable(study), designs, known)
+    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, portable(study)))
 
 
-def _run_case(study: Study, known: _Known, case: Case, threads: int = 1) -> Outcome:
-    with resuming(case.name, known):
-        return run_case(study, case, threads)
-
-
-def _answers(
-    study: Study, found: DatasetBuilder, pending: list[_AnyPart], pool: Pool, known: _Known
-) -> Iterator[list[Answer]]:
-    """Lists of answers, in the order in which they are completed."""
-    run = partial(_resumed_answer, portable(study), found.designs, known)
-    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, study))
-
-
-def _resumed_answer(study: Study, designs: Designs, known: _Known, part: _AnyPart, threads: int = 1) -> Answer:
-    with within(part.name), resuming(part.name, known):
-        answer: Answer = answer_part(study, designs, part, threads)
-    return answer
+def _resumed_result(
+    study: Study, designs: Designs, known: _Known, part: StudyPart[Any], threads: int = 1
+) -> PartResult:
+    with resuming(part.name, known):
+        result: PartResult = run_part(study, designs, part, threads)
+    return result
 
 
 def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:

@@ -9,16 +9,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
-import numpy as np
-
-from inerter.errors import StatusKind
-from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
+from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.task_rows import TASKS
-from inerter.optimisation.threads import one_blas_thread
 from inerter.rows import made_of_rows
 
 if TYPE_CHECKING:
@@ -32,34 +29,17 @@ Designs = Mapping[Case, Outcome]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(ABC):
+class Answer(PartResult):
     """The answer to a part of a task, in SI units; all of it survives JSON, with `answer_of`."""
-
-    sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # statuses that answer the question
 
     layout: str
     status: str
     message: str = ""
 
     @property
-    @abstractmethod
-    def part(self) -> TaskPart[Any]:
-        """Task part to which the answer belongs."""
-
-    @property
-    def name(self) -> str:
-        """Name of the task part in messages."""
-        return self.part.name
-
-    @property
-    def ok(self) -> bool:
-        """Whether the status is one that answers the question."""
-        return self.status in self.sure
-
-    @property
-    def status_text(self) -> str:
-        """The status with its reason."""
-        return f"{self.status}: {self.message}" if self.message else self.status
+    def kind(self) -> str:
+        """Kind of status."""
+        return self.status
 
     @property
     def doubt(self) -> str:
@@ -70,23 +50,8 @@ class Answer(ABC):
 AnswerT = TypeVar("AnswerT", bound=Answer)
 
 
-class TaskPart(ABC, Generic[AnswerT]):
+class TaskPart(StudyPart[AnswerT]):
     """A part of a task: a frozen dataclass of its labels, which survives JSON."""
-
-    layout: str
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Name of the task part in messages."""
-
-    @abstractmethod
-    def answer(self, study: Study, designs: Designs, threads: int) -> AnswerT:
-        """Answer for the best designs. What it raises of `FAILURES` becomes that of `failed`."""
-
-    @abstractmethod
-    def failure_answer(self, study: Study, message: str) -> AnswerT:
-        """Answer without numbers, with `message` as the reason."""
 
 
 class Task(ABC, Generic[AnswerT]):
@@ -159,20 +124,6 @@ def parts_of(study: Study) -> list[TaskPart[Any]]:
     return [part for task in tasks() for part in task.parts(study)]
 
 
-def answer_part(study: Study, designs: Designs, part: TaskPart[AnswerT], threads: int = 1) -> AnswerT:
-    """The answer to a part. A failure is an answer with a status and a sentence."""
-    try:
-        with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            return part.answer(study, designs, threads)
-    except FAILURES as error:
-        return part.failure_answer(study, str(error))
-
-
-def lost_part(study: Study, part: TaskPart[AnswerT]) -> AnswerT:
-    """Answer of a task part whose worker processes ended at every attempt."""
-    return part.failure_answer(study, ENDED)
-
-
 def by_task(answers: Iterable[Answer]) -> dict[Task[Any], list[Any]]:
     """Answers by task; only tasks that have some."""
     every = list(answers)
@@ -180,15 +131,10 @@ def by_task(answers: Iterable[Answer]) -> dict[Task[Any], list[Any]]:
     return {task: own for task, own in found.items() if own}
 
 
-def to_json(answer: Answer) -> dict[str, Any]:
-    """A plain dictionary of what an answer holds."""
-    return {field.name: getattr(answer, field.name) for field in fields(answer)}
-
-
-def journal_entry(answer: Answer) -> dict[str, Any]:
-    """Dictionary of an answer with the key of its task, for a journal; `answer_of` is the inverse."""
-    (task,) = (one for one in tasks() if isinstance(answer, one.answer))
-    return {"task": task.key, **to_json(answer)}
+def journal_entry(result: PartResult) -> dict[str, Any]:
+    """Dictionary of a result for a journal; that of an answer has the key of its task, for `answer_of`."""
+    key = next((task.key for task in tasks() if isinstance(result, task.answer)), None)
+    return result.to_json() if key is None else {"task": key, **result.to_json()}
 
 
 def answer_of(entry: Mapping[str, Any]) -> Answer:

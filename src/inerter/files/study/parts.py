@@ -1,0 +1,106 @@
+"""Parts of the work on a study, designs and parts of tasks: one call computes each, and its result survives JSON.
+
+Processes, executors, the journal, progress and exit codes know parts and results only.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+
+import numpy as np
+
+from inerter.errors import InerterError, StatusKind
+from inerter.optimisation.threads import one_blas_thread
+from inerter.work.pool import KILLS
+from inerter.work.progress import within
+
+if TYPE_CHECKING:
+    from inerter.files.study.cases import Case, Outcome
+    from inerter.files.study.study import Study
+
+FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
+
+
+class PartResult(ABC):
+    """The result of a part; a frozen dataclass whose fields survive JSON."""
+
+    sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # kinds of status that answer the question
+
+    layout: str
+    message: str
+
+    @property
+    @abstractmethod
+    def part(self) -> StudyPart[Self]:
+        """Part to which the result belongs."""
+
+    @property
+    @abstractmethod
+    def kind(self) -> str:
+        """Kind of status."""
+
+    @property
+    def name(self) -> str:
+        """Name of the part in messages."""
+        return self.part.name
+
+    @property
+    def ok(self) -> bool:
+        """Whether the status is one that answers the question."""
+        return self.kind in self.sure
+
+    @property
+    def status_text(self) -> str:
+        """The status with its reason."""
+        return f"{self.kind}: {self.message}" if self.message else self.kind
+
+    def to_json(self) -> dict[str, Any]:
+        """A plain dictionary of the fields."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+
+
+ResultT = TypeVar("ResultT", bound=PartResult)
+
+
+class StudyPart(ABC, Generic[ResultT]):
+    """A part of the work on a study: a frozen dataclass of its labels, which survives JSON."""
+
+    layout: str
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Name of the part in messages."""
+
+    @abstractmethod
+    def answer(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> ResultT:
+        """The result, by at most `threads` threads; what it raises of `FAILURES` becomes `failure_answer`.
+
+        `designs` are the best designs of the study, empty while they are computed.
+        """
+
+    @abstractmethod
+    def failure_answer(self, study: Study, message: str) -> ResultT:
+        """Result without numbers, with `message` as the reason."""
+
+
+def run_part(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[ResultT], threads: int = 1) -> ResultT:
+    """The result of a part. A failure is a result with a status and a sentence, so that one part never ends a study."""
+    try:
+        with (
+            one_blas_thread(),
+            np.errstate(over="ignore", invalid="ignore", divide="ignore"),
+            within(part.name),
+        ):
+            return part.answer(study, designs, threads)
+    except FAILURES as error:
+        return part.failure_answer(study, str(error))
+
+
+def lost_part(study: Study, part: StudyPart[ResultT]) -> ResultT:
+    """Result of a part whose worker processes ended at every attempt."""
+    return part.failure_answer(study, ENDED)

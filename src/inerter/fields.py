@@ -93,7 +93,7 @@ def choice_field(options: tuple[str, ...], sentence: str, *, example: str = "", 
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
-    ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
+    ...     side: str = dataclasses.field(default="left", metadata=choice_field(("left", "right"), "Where it is."))
     >>> choices_of(Wheel)
     (TextChoice(name='side', options=('left', 'right'), sentence='Where it is.', example='left',
     key='side', needed=False),)

@@ -328,7 +328,8 @@ def test_a_misfit_that_nothing_explains_begins_with_what_records_were_warned_of(
         for name, one in (("a.csv", "info"), ("b.csv", severity))
     ]
     fit = SimpleNamespace(
-        status=Status(StatusKind.INACCURATE, "it leaves much"), doubt=SimpleNamespace(numbers={"likeliest": likeliest})
+        status=Status(StatusKind.INACCURATE, "it leaves much"),
+        reliability_warning=SimpleNamespace(numbers={"likeliest": likeliest}),
     )
     said = unreliable(SimpleNamespace(readings=readings, fit=fit))
     assert said.startswith("it leaves much")

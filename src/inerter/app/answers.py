@@ -26,7 +26,7 @@ from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
-from inerter.optimisation.budget import break_even as find_budget
+from inerter.optimisation.budget import break_even as find_break_even
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.scatter.tolerance import tolerance_analysis
@@ -197,7 +197,7 @@ def break_even(study: Study, body: Body) -> Answer:
     if baseline is None:
         raise DesignError("A budget needs a baseline: a second layout, or `baseline` in the request.")
     method = body.get("method") or budget_method(study)
-    found = find_budget(
+    found = find_break_even(
         design.vehicle,
         baseline.vehicle,
         study.resolve_index(required_value(body, "index"), design.layout),

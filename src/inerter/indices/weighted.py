@@ -46,7 +46,7 @@ def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = 
     numbers, and for less than 1 s.
 
     >>> t = np.arange(0.0, 40.0, 1e-3)
-    >>> felt = weighted(t, np.sin(2.0 * np.pi * 8.0 * t), "Wk")
+    >>> felt = frequency_weight(t, np.sin(2.0 * np.pi * 8.0 * t), "Wk")
     >>> round(felt.rms * 2.0**0.5, 2), round(felt.mtvv * 2.0**0.5, 2)  # 1.036 in the standard's table
     (1.04, 1.04)
     """

@@ -188,7 +188,14 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         with within("search", 0.0, _SEARCHED):
             found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
-        fields = {name: getattr(found, name) for name in fields}
+        fields = {
+            "parameters": found.parameters,
+            "active_bounds": found.active_bounds,
+            "ranges": found.ranges,
+            "starts": found.n_starts,
+            "agreed": found.n_converged,
+            "evaluations": found.evaluations,
+        }
         fields["limits"] = [list(one) for one in limit_results(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:

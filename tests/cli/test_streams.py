@@ -17,7 +17,7 @@ from study_text import study_text
 from inerter.cli.main import call
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-COMMAND = f"{shlex.quote(sys.executable)} -c 'from inerter.cli.start import main; main()'"
+COMMAND = f"{shlex.quote(sys.executable)} -m inerter"
 
 TITLE = 'title = "Größe ☃"'
 STUDY = study_text('indices = ["J1"]', layouts='S1 = "k | c"', title=TITLE)

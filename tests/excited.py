@@ -10,7 +10,7 @@ from filtered import random_filter
 import inerter as it
 from inerter.indices.excitation import as_excitation
 from inerter.signals.road import Road
-from inerter.systems.arrivals import Arrival
+from inerter.systems.input_paths import Arrival
 from inerter.vehicle.mechanism import Mechanism
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)

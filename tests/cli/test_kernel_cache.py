@@ -13,7 +13,7 @@ import pytest
 from campaigns import sampled
 
 KERNEL = """
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 
 
 @kernel("twice", "float64(float64)")
@@ -130,7 +130,7 @@ def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: 
 
 
 SEVERAL = """
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 
 
 @kernel("twice", "float64(float64)")

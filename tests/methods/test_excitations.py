@@ -15,9 +15,9 @@ from random_mechanisms import FAMILIES, mechanisms, opened
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
 from inerter.errors import LinearSystemError, PerformanceIndexError, StatusKind
-from inerter.methods.forced import Forced
+from inerter.methods.harmonic_response import Forced
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.on_roads import mean_on_roads, on_roads
+from inerter.methods.out_of_band import mean_on_roads, on_roads
 from inerter.systems.piecewise import piecewise
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")

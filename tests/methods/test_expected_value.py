@@ -287,7 +287,7 @@ def test_a_relative_error_is_reached_or_missed_with_a_sentence(monkeypatch):
     coarse = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=0.05, seed=2))
     assert coarse.realisations == 8
     assert coarse.samples == found.samples[:8]
-    monkeypatch.setattr("inerter.methods.on_roads.MOST_ROADS", 16)
+    monkeypatch.setattr("inerter.methods.out_of_band.MOST_ROADS", 16)
     missed = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=1e-5, seed=2))
     assert missed.status.kind == "inaccurate"
     assert missed.realisations == 16

@@ -239,7 +239,7 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
     probe = textwrap.dedent(
         """
-        from inerter.kernels.declare import kernel
+        from inerter.kernels.decorators import kernel
         from inerter.kernels.flow import first_root, value_at
 
         @kernel("probe", "UniTuple(float64, 2)(float64[::1], float64[::1], float64[::1])")

@@ -11,7 +11,7 @@ from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
-from inerter.methods.sampled import SampledObjective
+from inerter.methods.multisine_lines import SampledObjective
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()

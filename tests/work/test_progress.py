@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 from inerter.work import kept, progress
 from inerter.work.forwarding import receive
 from inerter.work.pool import Pool

@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.errors import DesignError
 from inerter.files.study.study import Study
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import Asked
 from inerter.networks.elements import Free
 from inerter.units import parse_quantity, shown
 from inerter.vehicle.mechanism import Mechanism

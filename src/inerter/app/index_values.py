@@ -12,7 +12,7 @@ from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import FAILURES
 from inerter.files.study.limits import StudyLimit, limits_in, part_words
 from inerter.files.study.study import Study
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import Asked
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.constrained_search import KEPT_COSTLY

@@ -15,8 +15,8 @@ from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road, RoadShape
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
+from inerter.systems.input_paths import Arrival
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism

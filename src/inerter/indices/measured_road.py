@@ -14,8 +14,8 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.excitation import Excitation, Shaped, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import Arrival
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]

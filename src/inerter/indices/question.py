@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from inerter.errors import PerformanceIndexError
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter, as_filter
+from inerter.systems.input_paths import Arrival
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism, Weighted
 

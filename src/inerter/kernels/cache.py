@@ -18,7 +18,7 @@ from multiprocessing import parent_process
 from pathlib import Path
 from threading import Event
 
-from inerter.kernels.declare import Kernel, way
+from inerter.kernels.decorators import Kernel, way
 
 _TOLD, _DAMAGED = Event(), Event()
 _SHOWN: list[bool] = []  # not empty if people know that the compiler is at work

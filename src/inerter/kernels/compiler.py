@@ -1,9 +1,9 @@
 """The compiler: how declared functions become machine code, and which parts of it are used.
 
-There are two ways. The plain one, here, is `numba.njit` with options that its documentation tells. The tuned one, in
-`inerter.kernels.tuned`, compiles the same functions in half the time: it rests on private parts of Numba, which may
-change with any release. `declare.way` is the switch between them. Beside these two only `twofold` touches Numba, for
-a product and a sum with one rounding.
+There are two ways. The plain one, here, is `numba.njit` with options that its documentation describes. The tuned one, in
+`inerter.kernels.numba_compiler`, compiles the same functions in half the time: it rests on private parts of Numba, which
+may change with any release. `decorators.way` is the switch between them. Besides these two modules only `double_double`
+uses Numba, for a product and a sum with one rounding.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any, cast
 import numba
 
 from inerter.kernels.cache import cache_folder
-from inerter.kernels.declare import PLAIN, Instruction, Kernel, Part, Signature, private, way
+from inerter.kernels.decorators import PLAIN, Instruction, Kernel, Part, Signature, private, way
 
 FUSED = {"contract"}
 _ALONE = RLock()

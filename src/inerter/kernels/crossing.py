@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, NONE, Array, Run
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import first_root, polynomial, slope_at, value_at
 from inerter.kernels.locking import can_be_in
 

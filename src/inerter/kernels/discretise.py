@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import SHARP, Ints, MapRows, Matrix, Sizes
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.matrices import add, block, exponential, product
 
 

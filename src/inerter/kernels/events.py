@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from inerter.kernels.account import take_account
 from inerter.kernels.arrays import (
     BEFORE,
     BROKEN,
@@ -20,9 +19,10 @@ from inerter.kernels.arrays import (
     Span,
 )
 from inerter.kernels.crossing import first_crossing, go_to
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.energy import take_account
 from inerter.kernels.flow import inputs_from, knot_numbers, over_columns, series
-from inerter.kernels.march import whole_steps
+from inerter.kernels.integrate import whole_steps
 from inerter.kernels.switching import CHATTER, DONE, NOT_FINITE, PAUSED, STIFF, switch
 
 PIECES = 1e4  # of a segment: with more, a run would take hours

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close, pull_back
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close, pull_back
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.gain import resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, solve, solve_rows, solve_transposed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 
 Array = Any
 CLOSE = 1e-15  # of the time since the piece began: a force that frees a friction must be met to rounding

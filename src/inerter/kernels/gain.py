@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close, close_twofold, pull_back, twofold_space
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_twofold, pull_back, twofold_space
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.double_double import add_product
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, solve_rows, solve_transposed, sort
-from inerter.kernels.twofold import add_product
 
 Array = Any
 _GOLDEN = 0.6180339887498949

@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close_twofold, pull_back, twofold_space
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close_twofold, pull_back, twofold_space
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.double_double import add_multiple
 from inerter.kernels.linalg import exponential, factor, factor_within, matmul, solve, solve_transposed
-from inerter.kernels.twofold import add_multiple
 
 Array = Any
 _ACCURATE = 1e-9  # relative error of a squared norm up to which it is believed

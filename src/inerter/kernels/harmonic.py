@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.gain import farthest, frequencies, resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, sort

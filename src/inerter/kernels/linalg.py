@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 
 Array = Any  # compiled code is typed when it is compiled
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, Flags, Floats, Ints, Matrix, Sizes
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.matrices import RANK_TOLERANCE, block, null_space, product, transposed
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import Ints, Matrix
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.linalg import factor, matmul, solve
 
 RANK_TOLERANCE = 1e-9  # rows are scaled to one

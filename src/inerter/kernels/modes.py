@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.locking import Bases, Locks, Rates, bases_of, can_be_in, is_locked, limit_of, locks_of, rates_of
 from inerter.kernels.matrices import (
     add,

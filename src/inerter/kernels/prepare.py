@@ -13,7 +13,7 @@ from threading import Lock, Thread
 from typing import TYPE_CHECKING
 
 from inerter.kernels.cache import is_kept, told
-from inerter.kernels.declare import TUNED, Kernel, way
+from inerter.kernels.decorators import TUNED, Kernel, way
 from inerter.work.progress import ProgressStep, listener_here, told_if_long
 
 if TYPE_CHECKING:

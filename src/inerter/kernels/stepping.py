@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 
 Array = Any  # compiled code is typed when it is compiled
 

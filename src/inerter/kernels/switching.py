@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
 from inerter.kernels.crossing import MET, ORDERS, ROUNDING
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import input_sizes, inputs_from, over_columns
 from inerter.kernels.locking import can_be_in, limit_of
 

@@ -19,20 +19,20 @@ from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, Statu
 from inerter.indices.excitation import shape_of, stand_ins_of
 from inerter.indices.question import Index, Question
 from inerter.methods.averages import interval_of
-from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
+from inerter.methods.equivalent_linear import Counterpart, counterpart, has_play, with_velocities
 from inerter.methods.error_bounds import checked
 from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
-from inerter.methods.measured import road_errors
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate, Sees
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
-from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
-from inerter.systems.arrivals import Arrival
 from inerter.systems.graph import full_graph
+from inerter.systems.input_paths import Arrival
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status, worst_of
-from inerter.methods.asking import Asked, is_composed
 from inerter.methods.averages import interval_of, mean_and_error
+from inerter.methods.composite_index import Asked, is_composed
 from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
 from inerter.methods.ties import ACCURACY
 from inerter.vehicle.vehicle import Vehicle

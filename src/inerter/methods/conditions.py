@@ -15,8 +15,8 @@ from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError, Status, worst_of
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combined
+from inerter.methods.composite_index import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.error_bounds import of_weighted_sum, of_worst
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Objective

@@ -22,9 +22,9 @@ from inerter.methods.error_bounds import checked
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
-from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
-from inerter.systems.filtered import filtered
+from inerter.systems.input_paths import Arrival, fed, inputs_of
+from inerter.systems.output_filters import filtered
 from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism
 

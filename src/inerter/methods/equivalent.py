@@ -22,9 +22,9 @@ from inerter.indices.question import Question
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
-from inerter.systems.arrivals import Arrival, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
+from inerter.systems.input_paths import Arrival, fed, inputs_of
 from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 

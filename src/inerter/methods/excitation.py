@@ -16,7 +16,7 @@ from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, parts_of, tabulate
 from inerter.simulation.observe import sampled_input
-from inerter.simulation.steady import repeating
+from inerter.simulation.periodic_steady_state import repeating
 
 Array = NDArray[np.float64]
 _COARSEST = 5e-4  # [s] longest step for an input without steps of its own

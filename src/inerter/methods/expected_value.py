@@ -15,14 +15,14 @@ from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, Question
 from inerter.methods.error_bounds import checked
-from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
+from inerter.methods.harmonic_response import Forced, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Sees
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
-from inerter.methods.on_roads import PROMISE, mean_on_roads, on_roads
+from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds
-from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import middle
 from inerter.simulation.event_driven import KERNELS

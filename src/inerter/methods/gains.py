@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.methods.counterpart import Counterpart, memory
+from inerter.methods.equivalent_linear import Counterpart, memory
 from inerter.methods.excitation import Excited
 from inerter.methods.steady_squares import jump_scatter, share_of
 from inerter.norms.h2 import h2
@@ -18,7 +18,7 @@ from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
 from inerter.simulation.inputs import check_holds
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.steady import recorded_period
+from inerter.simulation.periodic_steady_state import recorded_period
 from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 

@@ -22,7 +22,7 @@ from inerter.methods.equivalent import GAUSSIAN, PROMISE, STIFFEST, Equivalent, 
 from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
-from inerter.methods.note import Note
+from inerter.methods.notes import Note
 from inerter.systems.outputs import velocity_of
 from inerter.vehicle.mechanism import Mechanism, Weighted
 

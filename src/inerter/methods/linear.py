@@ -14,18 +14,18 @@ from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.error_bounds import ROUNDING, checked
-from inerter.methods.measured import road_errors
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
-from inerter.methods.sides import on_one_side
+from inerter.methods.symmetric_half import on_one_side
 from inerter.norms.excess import excess_squares
 from inerter.norms.h2 import H2, h2
 from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
-from inerter.systems.arrivals import Column, columns_of, excesses_of, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
-from inerter.systems.filtered import filtered
 from inerter.systems.filters import Filter, high_pass
+from inerter.systems.input_paths import Column, columns_of, excesses_of, fed, inputs_of
 from inerter.systems.linear import LinearSystem
+from inerter.systems.output_filters import filtered
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]

@@ -16,11 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
 from inerter.indices.question import Index, Question
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
+from inerter.methods.composite_index import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
 from inerter.methods.objective import Objective
 from inerter.norms.hinf import GainPeak
-from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
+from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle

@@ -18,12 +18,12 @@ from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
-from inerter.simulation.start import initial_state
-from inerter.simulation.steady import FEW_PERIODS
+from inerter.simulation.periodic_steady_state import FEW_PERIODS
 from inerter.simulation.trajectory import Repetition
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import Arrival
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from inerter.errors import ErrorSource, Status
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.steady import FEW_PERIODS, mean_squares, settle
+from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
 from inerter.simulation.trajectory import Repetition
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem, output_rows

@@ -13,8 +13,8 @@ import scipy
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
-from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
+from inerter.methods.composite_index import Asked
 from inerter.methods.method import Averaging, Method, Sees, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS

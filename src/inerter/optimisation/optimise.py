@@ -13,8 +13,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
+from inerter.methods.composite_index import Asked, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, Sees, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable, Objective

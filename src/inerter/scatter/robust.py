@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, estimate_of, objective_of
+from inerter.methods.composite_index import Asked, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit

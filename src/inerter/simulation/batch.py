@@ -18,6 +18,7 @@ from inerter.errors import SimulationError, Status
 from inerter.kernels.prepare import prepare_on
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
+from inerter.simulation.initial_state import ending_of, initial_state
 from inerter.simulation.inputs import (
     DrivenMany,
     InputTable,
@@ -28,7 +29,6 @@ from inerter.simulation.inputs import (
     tabulate,
     whole_steps,
 )
-from inerter.simulation.start import ending_of, initial_state
 from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find

@@ -34,7 +34,7 @@ from inerter.kernels.arrays import (
 from inerter.kernels.crossing import ORDERS
 from inerter.kernels.discretise import discretise
 from inerter.kernels.events import evaluate, integrate
-from inerter.kernels.march import lines_of, march_of
+from inerter.kernels.integrate import lines_of, march_of
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import Guard, Linear

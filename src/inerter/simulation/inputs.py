@@ -18,7 +18,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:
-    from inerter.simulation.start import Initial
+    from inerter.simulation.initial_state import Initial
 
 Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one

@@ -11,8 +11,9 @@ import numpy as np
 from inerter.checks import is_number
 from inerter.errors import SimulationError
 from inerter.signals.signal import Signal
-from inerter.simulation import event_driven, stepped
+from inerter.simulation import event_driven, time_stepping_run
 from inerter.simulation.event_driven import check_elements
+from inerter.simulation.initial_state import Initial, ending_of, initial_state
 from inerter.simulation.inputs import (
     MEMORY_LIMIT,
     Driven,
@@ -25,8 +26,7 @@ from inerter.simulation.inputs import (
     whole_steps,
 )
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import Initial, ending_of, initial_state
-from inerter.simulation.steady import common_period, settle
+from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -104,7 +104,7 @@ def simulate(
     plan = _plan(vehicle, driven, RunSettings(duration, step, integrator, every, energy, memory_limit))
     system, signals, delays, initial, length = plan.system, plan.signals, plan.delays, plan.initial, plan.length
     if integrator == "time-stepping":
-        return stepped.run(system, signals, delays, initial, plan.begin, length, step, int(every))
+        return time_stepping_run.run(system, signals, delays, initial, plan.begin, length, step, int(every))
     joined = isinstance(initial, Trajectory)
     table = tabulate(signals, delays, length, step, int(every), plan.begin, joined)
     state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.errors import SimulationError
 from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import dependencies, null_space
-from inerter.systems.levers import independent_rows
+from inerter.systems.lever_arms import independent_rows
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]

@@ -26,13 +26,13 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, LinearSystemError
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import Linear
-from inerter.systems.balance import balance
+from inerter.systems.coordinate_split import Frame, Long, split
 from inerter.systems.coordinates import combination
 from inerter.systems.filters import Filter
-from inerter.systems.frame import Frame, Long, split
+from inerter.systems.force_balance import balance
 from inerter.systems.graph import Graph, linear_graph
 from inerter.systems.incidence import of_law, stacked
-from inerter.systems.levers import BranchRows
+from inerter.systems.lever_arms import BranchRows
 from inerter.systems.linear import Fine, LinearSystem, Origin
 from inerter.systems.observe import Observed, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names

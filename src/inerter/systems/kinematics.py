@@ -22,7 +22,7 @@ from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import inertia_values, inertias, ports, stacked
-from inerter.systems.levers import RANK_TOLERANCE, independent_rows, is_lost, lost_in
+from inerter.systems.lever_arms import RANK_TOLERANCE, independent_rows, is_lost, lost_in
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
-from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
+from inerter.systems.coordinate_split import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import Output, find, main_outputs, outputs
 

@@ -17,8 +17,8 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
+from inerter.systems.coordinate_split import RowBlocks
 from inerter.systems.coordinates import clean, pseudo_inverse
-from inerter.systems.frame import RowBlocks
 from inerter.systems.graph import Graph, switching
 from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements

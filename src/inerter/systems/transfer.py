@@ -1,7 +1,7 @@
 """Transfer functions of a mechanism without any rounding.
 
 A double is a whole number times a power of two, so masses and element values are exact; levers are the fractions that
-they were meant to be (`systems.levers`); and so the matrix M s^2 + C s + K of all nodes, massless ones included, is
+they were meant to be (`systems.lever_arms`); and so the matrix M s^2 + C s + K of all nodes, massless ones included, is
 exact at a whole number s. Its determinant and the solutions for the inputs, times it, are polynomials in s whose values
 at enough such numbers give their coefficients. No states are chosen, and nothing is eliminated by rank.
 """
@@ -19,7 +19,7 @@ import numpy as np
 from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
 from inerter.systems.incidence import Matrix, ports
-from inerter.systems.levers import BranchRows
+from inerter.systems.lever_arms import BranchRows
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
 from inerter.vehicle.mechanism import Mechanism

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import Asked
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.vehicle.vehicle import Vehicle
 

@@ -20,8 +20,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, InerterError, PerformanceIndexError, Status, StatusKind, worst_of
-from inerter.methods.asking import Asked, estimate_of, objective_of
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combined
+from inerter.methods.composite_index import Asked, estimate_of, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import with_gradients

@@ -16,7 +16,7 @@ from inerter.files.study.limits import limit_results, limits_in
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
-from inerter.methods.note import after, parts_of
+from inerter.methods.notes import after, parts_of
 from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.optimisation.threads import one_blas_thread

@@ -21,7 +21,7 @@ from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import tasks
-from inerter.methods.asking import objective_of, without_tied_values
+from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import Compiled, Refusing, asked_of
 from inerter.methods.registry import is_blind

@@ -15,7 +15,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.indices.names import index_names
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import Asked
 from inerter.methods.method import asked_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.active_constraints import ConstraintResult

@@ -9,9 +9,9 @@ import numpy as np
 from inerter.errors import InerterError
 from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
-from inerter.methods.asking import Asked
-from inerter.methods.counterpart import has_play
+from inerter.methods.composite_index import Asked
 from inerter.methods.equivalent import has_friction
+from inerter.methods.equivalent_linear import has_play
 from inerter.methods.method import Doubting, asked_of, evaluate
 from inerter.methods.registry import averages, is_blind, without_roads
 from inerter.systems.piecewise import piecewise

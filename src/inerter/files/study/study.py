@@ -24,7 +24,7 @@ from inerter.files.study.sections import OVER, Settings, study_codec
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import INDICES, excitation_of, make_index
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import Asked
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import make_method

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from inerter.kernels.arrays import Account, Run
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import over_columns, polynomial
 
 

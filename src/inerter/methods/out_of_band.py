@@ -14,7 +14,7 @@ from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import Question
 from inerter.methods.averages import interval_of, mean_and_error
-from inerter.methods.counterpart import (
+from inerter.methods.equivalent_linear import (
     Counterpart,
     counterpart,
     has_play,
@@ -24,7 +24,7 @@ from inerter.methods.counterpart import (
 )
 from inerter.methods.error_bounds import checked
 from inerter.methods.linear import Conventions
-from inerter.methods.measured import road_errors
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
     STEP,

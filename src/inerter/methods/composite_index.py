@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.question import Index
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combined
 from inerter.networks.elements import Element, Free, Tied, middle
 from inerter.vehicle.replace_values import mounted_elements, with_elements
 from inerter.vehicle.vehicle import Vehicle

@@ -18,10 +18,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.systems import rationals
+from inerter.systems import exact_rank
+from inerter.systems.exact_rank import FractionRows, Row
 from inerter.systems.graph import Graph
 from inerter.systems.incidence import stacked
-from inerter.systems.rationals import FractionRows, Row
 
 Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
@@ -61,11 +61,11 @@ class _Basis:
 
 @lru_cache(maxsize=4096)
 def _meant(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
-    given, basis = rationals.exact(np.frombuffer(data)[None])[0], _basis(span)
+    given, basis = exact_rank.exact(np.frombuffer(data)[None])[0], _basis(span)
     if basis is None:
         return tuple(given)
-    shares = rationals.product([[given[i] for i in basis.columns]], basis.inverse, len(basis.rows))[0]
-    made = rationals.product([[_simple(share) for share in shares]], basis.rows, span.shape[1])[0]
+    shares = exact_rank.product([[given[i] for i in basis.columns]], basis.inverse, len(basis.rows))[0]
+    made = exact_rank.product([[_simple(share) for share in shares]], basis.rows, span.shape[1])[0]
     near = [abs(x - z) <= reach for x, z, reach in zip(given, made, basis.reach, strict=False)]
     if not all(near[: span.nodes]):
         return tuple(given)
@@ -89,11 +89,11 @@ def _basis(span: BranchRows) -> _Basis | None:
     scaled = nodes / np.where(sizes > 0.0, sizes, 1.0)
     chosen = independent_rows(scaled)
     columns = scipy.linalg.qr(scaled[chosen], mode="r", pivoting=True)[1][: len(chosen)]
-    square = rationals.exact(nodes[chosen][:, columns])
-    inverse = rationals.weights(square, rationals.exact(np.eye(len(chosen))))
+    square = exact_rank.exact(nodes[chosen][:, columns])
+    inverse = exact_rank.weights(square, exact_rank.exact(np.eye(len(chosen))))
     found = [row for row in inverse if row is not None]
-    reach = rationals.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
-    return _Basis(rationals.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
+    reach = exact_rank.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
+    return _Basis(exact_rank.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
 
 
 def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
+from inerter.kernels.double_double import add_multiple
 from inerter.kernels.linalg import copy, factor, solve, solve_rows, solve_transposed
-from inerter.kernels.twofold import add_multiple
 
 Array = Any
 DESCRIPTOR = f"Tuple(({3 * 'float64[:,:,::1], '}{3 * 'float64[:,::1], '}{3 * 'float64[:,:,::1], '}))"  # its type

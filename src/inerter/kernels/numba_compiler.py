@@ -1,6 +1,6 @@
 """What rests on private parts of Numba: a cache that may fail, parts without a life of their own, calls by address.
 
-It is used where `declare.way` says so, and only there; `pyproject.toml` bounds the versions of Numba for its sake.
+It is used where `decorators.way` says so, and only there; `pyproject.toml` bounds the versions of Numba for its sake.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from numba.experimental import function_type
 
 from inerter.kernels.cache import tell, tell_of_damage, tell_of_no_cache
 from inerter.kernels.compiler import FUSED
-from inerter.kernels.declare import Signature
+from inerter.kernels.decorators import Signature
 
 _SUM = hashlib.sha256().digest_size
 
@@ -218,7 +218,7 @@ def instruction_type(definition: Callable[..., Any]) -> Any:
 
 
 class PartDispatcher(CPUDispatcher):
-    """What makes a part of compiled code: see `declare.part`."""
+    """What makes a part of compiled code: see `decorators.part`."""
 
     def __init__(
         self, function: Callable[..., Any], signature: Signature, borrowing: bool, fused: bool, place: str

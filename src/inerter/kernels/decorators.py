@@ -34,9 +34,9 @@ def way() -> str:
 
 def private() -> Any:
     """All that rests on private parts of the compiler; asked for by code that is being compiled."""
-    from inerter.kernels import tuned  # noqa: PLC0415 - heavy
+    from inerter.kernels import numba_compiler  # noqa: PLC0415 - heavy
 
-    return tuned
+    return numba_compiler
 
 
 class Kernel:

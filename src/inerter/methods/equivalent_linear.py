@@ -19,10 +19,10 @@ from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slippin
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
-from inerter.systems.arrivals import inputs_of
 from inerter.systems.descriptor import close, describe
-from inerter.systems.filtered import filtered
+from inerter.systems.input_paths import inputs_of
 from inerter.systems.linear import LinearSystem
+from inerter.systems.output_filters import filtered
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism

@@ -9,7 +9,7 @@ import numpy as np
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import Linear
-from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
+from inerter.systems.coordinate_split import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import Branch
 from inerter.vehicle.mechanism import GROUND_ACCELERATION
 

@@ -15,10 +15,10 @@ from inerter.errors import ErrorSource, Status
 from inerter.methods.steady_squares import Squares, steady_squares, unsettled
 from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import tabulate
-from inerter.simulation.start import initial_state
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import Arrival
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
-from inerter.kernels.declare import function_at, kernel, part
+from inerter.kernels.decorators import function_at, kernel, part
 
 
 def padded(rows: int) -> int:

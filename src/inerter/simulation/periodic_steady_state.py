@@ -12,8 +12,8 @@ from inerter.errors import SimulationError, Status, StatusKind
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.start import initial_state
 from inerter.simulation.trajectory import Repetition
 from inerter.systems.piecewise import PiecewiseSystem
 

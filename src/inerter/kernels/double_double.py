@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.declare import instruction, part
+from inerter.kernels.decorators import instruction, part
 
 Array = Any
 

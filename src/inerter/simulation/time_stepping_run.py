@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.signals.signal import Signal
+from inerter.simulation.initial_state import Initial, initial_state
 from inerter.simulation.inputs import check_steps, just_before, whole_steps
-from inerter.simulation.start import Initial, initial_state
 from inerter.simulation.time_stepping import Histories, Start, StepTable, Stop, step_through
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import Output

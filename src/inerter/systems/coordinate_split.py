@@ -21,7 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import inertias, of_law, ports, stacked
-from inerter.systems.levers import BranchRows, is_lost, lost_in
+from inerter.systems.lever_arms import BranchRows, is_lost, lost_in
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from inerter.networks.elements.roles import Linear
-from inerter.systems.arrivals import Arrival
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import Arrival
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.symmetry import alike_half, opposed_half
 

@@ -293,6 +293,6 @@ def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatc
     before = numba.config.CACHE_DIR
     monkeypatch.setattr(numba, "njit", slow)
     with ThreadPoolExecutor(4) as pool:
-        list(pool.map(compiler.compiled, [first_root.function, over_columns.function] * 4))
+        list(pool.map(compiler.compile_function, [first_root.function, over_columns.function] * 4))
     assert kept == [True] * 8
     assert before == numba.config.CACHE_DIR

@@ -1,4 +1,4 @@
-"""The energy account: what roads, forces and branches did along a piece of the motion."""
+"""Energy account: work of roads, forces and branches along a piece of the motion."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_twofold, pull_back, twofold_space
+from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_extended, extended_space, pull_back
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.double_double import add_product
 from inerter.kernels.h2 import units
@@ -196,7 +196,7 @@ def frequencies(poles: Array) -> Array:
 
 @part()
 def top(poles: Array, residues: Array, direct: float, low: float, high: float) -> float:
-    """Where the gain is largest between `low` and `high`, by golden section."""
+    """Frequency of the largest gain between `low` and `high`, by golden section."""
     width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     ga, gb = modal_gain(poles, residues, direct, a), modal_gain(poles, residues, direct, b)
@@ -248,7 +248,7 @@ def peaks(system: Array, lost: Array) -> Any:
 
 
 @kernel("peaks of a gain", f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2))")
-def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
+def peaks_of(points: Array, descriptor: Array, extended: Array) -> Any:
     """`peaks` at each row of `points`: frequencies and values (designs, order + 2), those of each design in a row.
 
     The last place is that of an infinite frequency; places without a peak have the frequency nan and the value 0.
@@ -256,10 +256,10 @@ def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
     """
     places = descriptor[1].shape[2] + 2
     omegas, values = np.full((points.shape[0], places), np.nan), np.full((points.shape[0], places), np.nan)
-    room = twofold_space(descriptor)
+    room = extended_space(descriptor)
     A, B, C, D, _, _, _, _ = room[0]
     for i in range(points.shape[0]):
-        if not close_twofold(room, points[i], descriptor, twofold):
+        if not close_extended(room, points[i], descriptor, extended):
             continue
         where, found = peaks((A, B, C, D), room[1])
         if found.size == 0 or found.size >= places:  # there are never more than order + 1

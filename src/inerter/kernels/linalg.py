@@ -24,7 +24,7 @@ def factor(A: Array, pivots: Array) -> bool:
 
 @part(borrowing=True)
 def factor_within(A: Array, pivots: Array) -> bool:
-    """As `factor`, where `pivots` come as rows below which each column is zero, none less than that before it."""
+    """LU factors of A in its place; each column is zero below the row in `pivots`, which are in ascending order."""
     n = A.shape[0]
     for k in range(n):
         best, row, end = abs(A[k, k]), k, pivots[k] + 1

@@ -55,7 +55,7 @@ class CompiledQuestion:
         return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
 
     @cached_property
-    def twofold(self) -> tuple[Array, Array]:
+    def extended_descriptor(self) -> tuple[Array, Array]:
         """S, [R F], Y_eta and [Y_x Y_u] in a row, and what rounding has taken: no entries where that is nothing."""
         d = self.problem.descriptor
         stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
@@ -193,7 +193,7 @@ class CompiledQuestion:
             return self._combined(self._compiled_norms(points))
         if not self.serves[0]:
             return np.full(points.shape[0], np.inf)
-        largest = gain_kernels.peaks_of(points, self.descriptor, self.twofold)[1].max(axis=1)
+        largest = gain_kernels.peaks_of(points, self.descriptor, self.extended_descriptor)[1].max(axis=1)
         return np.where(np.isfinite(largest), largest * self.problem.weights[0], np.nan)
 
     def _compiled_norms(self, points: Array) -> Array:
@@ -303,7 +303,7 @@ class CompiledQuestion:
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
         """Arguments of compiled code other than the points; filters are part of the descriptor."""
-        return self.descriptor, self.twofold, self.arrivals
+        return self.descriptor, self.extended_descriptor, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
         return float(self._combined(self._exact_norms(point)))
@@ -320,7 +320,9 @@ class CompiledQuestion:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
         if not self.is_peak:
             return None
-        omegas, gains = (found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor, self.twofold))
+        omegas, gains = (
+            found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor, self.extended_descriptor)
+        )
         peaks = np.isfinite(omegas)
         if not peaks.any():  # equal poles have no partial fractions
             return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])

@@ -23,8 +23,8 @@ from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
 from inerter.systems.descriptor import Descriptor, describe
-from inerter.systems.input_paths import Arrival, fed, inputs_of
-from inerter.systems.output_filters import filtered
+from inerter.systems.input_paths import Arrival, apply_excitation, inputs_of
+from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism
 
@@ -177,7 +177,9 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
         (question.outputs[0].output, *map(velocity_of, parts.dampers)),
     )
     filters = (*question.filters, *(None for _ in parts.dampers))
-    return HarmonicBalance(question, filtered(fed(descriptor, (*arrivals, *beside)), filters), parts)
+    return HarmonicBalance(
+        question, with_output_filters(apply_excitation(descriptor, (*arrivals, *beside)), filters), parts
+    )
 
 
 def _slowest(omegas: Array) -> float:

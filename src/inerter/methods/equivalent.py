@@ -24,7 +24,7 @@ from inerter.networks.elements.roles import Linear, Statistical
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
-from inerter.systems.input_paths import Arrival, fed, inputs_of
+from inerter.systems.input_paths import Arrival, apply_excitation, inputs_of
 from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
@@ -179,7 +179,9 @@ def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
     while True:
         parts = equivalent(driven, found)
         velocities = [velocity_of(name) for name in parts.dampers]
-        reached = _reached_directly(fed(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals))
+        reached = _reached_directly(
+            apply_excitation(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals)
+        )
         if not reached:
             return found
         found |= {parts.dampers[i] for i in reached}

@@ -22,7 +22,7 @@ from inerter.norms.stability import balance
 from inerter.systems.descriptor import close, describe
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.linear import LinearSystem
-from inerter.systems.output_filters import filtered
+from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
@@ -64,7 +64,9 @@ class Counterpart:
         """Equivalent linear model with the inputs of the mechanism instead of the sources."""
         names = [output.output for output in self.problem.question.outputs]
         arrivals = self.problem.question.arrivals(self.mechanism)
-        descriptor = filtered(describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters)
+        descriptor = with_output_filters(
+            describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters
+        )
         return close(descriptor, self._dampers(speeds))
 
     def is_road(self, name: str) -> bool:

@@ -23,9 +23,9 @@ from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.filters import Filter, high_pass
-from inerter.systems.input_paths import Column, columns_of, excesses_of, fed, inputs_of
+from inerter.systems.input_paths import Column, apply_excitation, columns_of, excesses_of, inputs_of
 from inerter.systems.linear import LinearSystem
-from inerter.systems.output_filters import filtered
+from inerter.systems.output_filters import with_output_filters
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -88,7 +88,7 @@ class LinearProblem:
     @cached_property
     def descriptor(self) -> Descriptor:
         """Descriptor with the filters on its outputs."""
-        return filtered(self.unfiltered, self.question.filters)
+        return with_output_filters(self.unfiltered, self.question.filters)
 
     @cached_property
     def weights(self) -> Array:
@@ -132,7 +132,7 @@ class LinearProblem:
         half = on_one_side(mechanism, [a for a in self.question.arrivals(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
-            return replace(self, unfiltered=fed(described, half[1]), arrivals=tuple(columns_of(half[1])))
+            return replace(self, unfiltered=apply_excitation(described, half[1]), arrivals=tuple(columns_of(half[1])))
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(
@@ -227,7 +227,9 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
     arrivals = question.arrivals(driven)
     descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
     columns = tuple(columns_of(arrivals))
-    return LinearProblem(asked, fed(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals))
+    return LinearProblem(
+        asked, apply_excitation(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals)
+    )
 
 
 def check_peak_gain(question: Question) -> None:

@@ -14,7 +14,7 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade, propagate
 from inerter.norms.exact import EXACT, h2_exactly
 from inerter.norms.stability import balance, split
-from inerter.systems.linear import Fine, LinearSystem, check_system
+from inerter.systems.linear import ExtendedMatrices, LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
 _LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
@@ -90,7 +90,7 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
     matrices = A, B, C, system.D
-    found = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
+    found = _squares(given, ExtendedMatrices(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
     if np.any(seen):
         status = parts.status
     elif np.any(direct):
@@ -136,7 +136,7 @@ def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matri
     return result
 
 
-def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> tuple[Matrix, float] | None:
+def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | None) -> tuple[Matrix, float] | None:
     """The squared norm of each output and the relative error of any; None where that may be more than `ACCURATE`.
 
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
@@ -194,7 +194,7 @@ def _covariance(
     P[np.ix_(w, w)] = walks
     P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T
-    P[d] = solver.refined(fine_A[d], W[d] + _both(follow @ P[dw].T))
+    P[d] = solver.refine(fine_A[d], W[d] + _both(follow @ P[dw].T))
     rest = np.asarray(_both(fine_A @ P) + W, dtype=float)
     rest[np.ix_(w, w)] = 8.0 * _EPS * walks
     enters = np.diag(noise)
@@ -240,7 +240,7 @@ class _Lyapunov:
         P = self.Z @ (Y / scale) @ self.Z.T
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    def refined(self, A: Matrix, W: Matrix) -> Matrix:
+    def refine(self, A: Matrix, W: Matrix) -> Matrix:
         """P for an A and a W in extended precision, corrected for its residuals while that helps.
 
         Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.

@@ -106,7 +106,7 @@ class Filter:
     def then(self, other: Filter) -> Filter:
         """Filter in series with another one after it, without rounding."""
         pairs = ((self.numerator, other.numerator), (self.denominator, other.denominator))
-        return Filter(*(_convolved(*pair) for pair in pairs))
+        return Filter(*(_convolve(*pair) for pair in pairs))
 
     def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """F(j omega) at angular frequencies [rad/s]."""
@@ -142,7 +142,7 @@ def as_filter(given: object) -> Filter | None:
     raise LinearSystemError(f"A filter is Filter(numerator, denominator) or a LinearSystem, got {given!r}.")
 
 
-def _convolved(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:
+def _convolve(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:
     result = [Fraction(0)] * (len(left) + len(right) - 1)
     for i, x in enumerate(left):
         for j, y in enumerate(right):

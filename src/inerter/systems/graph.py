@@ -71,7 +71,7 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
 
 def _linear_graph(mechanism: Mechanism) -> Graph:
-    whole, labels = _labelled(mechanism, to_analysis)
+    whole, labels = _collect_labels(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
@@ -98,7 +98,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    return _expand(mechanism, *_labelled(mechanism, _shaped), ())
+    return _expand(mechanism, *_collect_labels(mechanism, _to_piecewise), ())
 
 
 def _other_meanings(linear: Graph, full: Graph) -> frozenset[str]:
@@ -124,10 +124,10 @@ def switching(mechanism: Mechanism) -> Mechanism:
 
 def switching_parts(element: Element) -> Iterator[Element]:
     """Elements that simulation uses in place of one; a free value may be at its upper bound in them."""
-    return expand_elements(element, _shaped).elements()
+    return expand_elements(element, _to_piecewise).elements()
 
 
-def _shaped(element: Element) -> Network:
+def _to_piecewise(element: Element) -> Network:
     """`Element.as_piecewise`, of a free value at its upper bound where need be: the shape does not depend on it."""
     try:
         return element.as_piecewise()
@@ -136,7 +136,9 @@ def _shaped(element: Element) -> Network:
         return element.with_value(element.value.upper).as_piecewise()
 
 
-def _labelled(mechanism: Mechanism, view: Callable[[Element], Network]) -> tuple[dict[str, Network], dict[int, str]]:
+def _collect_labels(
+    mechanism: Mechanism, view: Callable[[Element], Network]
+) -> tuple[dict[str, Network], dict[int, str]]:
     """The mounted networks with groups named by their labels, and the label of each element by its identity.
 
     Each element is an object of its own: one may be mounted several times.

@@ -76,7 +76,7 @@ def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:
     return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
 
 
-def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
+def apply_excitation(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
     Raises `LinearSystemError` for the displacement of a road whose velocity is felt at once.
@@ -91,7 +91,7 @@ def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
         for number, (name, *_) in enumerate(columns)
     }
     if all(a.filter is None or a.filter.order == 0 for a in arrivals):
-        return _levered(d, list(zip(at, arrivals, strict=True)), sums)
+        return _scale_inputs(d, list(zip(at, arrivals, strict=True)), sums)
     chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, arrivals, strict=True) if a.filter is not None))
     old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
     edges = np.cumsum([old, *(one.order for _, one in chains)])
@@ -104,7 +104,7 @@ def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
         X_x[rows[:-1], rows[1:]] = one.scaled[0]
         X_eta[rows[-1:], unknown] = one.scaled[0]
     reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, arrivals, strict=True)]
-    wired = _Wired(reached, chains, places, len(columns), n)
+    wired = _FilterChains(reached, chains, places, len(columns), n)
     S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
     return replace(
         d,
@@ -124,7 +124,7 @@ def fed(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
     )
 
 
-def _levered(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: Mapping[str, Sum]) -> Descriptor:
+def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: Mapping[str, Sum]) -> Descriptor:
     """The descriptor whose inputs are columns times numbers."""
     levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
     for column, arrival in reached:
@@ -142,7 +142,7 @@ def _plain(arrivals: Sequence[Arrival]) -> bool:
 
 
 @dataclass(frozen=True)
-class _Wired:
+class _FilterChains:
     """Arrivals with the numbers of their columns and inputs, the chains of filters, and where their states are."""
 
     reached: list[tuple[int, int, Arrival]]

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from inerter.systems import exact_rank
 from inerter.systems.exact_rank import FractionRows, Row
 from inerter.systems.graph import Graph
-from inerter.systems.incidence import stacked
+from inerter.systems.incidence import incidence_rows
 
 Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
@@ -40,13 +40,15 @@ class BranchRows:
     @staticmethod
     def of(graph: Graph, roads: Sequence[int]) -> BranchRows:
         """Branch rows of a graph over its nodes and the roads of these numbers."""
-        on_nodes, on_roads = stacked(sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph)
+        on_nodes, on_roads = incidence_rows(
+            sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph
+        )
         rows = np.hstack([on_nodes, on_roads[:, list(roads)]])
         return BranchRows(rows.shape, rows.tobytes(), len(graph.nodes))
 
-    def meant(self, rows: Matrix) -> FractionRows:
+    def exact_rows(self, rows: Matrix) -> FractionRows:
         """Rows over nodes, or over nodes and roads, as they were meant to be."""
-        return [list(_meant(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
+        return [list(_snap_row(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +62,7 @@ class _Basis:
 
 
 @lru_cache(maxsize=4096)
-def _meant(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
+def _snap_row(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
     given, basis = exact_rank.exact(np.frombuffer(data)[None])[0], _basis(span)
     if basis is None:
         return tuple(given)

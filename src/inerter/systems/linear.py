@@ -15,7 +15,7 @@ Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Fine:
+class ExtendedMatrices:
     """A, B, C, D in extended precision, and bounds of what rounding has done to each of their entries."""
 
     matrices: tuple[Matrix, Matrix, Matrix, Matrix]
@@ -31,11 +31,11 @@ class Origin:
 
     functions: Callable[[Sequence[str], Sequence[str]], TransferFunctions]
     rounded: tuple[Matrix, Matrix, Matrix, Matrix]
-    fine: Fine
+    fine: ExtendedMatrices
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
 
-    def of(self, system: LinearSystem) -> Fine | None:
+    def of(self, system: LinearSystem) -> ExtendedMatrices | None:
         """The part that a system has of it; None if the system's matrices were changed by hand."""
         if not (set(system.inputs) <= set(self.inputs) and set(system.outputs) <= set(self.outputs)):
             return None
@@ -47,7 +47,7 @@ class Origin:
 
         if not all(map(np.array_equal, (system.A, system.B, system.C, system.D), part(self.rounded))):
             return None
-        return Fine(part(self.fine.matrices), part(self.fine.errors))
+        return ExtendedMatrices(part(self.fine.matrices), part(self.fine.errors))
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,7 @@ class LinearSystem:
         return int(self.A.shape[0])
 
     @property
-    def fine(self) -> Fine | None:
+    def fine(self) -> ExtendedMatrices | None:
         """The matrices before they were rounded; None where they were given, or changed by hand."""
         return None if self.origin is None else self.origin.of(self)
 

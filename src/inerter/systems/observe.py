@@ -56,7 +56,7 @@ def add(rows: RowBlocks, more: Iterable[Matrix]) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Observed:
+class StackedOutput:
     """Output as stacks over the free values, with the sizes of their terms, and with its rate if it is a state."""
 
     name: str
@@ -65,13 +65,13 @@ class Observed:
     state: RowBlocks | None  # its rate
 
 
-def observe(frame: Frame, name: str) -> Observed:
+def observe(frame: Frame, name: str) -> StackedOutput:
     """An output by name. Raises `LinearSystemError` for one that linear analysis does not have."""
-    output = _found(frame, name)
+    output = _resolve_output(frame, name)
     if output.displacement.size or output.road.size:
         return _displacement(frame, name, output)
     fixed = motion(frame, output, len(frame.graph.nodes))
-    rows = _stacked(frame, *(row.astype(np.longdouble) for row in fixed))
+    rows = _constant_stacks(frame, *(row.astype(np.longdouble) for row in fixed))
     sizes = _absolute(rows)
     for i in np.flatnonzero(output.forces):
         branch = frame.graph.branches[i]
@@ -79,7 +79,7 @@ def observe(frame: Frame, name: str) -> Observed:
             term = _times_value(frame, branch.element, row)
             stack += term
             size += np.abs(term)
-    return Observed(name, rows, sizes, None)
+    return StackedOutput(name, rows, sizes, None)
 
 
 def observed_by_default(frame: Frame) -> list[str]:
@@ -92,7 +92,7 @@ def _drifts(frame: Frame, output: Output) -> bool:
     return bool(output.displacement.size) and frame.displacement(output.displacement, roads) is None
 
 
-def _found(frame: Frame, name: str) -> Output:
+def _resolve_output(frame: Frame, name: str) -> Output:
     if name in frame.known:
         return frame.known[name]
     find(outputs(frame.mechanism, full_graph(frame.mechanism)), name, LinearSystemError)
@@ -102,16 +102,16 @@ def _found(frame: Frame, name: str) -> Output:
     )
 
 
-def _displacement(frame: Frame, name: str, output: Output) -> Observed:
+def _displacement(frame: Frame, name: str, output: Output) -> StackedOutput:
     """A displacement: a combination of spring elongations, or a state that follows its velocity."""
     nodes = _or(output.displacement, len(frame.graph.nodes))
     roads = _or(output.road, len(frame.mechanism.roads))
     weights = frame.displacement(nodes, roads)
-    rows = _stacked(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
-    return Observed(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
+    rows = _constant_stacks(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
+    return StackedOutput(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
 
 
-def _stacked(frame: Frame, *rows: Any) -> OutputStacks:
+def _constant_stacks(frame: Frame, *rows: Any) -> OutputStacks:
     """Rows that no value changes."""
     k = len(frame.free)
     eta, x, u = (np.concatenate([row[None], np.zeros((k, row.size), row.dtype)]) for row in rows)

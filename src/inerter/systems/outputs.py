@@ -101,13 +101,15 @@ def stroke_of(label: str) -> str:
 
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
-    found = [Output(r.name, "m", _said(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
+    found = [
+        Output(r.name, "m", _readable_name(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)
+    ]
     angles = {c.name for c in mechanism.coordinates if c.angle}
     for given, row in zip(mechanism.forces, forces, strict=True):
         unit = "N m" if set(given.port) <= angles else "N"
         if mechanism.ground_moves and given.name == GROUND_ACCELERATION:
             unit = "m/s^2"
-        found.append(Output(given.name, unit, _said(given.name), external=row))
+        found.append(Output(given.name, unit, _readable_name(given.name), external=row))
     return found
 
 
@@ -122,7 +124,7 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
     ground = np.array([float(force.name == GROUND_ACCELERATION) for force in mechanism.forces])
     for coordinate, row in _moving(mechanism, graph):
-        unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
+        unit, said = "rad" if coordinate.angle else "m", _readable_name(coordinate.name)
         carried = {"external": ground} if mechanism.ground_moves and not coordinate.angle else {}
         for what in _motions(mechanism, coordinate):
             moved: dict[str, Any] = {what: row, **carried}
@@ -146,7 +148,7 @@ def _over_ground(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for coordinate, row in (one for one in _moving(mechanism, graph) if not one[0].angle):
         for what in _OVER_GROUND:
             moved: dict[str, Any] = {what: row}
-            title = f"{_said(coordinate.name)} {what} over the ground"
+            title = f"{_readable_name(coordinate.name)} {what} over the ground"
             found.append(Output(f"{coordinate.name}_relative_{what}", f"m{_MOTIONS[what]}", title, **moved))
     return found
 
@@ -158,8 +160,8 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
         total = np.zeros(len(graph.branches))
         total[list(mount.carriers)] = 1.0
         found += [
-            Output(force, "N", _said(force), forces=total),
-            Output(travel, "m", _said(travel), displacement=mount.nodes, road=mount.roads),
+            Output(force, "N", _readable_name(force), forces=total),
+            Output(travel, "m", _readable_name(travel), displacement=mount.nodes, road=mount.roads),
         ]
     return found
 
@@ -171,7 +173,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for i, branch in enumerate(graph.branches):
         if branch.label not in graph.silent:
             places.setdefault(branch.label, (branch, (i,)))
-    found, lost = [], ~_placed(mechanism, graph)
+    found, lost = [], ~_positioned_nodes(mechanism, graph)
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
         total[list(carriers)] = 1.0
@@ -186,7 +188,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
-def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
+def _positioned_nodes(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
     """Nodes whose place is known: coordinates, and what springs and gaps join to them. Others, such as that between a
     damper and an inerter, have velocities only.
     """
@@ -209,7 +211,7 @@ def _of_still(mechanism: Mechanism) -> list[Output]:
     found: list[Output] = []
     for strut in mechanism.still:
         force, travel = of_mount(strut)
-        found += [Output(force, "N", _said(force)), Output(travel, "m", _said(travel))]
+        found += [Output(force, "N", _readable_name(force)), Output(travel, "m", _readable_name(travel))]
         labels = [element.label for element in strut.network.elements()]
         for label in (*(f"{strut.name}.{label}" for label in labels), *labels):
             found += [
@@ -283,5 +285,5 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
     raise error(f"There is no output named {name!r}. {hint}")
 
 
-def _said(name: str) -> str:
+def _readable_name(name: str) -> str:
     return name.replace("_", " ")

@@ -108,7 +108,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     return _system(mechanism, kinematics(mechanism))
 
 
-def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
+def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
     """System with other values of some elements and inertias, by label.
 
     Far quicker than `piecewise`: for those who simulate one layout thousands of times. What was zero must stay zero.
@@ -157,7 +157,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     inertia = inertia_values(mechanism, graph)
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
     _check_inertia(kinetic, inertia)
-    resistance = _weighted(graph, Linear.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
+    resistance = _sum_over_law(graph, Linear.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
@@ -174,7 +174,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
         inertia=inertia,
         positions=places.nodes,
         heights=places.roads,
-        needs_velocity=tuple(np.any(np.abs(_felt(resistance, R.shape[1])) > 1e-9, axis=0)),
+        needs_velocity=tuple(np.any(np.abs(_condensed_damping(resistance, R.shape[1])) > 1e-9, axis=0)),
         needs_acceleration=known.needs_acceleration,
         moves_elements=known.moves_elements,
     )
@@ -204,7 +204,7 @@ def _mechanics(
     left[:na, :na] = kinetic.T @ momentum[:, :na]
     right = [
         -resistance[:, :na],
-        -_weighted(known.graph, Linear.STIFFNESS, moving, np.hstack(known.places.elongations)),
+        -_sum_over_law(known.graph, Linear.STIFFNESS, moving, np.hstack(known.places.elongations)),
         -resistance[:, na + nw :],
         -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
         (known.ports @ np.hstack([R, N])).T,
@@ -231,13 +231,13 @@ def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
     return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
 
 
-def _weighted(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:
+def _sum_over_law(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:
     """Sum over the elements of one law of left row x coefficient x right row."""
     values = np.array([b.element.coefficient if b.element.linear is law else 0.0 for b in graph.branches])
     return np.ascontiguousarray(left.T @ (values[:, None] * right))
 
 
-def _felt(damping: Matrix, na: int) -> Matrix:
+def _condensed_damping(damping: Matrix, na: int) -> Matrix:
     """Damping between inertias and roads once the massless motions between them have given way."""
     nv = damping.shape[0]
     if na == nv:
@@ -315,7 +315,9 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     frame, count = _Frame(system), len(system.mechanism.coordinates)
     rows = motion(frame, output, len(system.graph.nodes))
     if output.displacement.size or output.road.size:
-        over_g, over_z = _displaced(system, output.displacement if output.displacement.size else np.zeros(count))
+        over_g, over_z = _displacement_rows(
+            system, output.displacement if output.displacement.size else np.zeros(count)
+        )
         add(rows, frame.displacement(over_g, over_z + output.road if output.road.size else over_z))
     for i in np.flatnonzero(output.forces):
         add(rows, [output.forces[i] * row for row in frame.force(int(i))])
@@ -323,7 +325,7 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     return on_x, on_u, on_eta
 
 
-def _displaced(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
+def _displacement_rows(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
     """Rows of a displacement over positions and over heights of roads, for massless nodes too."""
     count = len(system.mechanism.coordinates)
     if not np.any(nodes[count:]):

@@ -87,7 +87,7 @@ class Approximate:
     size = property(lambda self: self.of.velocity_intensity)
     unit = "m/s"
 
-    def driven(self, mechanism):
+    def excited_mechanism(self, mechanism):
         return mechanism
 
     def arrivals(self, mechanism):
@@ -130,6 +130,10 @@ def test_the_jump_of_an_acceleration_where_friction_turns_is_twice_its_force_ove
     for kept in ways.values():
         modes = SimpleNamespace(maps=maps[kept], state=states[kept])
         some = SimpleNamespace(
-            system=integration.system, count=int(kept.sum()), modes=modes, seen=integration.seen, eta=integration.eta
+            system=integration.system,
+            count=int(kept.sum()),
+            modes=modes,
+            projected_state=integration.projected_state,
+            eta=integration.eta,
         )
         np.testing.assert_allclose(steady_squares.jump_sizes(some, outputs[:1]), expected, rtol=1e-9)

@@ -15,7 +15,7 @@ from random_mechanisms import FAMILIES, mechanisms, opened
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
 from inerter.errors import LinearSystemError, PerformanceIndexError, StatusKind
-from inerter.methods.harmonic_response import Forced
+from inerter.methods.harmonic_response import ForcedResponse
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.out_of_band import mean_on_roads, on_roads
 from inerter.systems.piecewise import piecewise
@@ -131,7 +131,7 @@ def test_a_single_mass_in_closed_form():
 def test_a_push_on_moving_ground_is_that_on_ground_at_rest():
     """Motions relative to the ground answer a force in the same way, whether the ground may move or not."""
     one = single(3.0, 0.7, 50.0)
-    moving = it.GroundAcceleration(4.0).driven(one)
+    moving = it.GroundAcceleration(4.0).excited_mechanism(one)
     found = it.h2_norm(it.assemble(moving, "push", "mass_relative_displacement"))
     assert found == pytest.approx(it.h2_norm(it.assemble(one, "push", "mass_displacement")), rel=1e-12)
 
@@ -145,7 +145,7 @@ def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
 def simulated(mechanism, index, roads=4):
     """By simulation of the design as it is, though it is linear: what `ExpectedValue` does with friction."""
     question = index.question(mechanism)
-    system = piecewise(question.drive.driven(mechanism))
+    system = piecewise(question.drive.excited_mechanism(mechanism))
     design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
     with ThreadPoolExecutor(1) as pool:
         return mean_on_roads(design, roads, None, pool)
@@ -237,7 +237,7 @@ def test_a_peak_is_where_a_simulated_sine_is_largest(source):
     car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
     found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
     (arrival,) = it.OneInput(source).arrivals(car)
-    by_time, squares = Forced(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
+    by_time, squares = ForcedResponse(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
     assert squares.status.ok
     assert by_time == pytest.approx(found.value, rel=1e-5)
     assert found.value == found.peaks[0].gain

@@ -35,7 +35,7 @@ def compiled(mechanism, index):
 def whole(question, point):
     """Norms of the whole mechanism: behind filters without rounding, and corrected where these only stand in."""
     system = question.problem.system(question._closed(point))
-    return question.problem.corrected(system, h2_exactly(system, None)[0])[0]
+    return question.problem.correct_norms(system, h2_exactly(system, None)[0])[0]
 
 
 def check(seed):
@@ -72,7 +72,7 @@ def test_slopes_of_halves_are_those_of_the_whole():
     question, point, _ = check(1)
     value, gradient = question.value_and_gradient(point)
     problem = question.problem
-    total = lambda at: float(problem.question.combined(whole(question, at), problem.weights))  # noqa: E731
+    total = lambda at: float(problem.question.combine(whole(question, at), problem.weights))  # noqa: E731
     assert value == pytest.approx(total(point), rel=1e-9)
     for i, slope in enumerate(gradient):
         step = 1e-4 * (np.arange(2) == i)
@@ -104,6 +104,6 @@ def test_a_free_bar_keeps_the_half_that_feels_it():
         whole(question, point * (1 + step * (np.array(list(mechanism.free_values())) == "bar")))
         for step in (1e-4, -1e-4)
     )
-    weighted = [float(question.problem.question.combined(one, question.problem.weights)) for one in (ahead, behind)]
+    weighted = [float(question.problem.question.combine(one, question.problem.weights)) for one in (ahead, behind)]
     at = list(mechanism.free_values()).index("bar")
     assert gradient[at] * point[at] == pytest.approx((weighted[0] - weighted[1]) / 2e-4, rel=1e-5)

@@ -43,7 +43,7 @@ class Excitation(Protocol):
         """Whether the sources are white noises; else the excitation is one input, for gains."""
         ...
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited: unchanged, reduced by symmetry, or in coordinates relative to moving ground."""
         ...
 
@@ -65,7 +65,7 @@ class RoadVelocity:
         """2 pi sqrt(V kappa) [m/s per root of Hz]."""
         return self.road.velocity_intensity
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism on one track, halved if symmetric, without a coherence; unchanged with one."""
         return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
@@ -118,7 +118,7 @@ class WhiteForce:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as given."""
         return mechanism
 
@@ -149,7 +149,7 @@ class GroundAcceleration:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism in coordinates relative to the ground."""
         return mechanism.on_moving_ground()
 
@@ -201,9 +201,9 @@ class Shaped:
     def _of(self) -> Excitation:
         return as_excitation(self.excitation, "A shaping filter")
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by the unfiltered excitation."""
-        return self._of.driven(mechanism)
+        return self._of.excited_mechanism(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """Input paths of the unfiltered excitation, each with the filter in series after its own."""
@@ -227,7 +227,7 @@ class OneInput:
     unit = ""
     is_random = False
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as given."""
         return mechanism
 

@@ -56,28 +56,28 @@ class MeasuredRoad:
     @property
     def size(self) -> float:
         """Root of the two-sided spectral density of the white velocity [m/s per root of Hz]."""
-        return self._shaped.size
+        return self._shaped_road.size
 
     @property
     def unit(self) -> str:
         """Unit of the source."""
-        return self._shaped.unit
+        return self._shaped_road.unit
 
     @property
-    def _shaped(self) -> Excitation:
+    def _shaped_road(self) -> Excitation:
         return Shaped(self.road, self.filter)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by a road."""
-        return self._shaped.driven(mechanism)
+        return self._shaped_road.excited_mechanism(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """Input paths of a road, each with the filter."""
-        return self._shaped.arrivals(mechanism)
+        return self._shaped_road.arrivals(mechanism)
 
     def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
         """Error sources of the road, and of the filter, whose density deviates from the line by at most `DEVIATION`."""
-        return *stand_ins_of(self._shaped, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
+        return *stand_ins_of(self._shaped_road, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
 
 
 def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:

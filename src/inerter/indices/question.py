@@ -77,7 +77,7 @@ class Question:
         """Whether the index is a peak gain; else it is made of r.m.s. values."""
         return self.combination is Combination.PEAK_GAIN
 
-    def combined(self, rms: Array, weights: Array) -> Array:
+    def combine(self, rms: Array, weights: Array) -> Array:
         """Index from r.m.s. values (..., outputs) and weights (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
             return np.asarray(np.sqrt(rms**2 @ weights**2))
@@ -86,7 +86,7 @@ class Question:
     def slopes(self, rms: Array, weights: Array) -> Array:
         """Derivatives of the combined index with respect to the r.m.s. values (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
-            return np.asarray(weights**2 * rms / max(float(self.combined(rms, weights)), 1e-300))
+            return np.asarray(weights**2 * rms / max(float(self.combine(rms, weights)), 1e-300))
         return weights
 
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:

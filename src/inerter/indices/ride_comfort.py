@@ -53,11 +53,11 @@ class RideComfort:
         comfort, where = mechanism.measures.comfort, "measures.comfort"
         if self.weighting is None:
             return on_road(self, mechanism, comfort, where)
-        felt = [part for output in comfort if (part := self._felt(mechanism, output)) is not None]
+        felt = [part for output in comfort if (part := self._weighted_output(mechanism, output)) is not None]
         outputs, filters = tuple(output for output, _ in felt), tuple(passed for _, passed in felt)
         return on_road(self, mechanism, outputs, where, filters, Combination.ROOT_OF_SQUARES)
 
-    def _felt(self, mechanism: Mechanism, output: Weighted) -> tuple[Weighted, Filter] | None:
+    def _weighted_output(self, mechanism: Mechanism, output: Weighted) -> tuple[Weighted, Filter] | None:
         """Acceleration with its factor in ISO 2631-1 and its weighting filter; None if the standard ignores it."""
         assert self.weighting is not None
         moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)

@@ -51,13 +51,13 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     (1.04, 1.04)
     """
     system = iso2631(weighting)
-    times, given = _checked(time, acceleration)
+    times, given = _check_samples(time, acceleration)
     mean = float(given.mean())
     is_offset = abs(given[0] - mean) < abs(given[0])  # else taking it away would make the step that it is to spare
     constant = mean if is_offset and abs(mean) > _CONSTANT * float(given.std()) else 0.0
     given = given - constant if constant else given
     step = float(times[-1] - times[0]) / (times.size - 1)
-    values = _passed(system, given, step)
+    values = _filter_samples(system, given, step)
     energy = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] ** 2 + values[:-1] ** 2))])
     since = times - times[0]
     late = since >= _RUNNING * (1.0 - _EVEN)
@@ -72,7 +72,7 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     )
 
 
-def _passed(system: LinearSystem, given: Array, step: float) -> Array:
+def _filter_samples(system: LinearSystem, given: Array, step: float) -> Array:
     """The output for an input that is linear between even samples, mode by mode: the poles of weightings differ."""
     matrices = (system.A, system.B, system.C, system.D)
     A, B, C, D, _ = scipy.signal.cont2discrete(matrices, step, method="foh")
@@ -84,7 +84,7 @@ def _passed(system: LinearSystem, given: Array, step: float) -> Array:
     return np.asarray(result)
 
 
-def _checked(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
+def _check_samples(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
     try:
         times, given = np.asarray(time, dtype=float), np.asarray(acceleration, dtype=float)
     except (TypeError, ValueError):

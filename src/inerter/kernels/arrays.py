@@ -78,7 +78,7 @@ class MapRows(NamedTuple):
     eta: int  # a', w and the forces of the elements
     entry: int  # conditions on entry
     output: int  # squared outputs, then what the energy account needs
-    seen: int  # the state as the mode sees it
+    projected_state: int  # the state after projection onto the mode
 
 
 class Mechanics(NamedTuple):
@@ -112,7 +112,7 @@ class Modes(NamedTuple):
     number: Ints  # (3^k,) index of the mode that a state of the elements has, or -1
     state: IntTable  # (capacity, k): -1, 0, 1 of each element
     conditions: IntTable  # (capacity, 3): numbers of conditions on velocity, of springs, of the loose
-    maps: Matrices  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the state as seen
+    maps: Matrices  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the projected state
     reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and impulse on each element
     limits: Matrices  # (capacity, k, 2): intervals of the guards while the mode lasts
     entry_limits: Matrices  # the same on entry

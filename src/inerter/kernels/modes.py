@@ -296,7 +296,7 @@ def project_onto_entry(sizes: Sizes, first: MapRows, mode: Mode) -> None:
     """Project the state in all rows onto the conditions on entry, so that drift off them has no effect."""
     n, entry, conditions = sizes.states, first.entry, mode.conditions[0] + mode.conditions[1]
     maps, width = mode.maps, mode.maps.shape[1]
-    add(maps, first.seen, 0, unit(n), 1.0)
+    add(maps, first.projected_state, 0, unit(n), 1.0)
     if conditions == 0:
         return
     mended = block(mode.reaction, 0, n, 0, conditions)

@@ -136,11 +136,11 @@ def _project_state(run: Run, length: float) -> None:
 
     A velocity of 1e-13 m/s that a long stick has left behind would otherwise choose the direction of the slip.
     """
-    sizes, motion, room, seen = run.mechanics.sizes, run.motion, run.room, run.mechanics.rows.seen
+    sizes, motion, room, first = run.mechanics.sizes, run.motion, run.room, run.mechanics.rows.projected_state
     m, n, nu = motion.place[0].mode, sizes.states, sizes.inputs
     inputs_from(room.numbers, sizes.roads, nu, length, motion.place[0].clock, length, room.inputs)
     for i in range(n):
-        room.guess[i] = over_columns(run.modes.maps[m, seen + i], motion.state, room.inputs[0], n, nu)
+        room.guess[i] = over_columns(run.modes.maps[m, first + i], motion.state, room.inputs[0], n, nu)
     for i in range(n):
         motion.state[i] = room.guess[i]
         motion.scale[i] = max(motion.scale[i], abs(motion.state[i]))

@@ -18,7 +18,7 @@ from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, Statu
 from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly
-from inerter.methods.error_bounds import checked
+from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
@@ -90,7 +90,7 @@ class HarmonicBalance:
         for row, limit in zip(*self._rows(points), strict=True):
             yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
 
-    def known(self, points: Array, trusted: bool = True) -> Array:
+    def evaluate_points(self, points: Array, trusted: bool = True) -> Array:
         """The index at each row of `points`; nan where it could not be found, or is not to be `trusted`."""
         result = np.full(points.shape[0], np.nan)
         for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
@@ -106,7 +106,7 @@ class HarmonicBalance:
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, accurate or not; infinite where unknown."""
-        known = self.known(points, trusted=False)
+        known = self.evaluate_points(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -155,7 +155,7 @@ class HarmonicBalance:
         words = [f"{said} by its describing function" for said in self.parts.frictions]
         result = replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
         own = ErrorSource("one harmonic of friction", bound), ErrorSource("search for the peak", _SEARCH)
-        return checked(result, own, PROMISE + _SEARCH)
+        return with_error_sources(result, own, PROMISE + _SEARCH)
 
 
 def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalance:

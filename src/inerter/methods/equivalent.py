@@ -129,8 +129,8 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
     found: dict[str, tuple[str, Element]] = {}
 
-    def changed(mount: str, network: Network) -> Network:
-        def damped(element: Element) -> Network:
+    def replace_frictions(mount: str, network: Network) -> Network:
+        def to_damper(element: Element) -> Network:
             if not element.is_damped:
                 return element
             name = f"equivalent_damper_{len(found) + 1}"
@@ -143,12 +143,12 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
                 return Gap(0.0, name)
             return Damper(Free(1e-3 * scale, 1e3 * scale, name), name)
 
-        return map_elements(network, damped)
+        return map_elements(network, to_damper)
 
     other = replace(
         mechanism,
-        struts=tuple(replace(s, network=changed(s.name, s.network)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=changed(t.name, t.network)) for t in mechanism.tyres),
+        struts=tuple(replace(s, network=replace_frictions(s.name, s.network)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=replace_frictions(t.name, t.network)) for t in mechanism.tyres),
     )
     moving = {branch.label for branch in linear_graph(other).branches}
     names = tuple(name for name in found if name in moving)
@@ -171,7 +171,7 @@ def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
 
     With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
     """
-    driven = switching(question.drive.driven(mechanism))
+    driven = switching(question.drive.excited_mechanism(mechanism))
     arrivals = question.arrivals(driven)
     if not any(element.is_damped for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
         return frozenset()

@@ -50,7 +50,7 @@ def has_play(system: PiecewiseSystem) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Counterpart:
+class EquivalentLinearModel:
     """A question put to a mechanism whose frictions are dampers still to be chosen."""
 
     problem: LinearProblem
@@ -76,7 +76,7 @@ class Counterpart:
     @property
     def mechanism(self) -> Mechanism:
         """The mechanism with dampers that is driven."""
-        return self.problem.question.drive.driven(self.parts.mechanism)
+        return self.problem.question.drive.excited_mechanism(self.parts.mechanism)
 
     def _dampers(self, speeds: Array) -> dict[str, float]:
         forces = GAUSSIAN * np.array(self.parts.forces, dtype=float)
@@ -87,7 +87,7 @@ class Counterpart:
     def unlike(self, speeds: Array, norms: Array) -> float:
         """Relative change of the mean squares if all slip velocities double; `norms` are those at `speeds`."""
         system = self.system(2.0 * speeds)
-        other = self.problem.corrected(system, h2(system, self.problem.pade_order).outputs)[0]
+        other = self.problem.correct_norms(system, h2(system, self.problem.pade_order).outputs)[0]
         return relative_change(other**2, norms**2)
 
 
@@ -97,11 +97,13 @@ def relative_change(values: Array, references: Array) -> float:
     return float(np.nanmax(np.abs(values[moving] / references[moving] - 1.0), initial=0.0))
 
 
-def counterpart(mechanism: Mechanism, question: Question, conventions: Conventions) -> Counterpart | None:
+def equivalent_linear_model(
+    mechanism: Mechanism, question: Question, conventions: Conventions
+) -> EquivalentLinearModel | None:
     """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:
         parts = equivalent(mechanism, slipping_freely(mechanism, question))
-        return Counterpart(linear_problem(parts.mechanism, question, conventions), parts)
+        return EquivalentLinearModel(linear_problem(parts.mechanism, question, conventions), parts)
     except (MechanismError, LinearSystemError):
         return None
 

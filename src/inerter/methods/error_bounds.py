@@ -16,7 +16,7 @@ ROUNDING = "rounding"
 STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
 
-def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
+def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
     """Estimate with a method's `own` error sources before those of approximated excitations, which it already has.
 
     Inaccurate where its own exceed `promise`, or the others `STAND_INS`. A value that is infinite is so exactly, and

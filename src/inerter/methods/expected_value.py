@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, Question
-from inerter.methods.error_bounds import checked
-from inerter.methods.harmonic_response import Forced, coarse_maxima, frequency_grid, local_maxima
+from inerter.methods.error_bounds import with_error_sources
+from inerter.methods.harmonic_response import ForcedResponse, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.multisine_lines import SampledObjective
@@ -134,10 +134,10 @@ class ExpectedValue:
         if self.relative_error is not None:
             halfway = {name: middle(free) for name, free in vehicle.free_values().items()}
             roads = self.estimate(vehicle.with_values(halfway), index).realisations
-            fixed = self.fixed(max(roads, 2))
+            fixed = self.with_realisations(max(roads, 2))
         return SampledObjective(fixed.estimate, vehicle, index)
 
-    def fixed(self, realisations: int, period: int | None = None) -> ExpectedValue:
+    def with_realisations(self, realisations: int, period: int | None = None) -> ExpectedValue:
         """Copy of the method with a fixed number of roads, and with `period` [s] as their length if given."""
         return replace(self, realisations=realisations, relative_error=None, period=period or self.period)
 
@@ -148,7 +148,7 @@ class ExpectedValue:
         """
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         question = under(conventions, mechanism, index.question(mechanism))
-        system = piecewise(question.drive.driven(mechanism))
+        system = piecewise(question.drive.excited_mechanism(mechanism))
         if question.is_peak:
             return None
         if not is_nonlinear(system, question):
@@ -169,7 +169,7 @@ class ExpectedValue:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         question = under(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
-        system = piecewise(question.drive.driven(mechanism))
+        system = piecewise(question.drive.excited_mechanism(mechanism))
         if not _is_held(system, question, conventions) and not is_nonlinear(system, question):
             assert linear is not None
             return replace(linear.estimate({}), standard_error=0.0)
@@ -195,7 +195,7 @@ class ExpectedValue:
             )
         (output,) = question.outputs
         (arrival,) = question.arrivals(system.mechanism)
-        forced = Forced(system, arrival, output.output, question.amplitude, *question.filters)
+        forced = ForcedResponse(system, arrival, output.output, question.amplitude, *question.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})
@@ -209,7 +209,7 @@ class ExpectedValue:
         status = worst_of(one.status for one in summits)
         value = np.nan if status.kind is StatusKind.FAILED else weighted[0].gain
         estimate = Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
-        return checked(estimate, summits[0].errors, PROMISE)
+        return with_error_sources(estimate, summits[0].errors, PROMISE)
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:

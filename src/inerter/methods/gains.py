@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.methods.equivalent_linear import Counterpart, memory
-from inerter.methods.excitation import Excited
+from inerter.methods.equivalent_linear import EquivalentLinearModel, memory
+from inerter.methods.excitation import ExcitedInputs
 from inerter.methods.steady_squares import jump_scatter, share_of
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
@@ -53,7 +53,7 @@ class LinearModel:
         return float(self.missed * min(misfit + self.unlike, 1.0))
 
 
-def linear_model(linear: Counterpart, speeds: Array, period: float) -> LinearModel:
+def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) -> LinearModel:
     """The model for a motion with these r.m.s. velocities across the frictions that repeats after `period` [s]."""
     system = linear.system(speeds)
     whole = h2(system, linear.problem.pade_order)
@@ -69,7 +69,7 @@ class Runs:
     """Power spectra of some outputs of a design, with realisations simulated on demand."""
 
     system: PiecewiseSystem
-    drive: Excited
+    drive: ExcitedInputs
     outputs: tuple[str, ...]
     frictions: tuple[str, ...]  # velocities across them
     seed: int
@@ -95,7 +95,7 @@ class Runs:
         """R.m.s. velocities across the frictions so far [m/s]."""
         return np.asarray(np.sqrt(np.mean(self.powers, axis=0)))
 
-    def missed(self, places: Sequence[int], factor: Array) -> float:
+    def sampling_error(self, places: Sequence[int], factor: Array) -> float:
         """Relative error from sampling of r.m.s. values of squared gains times `factor` (outputs, harmonics).
 
         That of the worst realisation: what is folded onto low harmonics adds to all of them.
@@ -150,9 +150,9 @@ def largest_gain(
         linear = 0.0 if known is None else known.squares(at)[0]
         return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
 
-    peaks = [_refined(between, omega, i) for i in _summits(total, window.size)]
+    peaks = [_refine_maximum(between, omega, i) for i in _summits(total, window.size)]
     if known is not None:  # whose gain is known below the lowest harmonic too
-        peaks.append(_refined(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
+        peaks.append(_refine_maximum(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
     found = sorted(peaks, key=lambda peak: -peak.gain)
     best = found[0]
     deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
@@ -165,7 +165,7 @@ def _summits(values: Array, reach: int) -> list[int]:
     return [int(i) for i in high if values[i] >= values[max(i - reach, 0) : i + reach + 1].max()]
 
 
-def _refined(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
+def _refine_maximum(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
     """The maximum between the neighbours of a harmonic."""
     at = np.linspace(omega[max(i - 1, 0)], omega[min(i + 1, omega.size - 1)], 129)
     values = squares(at)

@@ -53,7 +53,7 @@ def brief_words_of(name: str) -> str:
     return str(getattr(_kind(name), "brief", name))
 
 
-def what_is_seen(name: str) -> Sees:
+def nonlinearities_of(name: str) -> Sees:
     """Nonlinearities that the method models."""
     return Sees(_kind(name).sees)
 
@@ -72,8 +72,8 @@ def without_roads(name: str, *, has_play: bool) -> str:
 
 def deciding(name: str, message: str) -> str:
     """Clause on the method that can decide an uncertain result, to follow the message of its status."""
-    others = [other for other in METHODS if what_is_seen(other) is Sees.BOTH]
-    if what_is_seen(name) is Sees.BOTH or not others or any(other in message for other in others):
+    others = [other for other in METHODS if nonlinearities_of(other) is Sees.BOTH]
+    if nonlinearities_of(name) is Sees.BOTH or not others or any(other in message for other in others):
         return ""
     return f"; {others[0]} simulates it, and can decide"
 
@@ -89,7 +89,7 @@ def with_gradients(conventions: str) -> tuple[Method, ...]:
     They are quick, and so the first look at a search of what is not.
     """
     names = [name for name in METHODS if getattr(_kind(name), "has_gradients", False)]
-    names.sort(key=lambda name: what_is_seen(name).value, reverse=True)
+    names.sort(key=lambda name: nonlinearities_of(name).value, reverse=True)
     return tuple(make_method(name, {"conventions": conventions}, {}) for name in names)
 
 

@@ -93,7 +93,7 @@ class StatisticalLinearisation:
         if closure is None:
             return Norm(self.conventions).estimate_many(vehicle, [index], points)[:, 0]
         columns = [points[name] for name in vehicle.free_values()]
-        return closure.known(np.column_stack(columns) if columns else np.zeros((1, 0)))
+        return closure.evaluate_points(np.column_stack(columns) if columns else np.zeros((1, 0)))
 
     def _closure(self, vehicle: Vehicle, index: Index) -> GaussianClosure | HarmonicBalance | None:
         """The closure that serves the index; None if no friction acts."""

@@ -33,9 +33,9 @@ class Squares(NamedTuple):
     jumps: Array
 
 
-def unsettled(found: Sequence[Repetition], peaks: float) -> ErrorSource:
+def steady_state_error(found: Sequence[Repetition], peaks: float) -> ErrorSource:
     """Error source of a periodic steady state not fully reached; `peaks` scales it from r.m.s. values."""
-    return ErrorSource("periodic steady state", 3.0 * peaks * max((one.left for one in found), default=0.0))
+    return ErrorSource("periodic steady state", 3.0 * peaks * max((one.remaining_change for one in found), default=0.0))
 
 
 def steady_squares(
@@ -90,7 +90,7 @@ def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
     """
     system, count = integration.system, integration.count
     maps, states = integration.modes.maps[:count], integration.modes.state[:count]
-    rows = np.concatenate([maps[:, integration.seen, -1], maps[:, integration.eta, -1]], axis=1)
+    rows = np.concatenate([maps[:, integration.projected_state, -1], maps[:, integration.eta, -1]], axis=1)
     over = [output_rows(system, system.outputs[name]) for name in outputs]
     pushed = rows @ np.array([np.concatenate([on_x, on_eta]) for on_x, _, on_eta in over]).T
     sizes = np.zeros((states.shape[1], len(outputs)))

@@ -20,7 +20,7 @@ from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.initial_state import ending_of, initial_state
 from inerter.simulation.inputs import (
-    DrivenMany,
+    BatchInputs,
     InputTable,
     assign,
     check_driven,
@@ -81,7 +81,7 @@ def simulate_many(
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[DrivenMany],
+    **driven: Unpack[BatchInputs],
 ) -> Batch:
     """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
 
@@ -92,8 +92,8 @@ def simulate_many(
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
-    cars = listed("vehicles", vehicles)
-    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
+    cars = as_list("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
         raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
     if not is_number(settled):
@@ -213,14 +213,14 @@ def _system(car: Vehicle, outputs: Sequence[str]) -> PiecewiseSystem:
     return system
 
 
-def listed(what: str, given: object) -> list[Any]:
+def as_list(what: str, given: object) -> list[Any]:
     """A list of one or more; raises `SimulationError` for anything else."""
     if not isinstance(given, Sequence) or isinstance(given, str) or not given:
         raise SimulationError(f"There must be one or more {what} in a list, got {given!r}.")
     return list(given)
 
 
-def groups_of(driven: DrivenMany) -> tuple[dict[str, Any], int]:
+def groups_of(driven: BatchInputs) -> tuple[dict[str, Any], int]:
     """The sequences that drive the runs of each vehicle, by keyword, and how many runs that are."""
     groups: dict[str, Any] = {
         name: group for name, group in driven.items() if name not in ("speed", "initial") and group is not None

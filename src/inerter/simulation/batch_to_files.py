@@ -11,8 +11,8 @@ from typing import Any, Unpack
 from inerter.errors import SimulationError, WorkError
 from inerter.kernels.prepare import prepare_on
 from inerter.simulation import event_driven
-from inerter.simulation.batch import groups_of, listed
-from inerter.simulation.inputs import DrivenMany, check_driven, starting_from
+from inerter.simulation.batch import as_list, groups_of
+from inerter.simulation.inputs import BatchInputs, check_driven, starting_from
 from inerter.simulation.simulate import simulate
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
@@ -31,7 +31,7 @@ def simulate_to_files(
     every: int = 1,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[DrivenMany],
+    **driven: Unpack[BatchInputs],
 ) -> list[list[Path]]:
     """Simulate every vehicle on every signal, and write the history of `outputs` of each run to a file in `folder`.
 
@@ -43,8 +43,8 @@ def simulate_to_files(
     Raises `SimulationError` as `simulate_many` does, and if the folder holds something or cannot be written;
     `WorkError` if what was written elsewhere is not seen here, or the disk is full.
     """
-    cars = listed("vehicles", vehicles)
-    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
+    cars = as_list("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
     check_driven("simulate_to_files", driven)
     groups, count = groups_of(driven)
     for car in cars:

@@ -52,7 +52,7 @@ class InputTable:
         return int(self.sampled.size)
 
 
-class Driven(TypedDict, total=False):
+class RunInputs(TypedDict, total=False):
     """Keywords of `simulate` for the excitation and the initial state."""
 
     road: Signal | Mapping[str, Signal] | None
@@ -62,7 +62,7 @@ class Driven(TypedDict, total=False):
     initial: Initial
 
 
-class DrivenMany(TypedDict, total=False):
+class BatchInputs(TypedDict, total=False):
     """Keywords of `simulate_many` for the excitation: the j-th entry of each sequence excites the j-th run.
 
     All have one speed and one initial state.
@@ -77,13 +77,13 @@ class DrivenMany(TypedDict, total=False):
 
 def check_driven(caller: str, driven: Mapping[str, object]) -> None:
     """Raises TypeError for a keyword that says nothing of what drives a run."""
-    unknown = [name for name in driven if name not in Driven.__annotations__]
+    unknown = [name for name in driven if name not in RunInputs.__annotations__]
     if unknown:
-        known = ", ".join(Driven.__annotations__)
+        known = ", ".join(RunInputs.__annotations__)
         raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (what drives a run: {known}).")
 
 
-def starting_from(driven: Driven | DrivenMany) -> Initial:
+def starting_from(driven: RunInputs | BatchInputs) -> Initial:
     """The state to start from: at rest, if nothing is said."""
     return driven.get("initial", "rest")
 
@@ -95,7 +95,7 @@ def assign(
     displacement: object = None,
     speed: float | None = None,
 ) -> tuple[list[Signal | None], list[float]]:
-    """The signal (None: nothing moves) and the delay [s] of every road and force, from the keywords of `Driven`.
+    """The signal (None: nothing moves) and the delay [s] of every road and force, from the keywords of `RunInputs`.
 
     Raises `SimulationError` for a signal that is missing, that nothing takes, or whose delay is not known.
     """
@@ -114,7 +114,7 @@ def assign(
         )
     by_force = _by_name("forces", forces, names) if isinstance(forces, Mapping) or len(names) == 1 else {}
     if forces is not None and not by_force:
-        raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_listed(names)}).")
+        raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_format_names(names)}).")
     signals: list[Signal | None] = [by_road.get(name) for name in roads]
     late = [0.0 if isinstance(moved, Mapping) and not by_track else r.distance for r in mechanism.roads]
     delays = [_delay(d, s, speed, name) for d, s, name in zip(late, signals, roads, strict=True)]
@@ -137,7 +137,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
         raise SimulationError(f"The mechanism has nothing that takes {what}=.")
     for name, signal in found.items():
         if name not in names:
-            raise SimulationError(f"There is no input named {name!r} for {what}= (there are: {_listed(names)}).")
+            raise SimulationError(f"There is no input named {name!r} for {what}= (there are: {_format_names(names)}).")
         if not isinstance(signal, Signal):
             raise SimulationError(
                 f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got {signal!r}."
@@ -145,7 +145,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
     return dict(found)
 
 
-def _listed(names: Sequence[str]) -> str:
+def _format_names(names: Sequence[str]) -> str:
     return ", ".join(names) or "none"
 
 

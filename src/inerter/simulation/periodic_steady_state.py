@@ -82,11 +82,11 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
 def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
     again = repeating(table)
-    quick, settled = _repeated(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
+    quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
     recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:
-        recorded.warning = _unsettled(settled)
+        recorded.warning = _steady_state_warning(settled)
     return recorded, settled
 
 
@@ -104,13 +104,15 @@ def mean_squares(
     integration's `status` or `warning` say holds for the squares.
     """
     begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeated(begun, repeating(table), repeats, most)
+    integration, settled = _repeat_period(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
-        integration.warning = _unsettled(settled)
+        integration.warning = _steady_state_warning(settled)
     return integration.record.squares / (table.samples - 1), integration, settled
 
 
-def _repeated(integration: Integration, again: InputTable, repeats: float, most: int) -> tuple[Integration, Repetition]:
+def _repeat_period(
+    integration: Integration, again: InputTable, repeats: float, most: int
+) -> tuple[Integration, Repetition]:
     """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
@@ -127,6 +129,6 @@ def _repeated(integration: Integration, again: InputTable, repeats: float, most:
     return integration, Repetition(float(again.time[-1] - again.time[0]), periods, mismatch)
 
 
-def _unsettled(found: Repetition) -> Status:
+def _steady_state_warning(found: Repetition) -> Status:
     message = f"after {found.periods} periods the state still changes by {found.mismatch:.1e} of its size"
     return Status(StatusKind.INACCURATE, message)

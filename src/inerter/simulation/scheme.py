@@ -104,7 +104,7 @@ def scheme_of(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, h: floa
     aims, Z, shared = _aims(parts, rows, at, h)
     still = np.zeros((loose.shape[1], at.total))
     predict = np.vstack([w, drift, still, aims, still, shared])[:, : at.w.start]
-    starts, ends = _observed(parts, rows, at, h)
+    starts, ends = _observed_rows(parts, rows, at, h)
     return Scheme(
         at=at,
         predict=np.ascontiguousarray(predict),
@@ -212,7 +212,7 @@ def _aims(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, 
     return aims, Z, Z @ half
 
 
-def _observed(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix]:
+def _observed_rows(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix]:
     """Displacements, velocities, accelerations and forces, from the step after an instant and from that before it.
 
     The mean of both is of second order in h: velocities of massless nodes and all forces are mean values of a step.

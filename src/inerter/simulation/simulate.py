@@ -16,7 +16,7 @@ from inerter.simulation.event_driven import check_elements
 from inerter.simulation.initial_state import Initial, ending_of, initial_state
 from inerter.simulation.inputs import (
     MEMORY_LIMIT,
-    Driven,
+    RunInputs,
     assign,
     check_driven,
     check_holds,
@@ -77,12 +77,12 @@ def simulate(
     energy: bool = False,
     memory_limit: float = MEMORY_LIMIT,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[Driven],
+    **driven: Unpack[RunInputs],
 ) -> Trajectory:
     """Simulate `vehicle` for `duration` [s] with true sticking and Nordin's backlash, sampled every `step` [s].
 
-    What drives it, and from where, is said by the keywords of `Driven`. `road` moves all roads, each after its delay at
-    `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
+    The keywords of `RunInputs` are the excitation and the initial state. `road` moves all roads, each after its delay
+    at `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
     `displacement` moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and
     forces that get no signal are zero.
 
@@ -121,7 +121,7 @@ def simulate(
     return trajectory_of(integration, steady, label)
 
 
-def check_simulation(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> int:
+def check_simulation(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> int:
     """The number of steps; raises what `simulate` would raise before it begins to integrate."""
     plan = _plan(vehicle, driven, settings)
     if settings.integrator != "time-stepping":
@@ -135,7 +135,7 @@ def check_simulation(vehicle: Vehicle, driven: Driven, settings: RunSettings) ->
     return whole_steps(plan.length, settings.step)
 
 
-def _plan(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> _Plan:
+def _plan(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> _Plan:
     initial = starting_from(driven)
     moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
     system = piecewise(vehicle)

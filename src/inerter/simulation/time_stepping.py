@@ -161,12 +161,12 @@ def _initial(parts: Parts, scheme: Scheme, table: StepTable, start: Start | Stop
     if isinstance(start, Stop):
         known[at.d], known[at.p] = start.displacement, start.momentum
     else:
-        known[at.d] = _settled(parts, table, start, offsets)
+        known[at.d] = _balanced_displacements(parts, table, start, offsets)
         known[at.p] = inertia.M @ start.velocity + inertia.B @ known[at.rate0]
     return known
 
 
-def _settled(parts: Parts, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
+def _balanced_displacements(parts: Parts, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
     """Displacements at the start, in which nodes that only springs hold are in balance.
 
     Massless and undamped, they are there at once; the step's mean force would let them swing about that place.

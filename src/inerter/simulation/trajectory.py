@@ -72,7 +72,7 @@ class Repetition:
     mismatch: float  # largest change of the state over one period, relative to its largest value
 
     @property
-    def left(self) -> float:
+    def remaining_change(self) -> float:
         """Estimated distance of the state from its limit, relative to its largest value.
 
         Changes that have become so small over so many periods, each as much smaller than the last, add up to that.
@@ -141,10 +141,10 @@ class Trajectory:
     @property
     def static_loads(self) -> dict[str, float]:
         """The weight that each tyre carries at rest [N], by its name; empty where that is not known, as `notes` say."""
-        return self._weighed[0]
+        return self._static_loads[0]
 
     @cached_property
-    def _weighed(self) -> tuple[dict[str, float], str]:
+    def _static_loads(self) -> tuple[dict[str, float], str]:
         """Static loads of the tyres [N], and the reason if they are unknown."""
         try:
             return ({} if self._mechanism is None else static_tyre_loads(self._mechanism)), ""
@@ -174,7 +174,7 @@ class Trajectory:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the motion: a sentence for each tyre that would lift off."""
-        static, unknown = self._weighed
+        static, unknown = self._static_loads
         if unknown:
             return (f"Whether a tyre would lift off cannot be told. {unknown}",)
         by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in static}

@@ -44,7 +44,7 @@ def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, Question
 
 def _of_name(place: Sequence[str], named: NameReference, mechanism: Mechanism, question: Question) -> Problem | None:
     """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
-    driven = question.drive.driven(mechanism)
+    driven = question.drive.excited_mechanism(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     told: Sequence[str]
     if named.what == "output":

@@ -149,8 +149,8 @@ WRONG = {
         lambda: assemble(mechanism(tyres=(Tyre("t", k - Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
         "'b1' is mounted on the road itself",
     ),
-    "unknown output": (lambda: assemble(car(), outputs="comfort"), "no output named 'comfort'"),
-    "unknown input": (lambda: assemble(car(), inputs="wind"), "no input named 'wind'"),
+    "unknown output": (lambda: assemble(car(), outputs="comfort"), "Unknown output 'comfort'"),
+    "unknown input": (lambda: assemble(car(), inputs="wind"), "Unknown input 'wind'"),
     "assembling free values": (lambda: assemble(open_car()), "c, b is still free"),
     # values
     "fixing what is not free": (lambda: open_car().with_values({"d": 1.0}), "unknown free value 'd'"),
@@ -188,7 +188,7 @@ WRONG = {
     "unknown conventions": (lambda: Norm("paper2009"), "known: exact, paper2008"),
     "no comfort defined": (lambda: evaluate(mechanism(measures=Measures()), J1, Norm()), "Set measures.comfort"),
     "no load carrying defined": (lambda: evaluate(mechanism(), J5, Norm()), "measures.load_input"),
-    "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "stands on none"),
+    "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "has no tyre"),
     # systems
     "matrices that do not fit": (
         lambda: LinearSystem([[1.0, 2.0]], [[1.0]], [[1.0]], [[0.0]]),
@@ -201,7 +201,7 @@ WRONG = {
         "1 inputs, which need as many different names",
     ),
     "negative delay": (lambda: system().delayed("road", [-1.0]), "zero or more seconds"),
-    "selecting a stranger": (lambda: system().select(outputs="x"), "no output named 'x'"),
+    "selecting a stranger": (lambda: system().select(outputs="x"), "Unknown output 'x'"),
     "no such approximant": (
         lambda: h2_norm(assemble(half()).delayed("road", [0.0, 0.1, 0.0, 0.0]), 0),
         "order 1 to 10",

@@ -224,7 +224,7 @@ def test_a_response_that_does_not_repeat_says_so():
 @pytest.mark.parametrize(
     ("build", "words"),
     [
-        (lambda: ApproximateLinear(conventions="2008"), "no conventions named"),
+        (lambda: ApproximateLinear(conventions="2008"), "Unknown conventions"),
         (lambda: ApproximateLinear(road=1e-3), "MultisineExcitation"),
         (lambda: ApproximateLinear(realisations=1), "from 2"),
         (lambda: ApproximateLinear(realisations=2.5), "whole number"),

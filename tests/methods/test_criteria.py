@@ -107,12 +107,12 @@ def test_gravity_in_a_record_is_no_step() -> None:
 
 BAD_SIGNALS = {
     "text": (("a", "b"), "two lists of numbers"),
-    "unlike": (([0.0, 1.0, 2.0], [1.0]), "as many finite numbers"),
-    "nan": (([0.0, 1.0], [1.0, math.nan]), "as many finite numbers"),
-    "uneven": (([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "even steps"),
-    "backwards": (([2.0, 1.0, 0.0], [1.0, 1.0, 1.0]), "even steps"),
-    "short": (([0.0, 0.1], [1.0, 1.0]), "lasts 1 s at least"),
-    "weighting": (([0.0, 1.0], [1.0, 1.0], "Wx"), "no weighting 'Wx'"),
+    "unlike": (([0.0, 1.0, 2.0], [1.0]), "equally long lists of finite numbers"),
+    "nan": (([0.0, 1.0], [1.0, math.nan]), "equally long lists of finite numbers"),
+    "uneven": (([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "equally spaced"),
+    "backwards": (([2.0, 1.0, 0.0], [1.0, 1.0, 1.0]), "equally spaced"),
+    "short": (([0.0, 0.1], [1.0, 1.0]), "last at least 1 s"),
+    "weighting": (([0.0, 1.0], [1.0, 1.0], "Wx"), "Unknown weighting 'Wx'"),
 }
 
 
@@ -248,7 +248,7 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
         (strut,),
         measures=it.Measures(comfort=(it.Weighted("tilt_acceleration"),)),
     )
-    with pytest.raises(PerformanceIndexError, match=r"weighs pitch and roll.*'tilt'"):
+    with pytest.raises(PerformanceIndexError, match=r"weights pitch and roll.*'tilt'"):
         it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").question(tilting)
     for wrong in ("We", "Wx", 3):
         with pytest.raises(PerformanceIndexError, match=r"Wk, Wd"):
@@ -296,7 +296,7 @@ def test_what_a_trajectory_calls_an_output_can_be_asked_for(name: str) -> None:
 
 
 def test_elements_that_are_not_there_are_refused_with_those_that_are() -> None:
-    with pytest.raises(PerformanceIndexError, match=r"no element named 'q' \(there are: k, c, b, f"):
+    with pytest.raises(PerformanceIndexError, match=r"Unknown element 'q'; available: k, c, b, f"):
         it.evaluate(CAR, it.ElementForce(ROAD, "q"), it.Norm())
     with pytest.raises(PerformanceIndexError, match="stroke of 'c' is not known"):
         it.evaluate(CAR, it.ElementStroke(ROAD, "c"), it.Norm())

@@ -194,7 +194,7 @@ def test_a_strut_that_sticks_on_an_undamped_tyre_has_no_steady_state():
             found = it.evaluate(paper_quarter_car(strut), index, TWO)
             assert math.isnan(found.value)
             assert found.status.kind == "marginal"
-            assert "damps the motion at 24.1 rad/s" in found.status.message  # root of 120e3 / 206.75
+            assert "almost undamped mode at 24.1 rad/s" in found.status.message  # root of 120e3 / 206.75
     held = ROAD.velocity_intensity * 120e3 / math.sqrt(2.0 * 800.0 * 206.75)  # one mass on tyre and skyhook damper
     assert it.evaluate(skyhook(k | Damper(500.0) | Friction(1e5)), J1, TWO).value == pytest.approx(held, rel=1e-6)
 
@@ -317,21 +317,21 @@ def test_an_adaptive_method_fixes_its_roads_for_a_search():
 
 
 WRONG = {
-    "one road": (lambda: ExpectedValue(realisations=1), "whole number from 2 on, got 1"),
-    "half a road": (lambda: ExpectedValue(realisations=2.5), "whole number from 2 on, got 2.5"),
+    "one road": (lambda: ExpectedValue(realisations=1), "an integer of at least 2, got 1"),
+    "half a road": (lambda: ExpectedValue(realisations=2.5), "an integer of at least 2, got 2.5"),
     "roads as truth": (lambda: ExpectedValue(realisations=True), "got True"),
     "roads as text": (lambda: ExpectedValue(realisations="4"), "got '4'"),
-    "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed is a whole number from 0 on"),
+    "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed must be a non-negative integer"),
     "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed is a whole number"),
-    "no length": (lambda: ExpectedValue(period=0), "length of a road in seconds is a whole number from 1 on, got 0"),
-    "half a second": (lambda: ExpectedValue(period=0.5), "whole number from 1 on, got 0.5"),
-    "no threads": (lambda: ExpectedValue(jobs=0), "number of threads is a whole number from 1 on"),
+    "no length": (lambda: ExpectedValue(period=0), "length of a road in seconds must be a positive integer, got 0"),
+    "half a second": (lambda: ExpectedValue(period=0.5), "a positive integer, got 0.5"),
+    "no threads": (lambda: ExpectedValue(jobs=0), "number of threads must be a positive integer"),
     "both": (lambda: ExpectedValue(realisations=4, relative_error=0.01), "not both"),
     "no error": (lambda: ExpectedValue(relative_error=0.0), "between 0 and 1, got 0.0"),
     "an error of nan": (lambda: ExpectedValue(relative_error=math.nan), "between 0 and 1"),
     "an error as text": (lambda: ExpectedValue(relative_error="1 %"), "between 0 and 1"),
     "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "known: exact, paper2008"),
-    "conventions in a list": (lambda: ExpectedValue(conventions=[]), "no conventions named"),
+    "conventions in a list": (lambda: ExpectedValue(conventions=[]), "Unknown conventions"),
     "no seed": (lambda: ExpectedValue(seed=None), "The seed is a whole number"),
 }
 

@@ -206,7 +206,7 @@ def test_intervals_tile_the_run():
         assert parts[0][0] == 0.0
         assert parts[-1][1] == pytest.approx(2.0)
         assert all(a[1] == pytest.approx(b[0], abs=1e-12) for a, b in pairwise(parts))
-    with pytest.raises(SimulationError, match="no friction or gap named 'b'"):
+    with pytest.raises(SimulationError, match="Unknown friction or gap 'b'"):
         run.intervals("b", "stick")
 
 

@@ -57,5 +57,5 @@ def test_an_error_that_nobody_knows_is_no_number() -> None:
     estimate = Estimate(1.0, "m/s^2")
     found = checked(estimate, (ErrorSource("time step", math.nan), ErrorSource("lines", 1e-4)), 0.01)
     assert not found.status.ok
-    assert found.status.message == "how much the value may be off by time step is not known"
+    assert found.status.message == "unknown error from time step"
     assert np.isnan(sum(source.bound for source in found.error_sources))

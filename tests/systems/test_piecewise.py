@@ -22,7 +22,7 @@ def arrays(system):
 
 def alone(vehicle):
     """The system as the first of its layout."""
-    kinematics._remembered.cache_clear()
+    kinematics._cached_analysis.cache_clear()
     return piecewise(vehicle)
 
 

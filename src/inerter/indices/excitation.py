@@ -72,7 +72,7 @@ class RoadVelocity:
     def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
         """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
-            raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
+            raise PerformanceIndexError("A road excites a mechanism at its tyres, and this one has none.")
         if self.road.coherence is not None and any(r.track for r in mechanism.roads):
             return tuple(self._on_tracks(mechanism, self.road.coherence))
         return tuple(Arrival(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
@@ -84,7 +84,7 @@ class RoadVelocity:
         for road in mechanism.roads:
             if not road.track:
                 raise PerformanceIndexError(
-                    f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Say which, "
+                    f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Set "
                     f'track = "left" or "right", or leave the coherence out.'
                 )
             for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
@@ -175,7 +175,7 @@ class Shaped:
     def __post_init__(self) -> None:
         of = as_excitation(self.excitation, "A shaping filter")
         if not of.is_random:
-            raise PerformanceIndexError(f"A shaping filter is for what is random, got {of!r}.")
+            raise PerformanceIndexError(f"A shaping filter requires a random excitation, got {of!r}.")
         shape = as_filter(self.filter)
         if shape is None:
             raise PerformanceIndexError("A shaped excitation needs a filter, such as Filter([1.0], [1.0, 2.0]).")
@@ -245,7 +245,7 @@ class OneInput:
 def as_excitation(given: object, what: str) -> Excitation:
     """`given`, a road or an excitation, as an excitation; raises `PerformanceIndexError` for anything else.
 
-    `what` asks for it, at the beginning of the sentence.
+    `what` requires it, at the beginning of the sentence.
     """
     if isinstance(given, Road):
         return RoadVelocity(given)
@@ -286,5 +286,5 @@ def _force(mechanism: Mechanism, name: str) -> str:
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     if name not in forces:
         known = ", ".join(forces) or "none"
-        raise PerformanceIndexError(f"There is no force named {name!r} in this mechanism (there are: {known}).")
+        raise PerformanceIndexError(f"Unknown force {name!r} of the mechanism; available: {known}.")
     return name

@@ -74,9 +74,7 @@ ROTATIONS = {"roll": 0.63, "pitch": 0.4}  # [m/rad] by what rotations of a seat 
 def check_weighting(name: object) -> str:
     """Name of a weighting, as given; raises `PerformanceIndexError` unless there is a weighting of this name."""
     if not isinstance(name, str) or name not in WEIGHTINGS:
-        raise PerformanceIndexError(
-            f"There is no weighting {name!r} (of ISO 2631-1 there are: {', '.join(WEIGHTINGS)})."
-        )
+        raise PerformanceIndexError(f"Unknown weighting {name!r}; available of ISO 2631-1: {', '.join(WEIGHTINGS)}.")
     return name
 
 

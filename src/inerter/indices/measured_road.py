@@ -95,7 +95,7 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     if not _SLOPES[0] < spectrum.waviness < _SLOPES[1]:
         raise PerformanceIndexError(
             f"The waviness of the spectrum is {spectrum.waviness:.3g}; a road for an index has one between 0 and 4. "
-            f"Is the profile in the unit that was named?"
+            f"Check the unit of the profile."
         )
     shape = spectrum.shape(spectrum.unevenness, spectrum.waviness)
     road = Road(0.5 * spectrum.unevenness * N0**2, speed, shape=shape)
@@ -120,8 +120,8 @@ def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
             if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
                 return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
     raise PerformanceIndexError(
-        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Lay the line over "
-        f"fewer wavenumbers: road_spectrum(profile, lowest=..., highest=...)."
+        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Fit the PSD over a "
+        f"narrower band: road_spectrum(profile, lowest=..., highest=...)."
     )
 
 

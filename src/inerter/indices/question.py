@@ -168,9 +168,7 @@ def on_road(
     if isinstance(index.road, type) or not (isinstance(index.road, Road) or getattr(index.road, "is_random", False)):
         raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
     if isinstance(index.road, Road) and not mechanism.roads:
-        raise PerformanceIndexError(
-            f"{index.symbol} is driven by a road, and this mechanism stands on none. Add a tyre."
-        )
+        raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:
         raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
     return Question(outputs, combination, index.road, index.unit, filter)

@@ -63,7 +63,7 @@ class RideComfort:
         moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)
         if moving is None:
             raise PerformanceIndexError(
-                f"ISO 2631-1 weighs accelerations, and measures.comfort has {output.output!r}. Ask for comfort without "
+                f"ISO 2631-1 weights accelerations, and measures.comfort has {output.output!r}. Evaluate it without "
                 f"a weighting, or name the acceleration of a coordinate."
             )
         if not moving.angle:
@@ -77,7 +77,7 @@ def _lever(rotating: Coordinate) -> float:
     """Multiplying factor of ISO 2631-1 for a rotation [m/rad]."""
     if rotating.name not in ROTATIONS:
         raise PerformanceIndexError(
-            f"ISO 2631-1 weighs pitch and roll, and does not know the rotation {rotating.name!r}. Name the coordinate "
+            f"ISO 2631-1 weights pitch and roll, but not the rotation {rotating.name!r}. Name the coordinate "
             f"{' or '.join(ROTATIONS)}, or leave it out of measures.comfort."
         )
     return ROTATIONS[rotating.name]

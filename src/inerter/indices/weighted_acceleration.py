@@ -88,17 +88,17 @@ def _check_samples(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Arr
     try:
         times, given = np.asarray(time, dtype=float), np.asarray(acceleration, dtype=float)
     except (TypeError, ValueError):
-        raise PerformanceIndexError(
-            "A weighted motion is made of two lists of numbers, time and acceleration."
-        ) from None
+        raise PerformanceIndexError("A weighted motion requires two lists of numbers, time and acceleration.") from None
     if times.ndim != 1 or times.shape != given.shape or not (np.all(np.isfinite(times)) and np.all(np.isfinite(given))):
         raise PerformanceIndexError(
-            f"Time and acceleration are two lists of as many finite numbers, got shapes {times.shape} and "
+            f"Time and acceleration must be two equally long lists of finite numbers, got shapes {times.shape} and "
             f"{given.shape}."
         )
     steps = np.diff(times)
     if not steps.size or not steps.min() > 0.0 or np.ptp(steps) > _EVEN * steps.max():
-        raise PerformanceIndexError("The time of a weighted motion goes on in even steps. Interpolate it first.")
+        raise PerformanceIndexError("The time of a weighted motion must be equally spaced. Interpolate it first.")
     if times[-1] - times[0] < _RUNNING * (1.0 - _EVEN):
-        raise PerformanceIndexError(f"A weighted motion lasts {_RUNNING:g} s at least, got {times[-1] - times[0]:g} s.")
+        raise PerformanceIndexError(
+            f"A weighted motion must last at least {_RUNNING:g} s, got {times[-1] - times[0]:g} s."
+        )
     return times, given

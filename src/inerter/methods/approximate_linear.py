@@ -44,8 +44,8 @@ PROMISE = 0.05  # relative error of a value that is ok, sampling apart
 _STEPPED = 1e-4  # relative error of gains by the cubics between four points of the shortest wave, jumps apart
 _UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
-_UNLIKE = "no linear design resembles the motion: gains stand alone, up to the highest frequency excited"
-_HELD = "noise is held: gains at the instants of its samples stand alone"
+_UNLIKE = "no equivalent linear model: the gains are used alone, up to the highest excited frequency"
+_HELD = "the noise is held: the gains at the instants of its samples are used alone"
 _MOST = 1000  # realisations
 
 
@@ -94,7 +94,7 @@ class ApproximateLinear:
     seed: int = 0
     conventions: str = "exact"
     name = "approximate-linear"
-    words = "norms of gains that the design as it is shows on random inputs, output over input, frequency by frequency"
+    words = "norms of the gains of the nonlinear design on random inputs, output over input, frequency by frequency"
     brief = "measured gains"
     sees = Sees.BOTH
     needs_amplitude = False
@@ -111,9 +111,9 @@ class ApproximateLinear:
         _check_whole("The number of realisations", self.realisations, 2, _MOST)
         _check_whole("A seed", self.seed, 0, 2**63)
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise PerformanceIndexError(f"A relative error lies between 0 and 1, got {self.relative_error!r}.")
+            raise PerformanceIndexError(f"A relative error must lie between 0 and 1, got {self.relative_error!r}.")
         if not is_number(self.smoothing) or self.smoothing < 0.0:
-            raise PerformanceIndexError(f"The reach of the smoothing is 0 Hz or more, got {self.smoothing!r}.")
+            raise PerformanceIndexError(f"The reach of the smoothing must be non-negative, got {self.smoothing!r}.")
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
@@ -197,7 +197,7 @@ class ApproximateLinear:
     def _answer(self, question: Question, linear: EquivalentLinearModel | None, runs: Runs) -> Estimate:
         notes: tuple[str, ...] = ()
         if question.amplitude is not None:
-            notes = ("the amplitude of a sine says nothing here: the excitation has its own size",)
+            notes = ("the amplitude of a sine is ignored: the excitation sets the size",)
         count, estimate = int(self.realisations), None
         while estimate is None or not self._is_settled(estimate, count):
             count = count if estimate is None else min(2 * count, _MOST)
@@ -222,7 +222,7 @@ class ApproximateLinear:
         estimate = with_error_sources(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
         status = estimate.status
         if status.ok and self.relative_error is not None and not self._is_accurate_enough(estimate):
-            status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
+            status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the requested relative error")
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
 
     def _from_gains(
@@ -243,7 +243,7 @@ class ApproximateLinear:
         if has_play(runs.system):
             return replace(self._combine(question, None, gains, drive), notes=(_UNLIKE,))
         motion = f"the motion at {abs(model.pole.imag):.3g} rad/s, which decays by {-model.pole.real:.2g} 1/s"
-        message = f"a period of {drive.excitation.period:g} s is too short for {motion}: take a longer one"
+        message = f"a period of {drive.excitation.period:g} s is too short for {motion}; use a longer one"
         return Estimate(math.nan, question.unit, Status(StatusKind.INACCURATE, message))
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
@@ -328,7 +328,7 @@ def _check_gains(arrivals: Sequence[Arrival]) -> None:
     """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
     if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
         raise PerformanceIndexError(
-            "Method approximate-linear takes gains from one signal, and here several arrive, each by a way of its own. "
+            "Method approximate-linear computes gains from one signal, but several signals excite this mechanism. "
             "Use norm, statistical-linearisation or expected-value."
         )
 
@@ -350,4 +350,4 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
 
 def _check_whole(what: str, value: object, least: int, most: int) -> None:
     if not is_number(value) or value != int(value) or not least <= value <= most:
-        raise PerformanceIndexError(f"{what} is a whole number from {least} to {most}, got {value!r}.")
+        raise PerformanceIndexError(f"{what} must be an integer from {least} to {most}, got {value!r}.")

@@ -58,7 +58,7 @@ class Comparison:
 
     @property
     def is_tie(self) -> bool:
-        """Whether either may be the better: nothing lies between them but chance, or the accuracy of their values."""
+        """Whether the difference is not significant at 95 %, or within the accuracy of the values."""
         low, high = self.difference.interval
         accuracy = 2.0 * ACCURACY * min(abs(self.first.value), abs(self.second.value))
         return low - accuracy <= 0.0 <= high + accuracy
@@ -72,10 +72,10 @@ class Comparison:
         doubt = "" if self.status.ok else f"not certain ({self.status}): "
         if not np.isfinite(self.percent):
             values = f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}"
-            return f"{doubt}{values}: their difference is no number"
+            return f"{doubt}{values}: the difference is not defined"
         apart = f"{abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
         if self.is_tie:
-            return f"{doubt}neither is known to be better: they differ by {apart}"
+            return f"{doubt}difference not significant at 95 %: {apart}"
         word = "better" if self.difference.value < 0.0 else "worse"
         return f"{doubt}the first is {apart} {word} than the second"
 

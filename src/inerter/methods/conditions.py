@@ -49,7 +49,7 @@ class Condition:
 
     def __post_init__(self) -> None:
         if not is_number(self.share) or self.share <= 0.0:
-            raise PerformanceIndexError(f"The share of a condition is a positive number, got {self.share!r}.")
+            raise PerformanceIndexError(f"The share of a condition must be a positive number, got {self.share!r}.")
         if not isinstance(self.vehicle, Mapping):
             raise PerformanceIndexError(
                 f"A condition gives numbers of the vehicle by name, such as {{'sprung_mass': 240.0}}, "
@@ -74,7 +74,7 @@ class Condition:
                 f"{name} = {value:g}" if is_number(value) else f"{name} = {value}"
                 for name, value in {**road, **self.vehicle}.items()
             )
-            or "as it is"
+            or "unchanged"
         )
 
 

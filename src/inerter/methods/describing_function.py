@@ -147,11 +147,11 @@ class HarmonicBalance:
         bound = self._off_by(np.zeros(0), omegas, gains)
         status = OK
         if not bound <= PROMISE:
-            status = poorly("friction as large as the forces beside it", bound)
+            status = poorly("friction as large as the forces in parallel with it", bound)
         if not fine:
-            status = Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
+            status = Status(StatusKind.INACCURATE, "harmonic balance not converged at every frequency")
         if not np.isfinite(peaks[0].gain):
-            status = Status(StatusKind.MARGINAL, "a motion that nothing holds: the gain grows without bound")
+            status = Status(StatusKind.MARGINAL, "rigid-body mode without stiffness: unbounded gain")
         words = [f"{said} by its describing function" for said in self.parts.frictions]
         result = replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
         own = ErrorSource("one harmonic of friction", bound), ErrorSource("search for the peak", _SEARCH)

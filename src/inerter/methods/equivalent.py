@@ -31,7 +31,7 @@ from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
 PROMISE = 0.03  # relative error of a value that is ok, what stands in for its excitation apart
-POORLY = "is poorly represented by one damper: the value may be off by more than 3 %"
+POORLY = "is poorly represented by one damper: the error may exceed 3 %"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 
@@ -74,7 +74,8 @@ class Equivalent:
         idle = ", ".join(name for name in self.design if name not in seen)
         if idle:
             raise DesignError(
-                f"The free value of {idle} has no effect: its element cannot move beside a closed gap, or carries "
+                f"The free value of {idle} has no effect: its element cannot move in parallel with a closed gap, or "
+                "carries "
                 f"no force. Fix it, or leave the element out."
             )
 
@@ -86,7 +87,7 @@ def poorly(what: str, bound: float) -> Status:
 
 
 def check_damped(mechanism: Mechanism) -> None:
-    """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with play."""
+    """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with backlash."""
     for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
             if element.acts and not element.is_damped:
@@ -106,7 +107,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     for name in names:
         if name in told:
             raise PerformanceIndexError(
-                f"Statistical linearisation does not give {name!r}: it puts a damper in the place of the friction. "
+                f"Statistical linearisation does not give {name!r}: it replaces the friction by a damper. "
                 f"Use expected-value or approximate-linear, which simulate it."
             )
 

@@ -31,10 +31,10 @@ def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: 
         bound = sum(source.bound for source in several)
         if result.status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
-            message = f"the value may be off by {bound:.1e} of itself, more than {most:g}, mostly by {largest.name}"
+            message = f"relative error up to {bound:.1e}, more than {most:g}, mostly from {largest.name}"
             if math.isnan(bound):
                 unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
-                message = f"how much the value may be off by {unknown} is not known"
+                message = f"unknown error from {unknown}"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
     return result
 

@@ -39,7 +39,7 @@ _MORE = 400  # roads on which the first-order change is averaged, which is quick
 
 @dataclass(frozen=True)
 class ExpectedValue:
-    """What the design does as it is, friction and gaps included: on random roads, or under all sines.
+    """Simulation of the nonlinear design, with friction and gaps: on random roads, or under sinusoidal forces.
 
     Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the
     design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the roots of
@@ -82,7 +82,7 @@ class ExpectedValue:
     period: int | None = None
     name = "expected-value"
     words = (
-        "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
+        "means over simulations of the nonlinear design, with friction, gaps and elasticity, on random roads; for a "
         "peak gain the largest response to a sinusoidal force"
     )
     brief = "simulation"
@@ -190,8 +190,8 @@ class ExpectedValue:
     ) -> Estimate:
         if question.amplitude is None:
             raise PerformanceIndexError(
-                "What a design with friction or gaps carries depends on the size of the force. Give its amplitude, "
-                "such as 1000 N."
+                "The peak gain of a design with friction or gaps depends on the force amplitude. Give it, such as 1000 "
+                "N."
             )
         (output,) = question.outputs
         (arrival,) = question.arrivals(system.mechanism)
@@ -245,4 +245,5 @@ def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> L
 
 def _check_whole(what: str, value: object, least: int) -> None:
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise PerformanceIndexError(f"{what} is a whole number from {least} on, got {value!r}.")
+        expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
+        raise PerformanceIndexError(f"{what} must be {expected}, got {value!r}.")

@@ -29,7 +29,7 @@ _REPEATS = 1e-4  # change of the state over a period, relative to its size, that
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """The linear design that a motion resembles, for one question."""
+    """Equivalent linear model of a simulated motion, for one index definition."""
 
     system: LinearSystem
     norms: Array  # of its outputs
@@ -122,8 +122,8 @@ class Runs:
         if mismatch > _REPEATS:
             self.warning = Status(
                 StatusKind.INACCURATE,
-                f"in realisation {number + 1} the state still changes by {mismatch:.1e} of its size over a period; "
-                f"take a longer one",
+                f"periodic steady state not reached in realisation {number + 1}: relative change of state per period "
+                f"{mismatch:.1e}; use a longer period",
             )
         trajectory = trajectory_of(run, None, "")
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))

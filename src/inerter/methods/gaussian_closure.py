@@ -341,7 +341,7 @@ class GaussianClosure:
         (solved,) = self.solve(np.zeros((1, 0)))
         parts, dampers, problem = solved.pattern.parts, solved.dampers, solved.pattern.index.problem
         if np.isnan(dampers.error[0]):
-            message = "the r.m.s. velocity across a friction could not be computed: rounding hides it"
+            message = "the r.m.s. velocity across a friction could not be computed: lost to rounding"
             return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
         result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:

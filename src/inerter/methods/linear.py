@@ -72,7 +72,7 @@ CONVENTIONS = {
 def check_conventions(name: object) -> None:
     """Raises `PerformanceIndexError` unless there are conventions of this name."""
     if not isinstance(name, str) or name not in CONVENTIONS:
-        raise PerformanceIndexError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
+        raise PerformanceIndexError(f"Unknown conventions {name!r}; available: {', '.join(CONVENTIONS)}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +235,9 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
 def check_peak_gain(question: Question) -> None:
     """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
     if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
-        raise PerformanceIndexError("A peak gain goes from one force or motion to one output, without a random input.")
+        raise PerformanceIndexError(
+            "A peak gain requires one force or motion as input and one output, without a random input."
+        )
 
 
 def under(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:

@@ -54,7 +54,7 @@ _LOST = 1e-2  # the same, beyond which nothing is known
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
-_UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
+_UNLIKE = "no equivalent linear model of backlash: nothing is added for the road outside 0.1 to 1000 Hz"
 _STEPPED = 2e-6  # relative error of a value by the time step
 _PEAKS = 4.0  # the largest of a random motion over its r.m.s. value
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
@@ -232,13 +232,14 @@ def _cubic(angle: Array, there: Array) -> Array:
 def _almost_undamped(pole: complex, longest: float) -> Status:
     return Status(
         StatusKind.MARGINAL,
-        f"next to nothing damps the motion at {abs(pole.imag):.3g} rad/s, friction neither (it decays by "
-        f"{-pole.real:.1e} 1/s): roads of up to {longest:g} s show no steady state",
+        f"almost undamped mode at {abs(pole.imag):.3g} rad/s, with friction included (decay rate {-pole.real:.1e} "
+        "1/s): "
+        f"no steady state on roads of up to {longest:g} s",
     )
 
 
 def _mostly_beyond(share: float) -> Status:
-    message = f"{100.0 * share:.0f} % of a mean square lie outside 0.1 to 1000 Hz, which is not simulated"
+    message = f"out-of-band contribution to a mean square: {100.0 * share:.0f} %, outside 0.1 to 1000 Hz"
     return Status(StatusKind.INACCURATE, message)
 
 

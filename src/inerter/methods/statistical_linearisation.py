@@ -48,8 +48,9 @@ class StatisticalLinearisation:
     conventions: str = "exact"
     name = "statistical-linearisation"
     words = (
-        "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
-        "results; for a peak gain at each frequency under a sinusoidal force"
+        "norms of a linear model in which an equivalent damper replaces each friction, for the motion that results; "
+        "for a "
+        "peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
     sees = Sees.FRICTION

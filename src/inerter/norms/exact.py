@@ -27,7 +27,7 @@ EXACT = 1e-12  # relative error of what is found here: digits in which results a
 def undamped_status(frequencies: Sequence[float]) -> Status:
     """Status of an infinite norm due to undamped modes at these frequencies [rad/s]."""
     where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
-    return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {where} rad/s")
+    return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {where} rad/s")
 
 
 def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:
@@ -48,7 +48,7 @@ def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, St
                 status = undamped_status(frequencies)
     if direct and status.kind is not StatusKind.MARGINAL:
         names = ", ".join(dict.fromkeys(direct))
-        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+        status = Status(StatusKind.DIRECT_TERM, f"infinite variance: direct feedthrough from white noise to {names}")
     return np.sqrt(squares), status
 
 

@@ -17,7 +17,7 @@ from inerter.norms.stability import balance, split
 from inerter.systems.linear import ExtendedMatrices, LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
-_LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
+_LOST = Status(StatusKind.INACCURATE, "damping lost to rounding: some motions are much slower than others")
 _EPS = float(np.finfo(float).eps)
 _SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
@@ -95,7 +95,7 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
         status = parts.status
     elif np.any(direct):
         names = ", ".join(name for name, is_direct in zip(system.outputs, direct, strict=True) if is_direct)
-        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+        status = Status(StatusKind.DIRECT_TERM, f"infinite variance: direct feedthrough from white noise to {names}")
     else:
         status = _LOST if found is None else OK
     norms, error = (np.full(len(system.outputs), np.nan), np.nan) if found is None else (np.sqrt(found[0]), found[1])
@@ -250,7 +250,7 @@ class _Lyapunov:
             step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
             if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
-                raise np.linalg.LinAlgError("rounding damps a motion")
+                raise np.linalg.LinAlgError("damping lost to rounding")
             if not change < 0.5 * before:
                 break
             P, before = P + step, change

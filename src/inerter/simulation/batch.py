@@ -95,9 +95,9 @@ def simulate_many(
     cars = as_list("vehicles", vehicles)
     names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
-        raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
+        raise SimulationError(f"The number of threads must be a positive integer, got jobs = {jobs!r}.")
     if not is_number(settled):
-        raise SimulationError(f"The time from which on values count is a number of seconds, got {settled!r}.")
+        raise SimulationError(f"The time from which values count must be a number of seconds, got {settled!r}.")
     check_driven("simulate_many", driven)
     speed, initial = driven.get("speed"), starting_from(driven)
     groups, count = groups_of(driven)

@@ -163,7 +163,7 @@ class Integration:
         Raises `SimulationError` if their forces are not determined there.
         """
         if self.modes.number[_code(states)] < 0 and not self.build(states):
-            raise SimulationError(f"Cannot go on: {_SINGULAR}.")
+            raise SimulationError(f"Cannot continue: {_SINGULAR}.")
         return np.asarray(self.modes.maps[self.modes.number[_code(states)]])
 
     def mismatch(self, before: Matrix) -> float:
@@ -198,7 +198,7 @@ class Integration:
         )
 
     def _failure_status(self, why: str) -> Status:
-        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; nothing comes after that")
+        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; the simulation ends there")
 
 
 def _code(states: NDArray[np.int64]) -> int:
@@ -210,9 +210,9 @@ def _code(states: NDArray[np.int64]) -> int:
 
 
 _FAILURES = {
-    switching.CHATTER: "the elements change their states without end (chattering)",
-    switching.IMPACT: "two inertias meet without compliance between them",
-    switching.NO_MODE: "no combination of slip, stick and contact can go on",
+    switching.CHATTER: "chattering: the elements change their states without end",
+    switching.IMPACT: "impact of two inertias without compliance between them",
+    switching.NO_MODE: "no consistent combination of slip, stick and contact",
     switching.NOT_FINITE: "the motion grows beyond all bounds",
 }
 KERNELS: tuple[Any, ...] = (build, integrate, discretise, evaluate)

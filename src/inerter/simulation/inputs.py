@@ -76,15 +76,15 @@ class BatchInputs(TypedDict, total=False):
 
 
 def check_driven(caller: str, driven: Mapping[str, object]) -> None:
-    """Raises TypeError for a keyword that says nothing of what drives a run."""
+    """Raises TypeError for an unknown keyword of the excitation and the initial state."""
     unknown = [name for name in driven if name not in RunInputs.__annotations__]
     if unknown:
         known = ", ".join(RunInputs.__annotations__)
-        raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (what drives a run: {known}).")
+        raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (available: {known}).")
 
 
 def starting_from(driven: RunInputs | BatchInputs) -> Initial:
-    """The state to start from: at rest, if nothing is said."""
+    """Initial state among the keywords; default: at rest."""
     return driven.get("initial", "rest")
 
 
@@ -114,7 +114,9 @@ def assign(
         )
     by_force = _by_name("forces", forces, names) if isinstance(forces, Mapping) or len(names) == 1 else {}
     if forces is not None and not by_force:
-        raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_format_names(names)}).")
+        raise SimulationError(
+            f"Forces must be given by name, forces={{name: signal}}; available: {_format_names(names)}."
+        )
     signals: list[Signal | None] = [by_road.get(name) for name in roads]
     late = [0.0 if isinstance(moved, Mapping) and not by_track else r.distance for r in mechanism.roads]
     delays = [_delay(d, s, speed, name) for d, s, name in zip(late, signals, roads, strict=True)]
@@ -137,7 +139,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
         raise SimulationError(f"The mechanism has nothing that takes {what}=.")
     for name, signal in found.items():
         if name not in names:
-            raise SimulationError(f"There is no input named {name!r} for {what}= (there are: {_format_names(names)}).")
+            raise SimulationError(f"Unknown input {name!r} for {what}=; available: {_format_names(names)}.")
         if not isinstance(signal, Signal):
             raise SimulationError(
                 f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got {signal!r}."
@@ -320,7 +322,7 @@ def _check_step(signal: Signal, step: float, end: float) -> None:
         )
     if signal.duration is not None and end > signal.duration * (1.0 + _SAME):
         raise SimulationError(
-            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation goes on until {end:g} s."
+            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation lasts until {end:g} s."
         )
 
 

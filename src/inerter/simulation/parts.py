@@ -182,7 +182,7 @@ def check_gaps(parts: Parts) -> None:
     both = np.hstack([E, R])
     if rigid(gaps, both) > rigid(closed, both):
         raise SimulationError(
-            "A gap has inertia or a given motion on both sides and nothing that gives way: its impacts are undefined. "
+            "A gap has inertia or a given motion on both sides and no compliance: its impacts are undefined. "
             "Put a spring or damper in series with the gap."
         )
     if rigid(closed, both) > rigid(closed, E):

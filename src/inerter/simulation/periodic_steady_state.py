@@ -130,5 +130,8 @@ def _repeat_period(
 
 
 def _steady_state_warning(found: Repetition) -> Status:
-    message = f"after {found.periods} periods the state still changes by {found.mismatch:.1e} of its size"
+    message = (
+        f"periodic steady state not reached after {found.periods} periods: relative change of state per period "
+        f"{found.mismatch:.1e}"
+    )
     return Status(StatusKind.INACCURATE, message)

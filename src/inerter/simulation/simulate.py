@@ -167,7 +167,7 @@ def _length(duration: float | None, period: float | None, periodic: bool) -> flo
 
 def _check_every(every: object) -> None:
     if not is_number(every) or every != int(every) or every < 1:
-        raise SimulationError(f"`every` must be a whole number of steps from 1 on, got {every!r}.")
+        raise SimulationError(f"`every` must be a positive whole number of steps, got {every!r}.")
 
 
 def _check_memory(system: PiecewiseSystem, steps: int, every: int, limit: float) -> None:

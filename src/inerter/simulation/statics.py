@@ -54,10 +54,10 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilib
         found = _touching(parts, {int(i): side for i, side in zip(loose, sides, strict=True) if side})
         if found is not None:
             return found
-    way = "Start from a state of your own" if np.any(own_forces(system)) else "Start at rest"
+    way = "Give the initial state as an array" if np.any(own_forces(system)) else "Start at rest"
     raise SimulationError(
         "The static load is not carried by springs: some part of it rests on dampers, inerters or friction alone, "
-        f"which give way. {way}, or add a spring where the load passes."
+        f"which cannot hold it. {way}, or add a spring where the load passes."
     )
 
 

@@ -30,8 +30,8 @@ Matrix = NDArray[np.float64]
 CHUNK = 1 << 15  # steps whose inputs are laid out at once, if they take no longer than ...
 _PAUSE = 0.1  # [s] between two looks at the keyboard
 _ENDED = {
-    STUCK: "no friction and contact forces that fit were found",
-    INFINITE: "the velocities grew beyond all numbers",
+    STUCK: "the contact solver did not converge",
+    INFINITE: "the velocities overflow",
 }
 
 

@@ -176,7 +176,7 @@ class Trajectory:
         """Notes on the motion: a sentence for each tyre that would lift off."""
         static, unknown = self._static_loads
         if unknown:
-            return (f"Whether a tyre would lift off cannot be told. {unknown}",)
+            return (f"Wheel lift-off cannot be checked. {unknown}",)
         by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in static}
         return tuple(lift_off_note(found, static[tyre]) for tyre, found in by_tyre.items() if found)
 
@@ -188,11 +188,11 @@ class Trajectory:
     def intervals(self, element: str, state: str) -> list[tuple[float, float]]:
         """The times [s] between which a nonlinear element was in a state.
 
-        Raises `SimulationError` if there is no such element.
+        Raises `SimulationError` for an unknown element.
         """
         if element not in self.states:
             known = ", ".join(self.states) or "none"
-            raise SimulationError(f"There is no friction or gap named {element!r} (there are: {known}).")
+            raise SimulationError(f"Unknown friction or gap {element!r}; available: {known}.")
         found: list[tuple[float, float]] = []
         since, now = float(self.time[0]), self.states[element]
         for event in self.events:

@@ -80,7 +80,7 @@ def find_coordinates(
     found = _analyse_graph(span, *((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
     if isinstance(found, int):
         raise MechanismError(
-            f"Node {nodes[found]!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
+            f"Node {nodes[found]!r} is unconstrained: no mass, spring, damper or inerter resists its motion."
         )
     return found
 

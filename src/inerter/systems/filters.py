@@ -40,7 +40,7 @@ class Filter:
         for name in ("numerator", "denominator"):
             object.__setattr__(self, name, _coefficients(name, getattr(self, name)))
         if not self.numerator:
-            raise LinearSystemError("A filter whose numerator is zero lets nothing through.")
+            raise LinearSystemError("The numerator of a filter must not be zero.")
         if not self.denominator:
             raise LinearSystemError("The denominator of a filter has a coefficient that is not zero.")
         if len(self.numerator) > len(self.denominator):

@@ -78,13 +78,14 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
         linear = linearise(whole[mount.name])
         if linear.network is None and linear.rigid:
             raise MechanismError(
-                f"{mount.name!r} is rigid in linear analysis, which closes gaps: {linear.gaps[0]!r} joins its two "
+                f"{mount.name!r} is rigid in linear analysis, which treats gaps as closed: {linear.gaps[0]!r} joins "
+                "its two "
                 f"ends with nothing in between. Put a spring or damper in series with the gap."
             )
         if linear.network is None:
             raise MechanismError(
-                f"{mount.name!r} carries no force in linear analysis, which leaves friction out "
-                f"({', '.join(linear.frictions)}): its ends are held by nothing there. Add a spring, damper or inerter."
+                f"{mount.name!r} carries no force in linear analysis, which neglects friction "
+                f"({', '.join(linear.frictions)}): its ends are unconstrained there. Add a spring, damper or inerter."
             )
         networks[mount.name] = linear.network
         notes += [f"{element.key} {element.label!r} in {mount.name!r} left out" for element in linear.left_out]

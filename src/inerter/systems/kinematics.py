@@ -254,8 +254,9 @@ def _velocities(graph: Graph, inertia: _Inertia, pushed: Matrix, roads: int) -> 
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
         raise MechanismError(
-            f"Node {node!r} is held by nothing while the gaps beside it are open: no mass, spring, damper, inerter or "
-            f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
+            f"Node {node!r} is unconstrained while the adjacent gaps are open: no mass, spring, damper, inerter or "
+            "friction resists its motion. Join the gaps into one, or add an element that acts on the part between "
+            "them."
         )
     N = null_space(inertia.nodes)
     U = null_space(incidence_rows(others, graph)[0])
@@ -295,8 +296,8 @@ def _check_locks(found: Kinematics) -> None:
         if np.any(np.abs(together @ H_z) > 1e-9):
             which = " and ".join(repr(labels[i]) for i, share in enumerate(together) if abs(share) > 1e-9)
             raise MechanismError(
-                f"The force of {which} is not determined when it does not slip: nothing between given motions gives "
-                f"way. Put the spring of the real part (such as a shaft) in series with it."
+                f"The force of {which} is not determined when it does not slip: nothing between given motions is "
+                f"compliant. Put the spring of the real part (such as a shaft) in series with it."
             )
 
 

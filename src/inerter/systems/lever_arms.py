@@ -113,9 +113,8 @@ def lost_in(shares: Matrix, labels: Sequence[str]) -> str:
     """Message on travels for which `is_lost` holds; `labels` are those of the elements."""
     worst = int(np.argmax(np.abs(shares).max(axis=1)))
     return (
-        f"The travel of {labels[worst]!r} depends on those of others but for a billionth to a millionth of its size, "
-        f"and what differs is lost in rounding. Write levers that are meant to be one alike, to all digits, or let "
-        f"them differ by more."
+        f"The travel of {labels[worst]!r} depends on those of others up to a relative difference of 1e-9 to 1e-6, "
+        f"which is lost to rounding. Give equal levers to all digits, or let them differ by more."
     )
 
 

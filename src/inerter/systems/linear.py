@@ -89,7 +89,7 @@ class LinearSystem:
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
                 raise LinearSystemError(
-                    f"{name} has the shape {getattr(self, name).shape}, but A, B and C ask for {shape}."
+                    f"{name} has the shape {getattr(self, name).shape}, but A, B and C require {shape}."
                 )
         for name, letter, count in (("states", "x", n), ("inputs", "u", m), ("outputs", "y", p)):
             object.__setattr__(self, name, _labels(name, getattr(self, name), letter, count))
@@ -173,5 +173,5 @@ def _positions(what: str, names: Sequence[str] | str | None, known: tuple[str, .
     wanted = check_names(f"{what}s", names)
     for name in wanted:
         if name not in known:
-            raise LinearSystemError(f"There is no {what} named {name!r} (there are: {', '.join(known) or 'none'}).")
+            raise LinearSystemError(f"Unknown {what} {name!r} (there are: {', '.join(known) or 'none'}).")
     return [known.index(name) for name in wanted]

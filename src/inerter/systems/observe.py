@@ -97,7 +97,7 @@ def _resolve_output(frame: Frame, name: str) -> Output:
         return frame.known[name]
     find(outputs(frame.mechanism, full_graph(frame.mechanism)), name, LinearSystemError)
     raise LinearSystemError(
-        f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
+        f"Output {name!r} is unknown in linear analysis, which neglects friction and treats gaps as closed. "
         f"Simulate the design: inerter simulate, or by expected-value or approximate-linear."
     )
 

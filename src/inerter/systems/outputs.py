@@ -229,7 +229,7 @@ def check_inputs(
     known = input_names(mechanism)
     for name in names:
         if name not in known and name not in also:
-            raise error(f"There is no input named {name!r} (there are: {', '.join(known) or 'none'}).")
+            raise error(f"Unknown input {name!r}; available: {', '.join(known) or 'none'}.")
 
 
 def unit_of(mechanism: Mechanism, names: Sequence[str]) -> str:
@@ -256,8 +256,8 @@ def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
     if driven.ground_moves and name in main_outputs(mechanism) and name not in main_outputs(driven):
         coordinate, _, what = name.rpartition("_")
         raise PerformanceIndexError(
-            f"Under ground acceleration {name!r} has no bounds, because the ground itself drifts. "
-            f"Ask for {coordinate}_relative_{what}, the motion over the ground."
+            f"Under ground acceleration {name!r} is unbounded, because the ground drifts. "
+            f"Use {coordinate}_relative_{what}, the motion relative to the ground."
         )
 
 
@@ -268,10 +268,11 @@ def check_element(mechanism: Mechanism, label: object, called: Callable[[str], s
     every = dict.fromkeys((*graph.groups, *(branch.label for branch in graph.branches)))
     labels = [name for name in every if force_of(name) in known]
     if not isinstance(label, str) or label not in labels:
-        raise PerformanceIndexError(f"There is no element named {label!r} (there are: {', '.join(labels) or 'none'}).")
+        raise PerformanceIndexError(f"Unknown element {label!r}; available: {', '.join(labels) or 'none'}.")
     if called(label) not in known:
         raise PerformanceIndexError(
-            f"The stroke of {label!r} is not known, only its velocity: no spring tells where one of its ends is."
+            f"The stroke of {label!r} is undefined, only its velocity is known: no spring determines the position of "
+            "one end."
         )
 
 
@@ -281,8 +282,8 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
         return known[name]
     close = get_close_matches(str(name), known, n=3)
     more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-    hint = f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join([*known][:_LISTED])}{more}."
-    raise error(f"There is no output named {name!r}. {hint}")
+    hint = f"Did you mean {' or '.join(close)}?" if close else f"Available: {', '.join([*known][:_LISTED])}{more}."
+    raise error(f"Unknown output {name!r}. {hint}")
 
 
 def _readable_name(name: str) -> str:

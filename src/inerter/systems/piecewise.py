@@ -95,7 +95,7 @@ class PiecewiseSystem:
 def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     """The piecewise-linear system of a vehicle or rig.
 
-    Raises `DesignError` if a value is free, `MechanismError` if a node is held by nothing, if closing a gap would be
+    Raises `DesignError` if a value is free, `MechanismError` if a node is unconstrained, if closing a gap would be
     an impact between inertias, or if the force of an element is not determined.
     """
     check_vehicle(vehicle)
@@ -119,7 +119,7 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
     """
     if system.kinematics.weighs:
         raise DesignError(
-            "A node is between inerters alone, so that its motion depends on values. Take piecewise(...)."
+            "A node lies between inerters alone, so that its motion depends on their values. Use piecewise(...)."
         )
     elements = {b.label: b.element for b in system.graph.branches}
     inertias = {c.name: c for c in system.mechanism.coordinates}
@@ -130,7 +130,7 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
             old, positive = inertias[label].inertia, True
         else:
             listed = ", ".join([*elements, *inertias])
-            raise DesignError(f"There is no element or coordinate labelled {label!r} (there are: {listed}).")
+            raise DesignError(f"Unknown element or coordinate {label!r}; available: {listed}.")
         if not is_number(value) or not (value > 0.0 if positive else value == 0.0):
             allowed = "any positive number" if positive else "nothing else"
             raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
@@ -138,13 +138,13 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
             changed = elements[label].with_value(value)
             if changed.role != elements[label].role:
                 raise DesignError(
-                    f"With {value!r}, {label!r} holds what it did not, or the reverse. Take piecewise(...)."
+                    f"With {value!r}, {label!r} changes whether it holds against small forces. Use piecewise(...)."
                 )
             elements[label] = changed
         else:
             inertias[label] = replace(inertias[label], inertia=value)
     if system.mechanism.ground_moves and any(label in inertias for label in values):
-        raise DesignError("Every mass feels the ground that moves. Change masses before, and take piecewise(...).")
+        raise DesignError("Moving ground acts on every mass. Change the masses first, then use piecewise(...).")
     mechanism = copy(system.mechanism)  # which was checked when it was made
     object.__setattr__(mechanism, "coordinates", tuple(inertias.values()))
     known = system.kinematics
@@ -188,7 +188,7 @@ def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
         if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:
             raise MechanismError(
                 f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits "
-                "cannot hold both. Leave out what is so small, and join rigidly what is so heavy."
+                "cannot resolve both. Leave out the smallest, or join the heaviest rigidly."
             )
 
 

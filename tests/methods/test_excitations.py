@@ -271,7 +271,10 @@ BAD = {
     "text": (lambda: it.GroundAcceleration("1"), "positive number"),
     "infinite": (lambda: it.GroundAcceleration(math.inf), "positive number"),
     "no shape": (lambda: it.Shaped(ROAD, None), "needs a filter"),
-    "shape of one input": (lambda: it.Shaped(it.OneInput("push"), Filter([1.0], [1.0, 1.0])), "requires a random excitation"),
+    "shape of one input": (
+        lambda: it.Shaped(it.OneInput("push"), Filter([1.0], [1.0, 1.0])),
+        "requires a random excitation",
+    ),
     "no force": (lambda: ask({"mass_velocity": 1.0}, it.WhiteForce("shove", 1.0)), r"Unknown force 'shove'.*push"),
     "no road": (lambda: ask({"mass_velocity": 1.0}, ROAD), "has none"),
     "output": (lambda: ask({"mass_velocitee": 1.0}, it.WhiteForce("push", 1.0)), "Did you mean mass_velocity"),

@@ -54,7 +54,7 @@ class Excitation(Protocol):
 
 @dataclass(frozen=True)
 class RoadVelocity:
-    """The white velocity of a road, at each wheel when the wheel gets there."""
+    """White-noise velocity of a road, at each wheel with its wheelbase delay."""
 
     road: Road
     unit = _VELOCITY
@@ -129,7 +129,7 @@ class WhiteForce:
 
 @dataclass(frozen=True)
 class GroundAcceleration:
-    """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz]; every mass feels it.
+    """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz], which acts on every mass.
 
     Roads lie still on the ground. Motions that stay bounded are those over the ground, `<coordinate>_relative_...`,
     and what follows from them; a `<coordinate>_acceleration` is the absolute one.
@@ -259,14 +259,14 @@ def as_excitation(given: object, what: str) -> Excitation:
 
 
 def shape_of(excitation: Excitation) -> tuple[RoadShape, float] | None:
-    """The measured shape of the road that drives, and the speed on it [m/s]; None where nothing was measured."""
+    """Measured shape of the road, and the speed on it [m/s]; None for a road without measurement."""
     of = road_of(excitation)
     shape = getattr(of, "shape", None)
     return (shape, of.speed) if isinstance(shape, RoadShape) else None
 
 
 def road_of(excitation: Excitation) -> Any:
-    """The road that drives, perhaps through filters; what drives itself where that is no road."""
+    """Road behind an excitation, perhaps through filters; the excitation itself if it is not a road."""
     of: Any = excitation
     while isinstance(of, Shaped | RoadVelocity):
         of = of.excitation if isinstance(of, Shaped) else of.road

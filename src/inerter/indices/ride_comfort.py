@@ -49,7 +49,7 @@ class RideComfort:
             )
 
     def question(self, mechanism: Mechanism) -> Question:
-        """Raises `PerformanceIndexError` if the mechanism has no road or says nothing of comfort."""
+        """Raises `PerformanceIndexError` if the mechanism has no road or no comfort output."""
         comfort, where = mechanism.measures.comfort, "measures.comfort"
         if self.weighting is None:
             return on_road(self, mechanism, comfort, where)

@@ -107,7 +107,7 @@ class Mode(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Modes met so far, one row each."""
+    """Modes reached so far, one row each."""
 
     number: Ints  # (3^k,) index of the mode that a state of the elements has, or -1
     state: IntTable  # (capacity, k): -1, 0, 1 of each element

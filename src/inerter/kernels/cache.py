@@ -55,7 +55,7 @@ def cache_folder(module: Path) -> Path | None:
 
 
 def is_kept(kernel: Kernel) -> bool:
-    """Whether there is compiled code of a kernel, or no place for it; the compiler may still refuse what there is."""
+    """Whether the cache has compiled code of a kernel, or cannot hold any; the compiler may still reject the code."""
     code = kernel.function.__code__
     folder = cache_folder(Path(code.co_filename))
     return folder is None or any(folder.rglob(f"*.{code.co_qualname}-{code.co_firstlineno}.*.nbi"))

@@ -536,7 +536,7 @@ def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weig
     "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64[::1])",
 )
 def norms(points: Array, descriptor: Array, extended: Array, arrivals: Array, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and how doubtful the norms are.
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and the doubts of the norms.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
     may be off are nan, or what was found, with its gradient; their doubt (see `assess_accuracy`) is infinite.

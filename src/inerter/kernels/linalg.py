@@ -1,4 +1,4 @@
-"""Small dense linear algebra in place, for real and complex matrices alike. Faster than a library below order 20."""
+"""Small dense linear algebra in place, for real and complex matrices; faster than a library below order 20."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
 
 @part(typed=True, apart=True)
 def lock_velocities(forces: Matrix, locks: Matrix) -> Matrix:
-    """Velocities across locks, without their rounding: at rest nothing else tells it from a motion."""
+    """Velocities across locks, with rounding set to zero, which at rest would look like a motion."""
     found = inner(forces, locks)
     drop_rounding(found, inner(sizes_of(forces), sizes_of(locks)))
     return found
@@ -236,7 +236,7 @@ def slip_of(sizes: Sizes, lock: Matrix, solution: Solution) -> Matrix:
 
 @part(typed=True, apart=True)
 def limit_guard(guards: Matrix, e: int, state: int, limits: Matrix) -> None:
-    """A lock's force stays within its limits, what slips or is open on its side."""
+    """Set the interval of a guard: force limits of a lock, or the side of a slip or an open gap."""
     guards[e, 0], guards[e, 1] = -np.inf, np.inf
     if can_be_in(limits, e, 0):
         guards[e, 0] = limits[e, 0] if state == 0 else (0.0 if state > 0 else -np.inf)

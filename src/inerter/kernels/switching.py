@@ -42,7 +42,7 @@ def switch(run: Run, events: Array, start: float, length: float, who: int) -> in
 
 @part(borrowing=True, inside=True)
 def _search_modes(run: Run, length: float, who: int) -> int:
-    """Put modes on trial until one can go on, and leave it there; DONE, or why there is none.
+    """Try modes until one is consistent, and leave it on trial; DONE, or the reason why there is none.
 
     Starts from the present mode and lets one element after the other change its state, the first that violates its
     guard first (Murty's least-index rule, finite for friction and contact without impacts); if that does not settle,
@@ -76,7 +76,7 @@ def _search_modes(run: Run, length: float, who: int) -> int:
 
 @part(borrowing=True, inside=True)
 def _first_trial(run: Run, who: int) -> None:
-    """The present states, with that changed whose guard was crossed; before there is a mode, all at rest."""
+    """Put the present states on trial, with that of the crossed guard changed; before the first mode, all at rest."""
     before, watch = run.motion.place[0].mode, run.motion.watch
     for e in range(run.mechanics.sizes.elements):
         first = 0 if can_be_in(run.mechanics.limits, e, 0) else 1
@@ -289,7 +289,7 @@ def _size(row: Floats, size: Floats, u: Floats, n: int, nu: int) -> float:
 
 @part(borrowing=True, inside=True)
 def _check_guards(run: Run, m: int, d: float, who: int) -> int:
-    """The first element whose guard does not stay within its limits, or ACCEPTED."""
+    """First element whose guard leaves its limits, or ACCEPTED."""
     mechanics, place, before = run.mechanics, run.motion.place[0], run.motion.place[0].mode
     place.known = -1
     for e in range(mechanics.sizes.elements):

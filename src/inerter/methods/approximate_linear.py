@@ -156,7 +156,7 @@ class ApproximateLinear:
         return result
 
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
-        """The compiled code of simulations, and of the methods that tell where a search begins."""
+        """Compiled functions of simulations, and of the methods that start a search."""
         return (*StatisticalLinearisation().kernels(question, search=True), *KERNELS) if search else KERNELS
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:

@@ -56,7 +56,7 @@ class CompiledQuestion:
 
     @cached_property
     def extended_descriptor(self) -> tuple[Array, Array]:
-        """S, [R F], Y_eta and [Y_x Y_u] in a row, and what rounding has taken: no entries where that is nothing."""
+        """S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors: no entries where these are zero."""
         d = self.problem.descriptor
         stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
         stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
@@ -211,9 +211,9 @@ class CompiledQuestion:
         return norms
 
     def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients of their sum with `weights`, none without, and how doubtful norms are, by compiled code.
+        """Norms, gradients of their sum with `weights`, none without, and doubts of the norms, by compiled code.
 
-        Of several sources, squares are added up; what does not see one gets nothing of it.
+        Over several sources, squares are added up for the outputs that each one excites.
         """
         if not self.apart and np.all(self.reachable_outputs) and self._excess is None:
             norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
@@ -252,7 +252,7 @@ class CompiledQuestion:
         return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, doubts)
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
-        """Gradient at one point of the sum with `weights` of what `_of_one_source` gives there."""
+        """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
             return np.asarray(h2_kernels.norms(point[None], *self.arguments, weights)[1][0])
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)

@@ -140,7 +140,7 @@ class OverConditions(OfIndex):
         return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
 
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, IndexLike]]:
-        """Vehicle and index in each condition; raises `DesignError` for a name that stands for nothing."""
+        """Vehicle and index in each condition; raises `DesignError` for an unknown name."""
         return [
             (replace_values(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
             for one in self.conditions.conditions

@@ -161,7 +161,7 @@ class ExpectedValue:
         return changes[:count], changes[count:]
 
     def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
-        """The compiled code of simulations, and of the methods that tell where to look."""
+        """Compiled functions of simulations, and of the methods that locate peaks and optima."""
         quick = StatisticalLinearisation().kernels(question, search=search)
         return (*quick, *KERNELS) if search or question.is_peak else KERNELS
 

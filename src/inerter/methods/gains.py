@@ -43,8 +43,9 @@ class LinearModel:
         return np.asarray(np.abs(frequency_response(self.system, omega)[:, :, 0].T) ** 2)
 
     def unseen(self, gains: Array, omega: Array) -> float:
-        """Share of a mean square that may hide between harmonics at which squared `gains` (outputs, harmonics) are
-        known: what they miss, so far as the motion there is not this model's.
+        """Share of a mean square between the harmonics of the squared `gains` (outputs, harmonics).
+
+        It is the share that harmonics may miss, as far as the motion differs from this model's.
         """
         if self.missed <= _UNSEEN:
             return self.missed

@@ -241,7 +241,7 @@ def constituents_of(vehicle: Vehicle, index: IndexLike) -> Sequence[tuple[Vehicl
 
 
 def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
-    """Raises `DesignError` or `PerformanceIndexError` where an argument is not what its place asks for.
+    """Raises `DesignError` or `PerformanceIndexError` for an argument of the wrong kind.
 
     So it does for an index that names an input or output which the vehicle does not have.
     """

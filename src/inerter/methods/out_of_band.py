@@ -116,7 +116,7 @@ def on_roads(
 
 
 def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], Rest]:
-    """The design on roads so long that their lines tell what it does, the first runs there, and what they lack.
+    """The design on roads long enough to resolve its response, the first runs there, and the out-of-band rest.
 
     On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
     is tried even if the motion is out of reach as it is.

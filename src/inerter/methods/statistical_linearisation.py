@@ -63,7 +63,7 @@ class StatisticalLinearisation:
         Norm(self.conventions)  # refuses what it does not know
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
-        """The index of a vehicle without free values; `notes` tell what became of each friction."""
+        """The index of a vehicle without free values; `notes` state the treatment of each friction."""
         closure = self._closure(vehicle, index)
         return Norm(self.conventions).estimate(vehicle, index) if closure is None else closure.estimate()
 

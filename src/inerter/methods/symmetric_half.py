@@ -13,7 +13,7 @@ from inerter.vehicle.symmetry import alike_half, opposed_half
 
 
 def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mechanism, tuple[Arrival, ...]] | None:
-    """Half model that moves as the whole does, and its input paths; None if there is none.
+    """Half model with the motion of the whole, and its input paths; None if there is none.
 
     The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
     """

@@ -111,7 +111,7 @@ def _merged_direct(system: LinearSystem) -> Matrix:
 
 
 def _drifting(A: Matrix) -> NDArray[np.bool_]:
-    """States that nothing but the inputs moves, such as a share of the road's shape that tyres keep."""
+    """States driven by the inputs alone, such as a tyre's share of the road profile."""
     return np.asarray(~np.any(A, axis=1))
 
 
@@ -260,7 +260,7 @@ class _Lyapunov:
 def _excitation(
     system: LinearSystem, dynamics: tuple[Matrix, Matrix], entries: tuple[Matrix, Matrix], pade_order: int | None
 ) -> tuple[Matrix, Matrix]:
-    """W of `_squares`, the noise that enters and what of it the state has met before, and its error."""
+    """W of `_squares`: the input covariance with that of delayed inputs, and its error."""
     (A, EA), (B, EB) = dynamics, entries
     size = np.abs(B).astype(float)
     W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _LONG * size @ size.T

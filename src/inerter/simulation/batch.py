@@ -159,7 +159,7 @@ def _handed_out(
     same: Mapping[str, Any],
     progress: Callable[[float], None] | None,
 ) -> Batch:
-    """The runs on what was said to work on: some designs at a time, on one signal."""
+    """Results of all runs on the executor, in tasks of several designs on one signal."""
     firsts = range(0, len(cars), _TOGETHER)
     items = [
         (cars[i : i + _TOGETHER], {name: [group[j]] for name, group in groups.items()})

@@ -124,7 +124,7 @@ def assign(
 
 
 def _by_track(mechanism: Mechanism, moved: object) -> dict[str, object]:
-    """The signal of each road, where one is given for the left and one for the right track; else nothing."""
+    """Signal of each road if one is given for each track; else empty."""
     tracks = {road.track for road in mechanism.roads}
     if not isinstance(moved, Mapping) or not {*moved} or not {*moved} <= {"left", "right"} or tracks != {*moved}:
         return {}

@@ -1,4 +1,4 @@
-"""The parts of a mechanism as time stepping sees them: rows, inertia, and the reactions of frictions and gaps.
+"""Parts of a mechanism for time stepping: rows, inertia, and the reactions of frictions and gaps.
 
 Every element is a row over nodes and one over roads; its elongation is what they make of displacements. Which motions
 inertia carries, and which nothing does, follows from singular values of such rows, not from `systems.coordinates`, on

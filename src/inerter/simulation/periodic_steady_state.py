@@ -113,7 +113,7 @@ def mean_squares(
 def _repeat_period(
     integration: Integration, again: InputTable, repeats: float, most: int
 ) -> tuple[Integration, Repetition]:
-    """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
+    """Repeat the period until the relative change of state is below `repeats`; sums are those of the last period."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
     integration.knots = event_driven.knots(again)

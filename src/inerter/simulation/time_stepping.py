@@ -244,7 +244,7 @@ def _march(scheme: Scheme, table: StepTable, known: Matrix, law: Matrix, every: 
 def _histories(
     parts: Parts, table: StepTable, samples: Matrix, ended: int, reached: int, every: int, stop: Stop
 ) -> Histories:
-    """The columns of `samples`, which hold nothing of value from the step `reached` on if the march ended early."""
+    """Histories from the columns of `samples`; nan after the step `reached` if the march ended early."""
     n, status = parts.nodes, OK
     if ended != DONE:
         samples[-(-reached // every) :] = np.nan

@@ -140,7 +140,7 @@ class Trajectory:
 
     @property
     def static_loads(self) -> dict[str, float]:
-        """The weight that each tyre carries at rest [N], by its name; empty where that is not known, as `notes` say."""
+        """Static load of each tyre [N], by name; empty where unknown, with the reason in `notes`."""
         return self._static_loads[0]
 
     @cached_property

@@ -55,7 +55,7 @@ class Filter:
                 f"The poles of a filter lie in the open left half plane; of these one lies near {worst:.4g} rad/s."
             )
         try:
-            _ = self.scaled
+            _ = self.scaled_coefficients
         except OverflowError:
             raise LinearSystemError("The coefficients of the filter are beyond the range of numbers.") from None
 
@@ -89,7 +89,7 @@ class Filter:
         return integers[:count][::-1], integers[count:][::-1]
 
     @cached_property
-    def scaled(self) -> tuple[float, Any, Any]:
+    def scaled_coefficients(self) -> tuple[float, Any, Any]:
         """A frequency w, and the coefficients of numerator and denominator over (s / w)^0, ..., (s / w)^order.
 
         Powers of two scale them, so that those of the denominator are near one and none is rounded but to extended
@@ -110,7 +110,7 @@ class Filter:
 
     def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """F(j omega) at angular frequencies [rad/s]."""
-        rate, top, bottom = self.scaled
+        rate, top, bottom = self.scaled_coefficients
         x = 1j * np.asarray(omega, dtype=float) / rate
         low = np.abs(x) <= 1.0
         powers = np.where(low, x, 1.0 / np.where(low, 1.0, x))  # beyond, both are taken over the highest power

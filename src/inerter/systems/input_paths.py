@@ -79,7 +79,7 @@ def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:
 def apply_excitation(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
-    Raises `LinearSystemError` for the displacement of a road whose velocity is felt at once.
+    Raises `LinearSystemError` for the displacement of a road whose velocity acts on a damper directly.
     """
     if _plain(arrivals):
         return descriptor
@@ -101,8 +101,8 @@ def apply_excitation(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Des
     X_eta[:old, :e], X_eta[:old, e : e + inputs], X_x[:old, :old] = d.X_eta, d.X_u, d.X_x
     for unknown, ((_, one), place) in enumerate(zip(chains, places, strict=True), start=e + inputs):
         rows = np.arange(place.start, place.stop)
-        X_x[rows[:-1], rows[1:]] = one.scaled[0]
-        X_eta[rows[-1:], unknown] = one.scaled[0]
+        X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
+        X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
     reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, arrivals, strict=True)]
     wired = _FilterChains(reached, chains, places, len(columns), n)
     S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
@@ -128,7 +128,11 @@ def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: M
     """The descriptor whose inputs are columns times numbers."""
     levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
     for column, arrival in reached:
-        gain = 1.0 if arrival.filter is None else arrival.filter.scaled[1][0] / arrival.filter.scaled[2][0]
+        gain = (
+            1.0
+            if arrival.filter is None
+            else arrival.filter.scaled_coefficients[1][0] / arrival.filter.scaled_coefficients[2][0]
+        )
         lever = np.longdouble(arrival.lever) * gain
         levers[:, d.inputs.index(arrival.input), column] += lever, abs(lever)
     F, Y_u, X_u = d.F @ levers[0], d.Y_u @ levers[0], (d.X_u @ levers[0]).astype(float)
@@ -152,7 +156,7 @@ class _FilterChains:
     states: int
 
     def stacks(self, stacks: Any, sizes: bool = False) -> Any:
-        """The stacks with an unknown for each input and each chain, and the equations that say what these are."""
+        """The stacks with an unknown and its equation for each input and each filter chain."""
         S, R, F, Y_eta, Y_x, Y_u = stacks
         _, e, n = R.shape
         q, both = e + F.shape[2], 1.0 if sizes else -1.0
@@ -163,7 +167,7 @@ class _FilterChains:
         Y_eta2[:, :, :e], Y_eta2[:, :, e:q], Y_x2[:, :, :n] = Y_eta, Y_u, Y_x
         S2[0, range(e, q), range(e, q)] = 1.0
         for unknown, ((column, one), place) in enumerate(zip(self.chains, self.places, strict=True), start=q):
-            bottom = np.abs(one.scaled[2]) if sizes else one.scaled[2]
+            bottom = np.abs(one.scaled_coefficients[2]) if sizes else one.scaled_coefficients[2]
             S2[0, unknown, unknown], R2[0, unknown, place] = bottom[-1], both * bottom[:-1]
             F2[0, unknown, column] = 1.0
         for column, number, arrival in self.reached:
@@ -172,7 +176,9 @@ class _FilterChains:
                 F2[0, e + number, column] += lever
                 continue
             chain = self.chains.index((column, arrival.filter))
-            top = lever * (np.abs(arrival.filter.scaled[1]) if sizes else arrival.filter.scaled[1])
+            top = lever * (
+                np.abs(arrival.filter.scaled_coefficients[1]) if sizes else arrival.filter.scaled_coefficients[1]
+            )
             S2[0, e + number, q + chain] += both * top[-1]
             R2[0, e + number, self.places[chain]] += top[:-1]
         return S2, R2, F2, Y_eta2, Y_x2, Y_u2

@@ -47,7 +47,7 @@ class BranchRows:
         return BranchRows(rows.shape, rows.tobytes(), len(graph.nodes))
 
     def exact_rows(self, rows: Matrix) -> FractionRows:
-        """Rows over nodes, or over nodes and roads, as they were meant to be."""
+        """Rows over nodes, or over nodes and roads, with nearly dependent levers replaced by exact ones."""
         return [list(_snap_row(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
 
 

@@ -225,7 +225,7 @@ def _of_still(mechanism: Mechanism) -> list[Output]:
 def check_inputs(
     mechanism: Mechanism, names: Sequence[str], error: type[InerterError], also: Sequence[str] = ()
 ) -> None:
-    """Raises `error` for a name that is no input of the mechanism, nor one of those that are allowed here `also`."""
+    """Raises `error` for a name that is neither an input of the mechanism nor in `also`."""
     known = input_names(mechanism)
     for name in names:
         if name not in known and name not in also:
@@ -262,7 +262,7 @@ def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
 
 
 def check_element(mechanism: Mechanism, label: object, called: Callable[[str], str]) -> None:
-    """Raises `PerformanceIndexError` unless there is an element of this label, and what it is `called` is known."""
+    """Raises `PerformanceIndexError` unless the element and its output, named by `called`, are known."""
     graph = full_graph(mechanism)
     known = outputs(mechanism, graph)
     every = dict.fromkeys((*graph.groups, *(branch.label for branch in graph.branches)))

@@ -1,4 +1,4 @@
-"""Piecewise-linear systems: what compiled code needs to know of a mechanism to simulate it in every mode.
+"""Piecewise-linear systems: the matrices of a mechanism from which compiled code builds every mode.
 
 Velocities, positions and all that follows from which elements are where is `systems.kinematics`, found once for a
 layout; what a mode makes of it is `kernels.modes`.
@@ -181,7 +181,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
 
 
 def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
-    """Raises `MechanismError` if an inertia is lost beside another one that moves with it."""
+    """Raises `MechanismError` if an inertia is lost to rounding against another one that moves with it."""
     if inertia.size and inertia.max() > _LOST * inertia.min():
         M = kinetic.T @ (inertia[:, None] * kinetic)
         size = 1.0 / np.sqrt(np.diag(M))
@@ -238,7 +238,7 @@ def _sum_over_law(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Mat
 
 
 def _condensed_damping(damping: Matrix, na: int) -> Matrix:
-    """Damping between inertias and roads once the massless motions between them have given way."""
+    """Damping between inertias and roads, with the massless motions between them eliminated."""
     nv = damping.shape[0]
     if na == nv:
         return damping[:, nv:]

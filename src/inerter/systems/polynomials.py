@@ -1,4 +1,4 @@
-"""Polynomials with whole coefficients, from the constant upwards: nothing here rounds.
+"""Polynomials with whole coefficients, from the constant upwards, without rounding.
 
 Whether two polynomials share a root, whether one has roots on the imaginary axis, and where its positive roots lie, is
 decided by arithmetic alone. Shared roots are rare, and a prime modulus shows nearly always that there are none.
@@ -77,7 +77,7 @@ def interpolate_integers(values: Sequence[int]) -> Polynomial:
 
 
 def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
-    """P / q up to a constant factor, where q divides p and both are primitive."""
+    """Quotient p / q up to a constant factor, where q divides p and both are primitive."""
     rest, result = list(p), [0] * (len(p) - len(q) + 1)
     for i in range(len(result) - 1, -1, -1):
         result[i] = rest[i + len(q) - 1] // q[-1]

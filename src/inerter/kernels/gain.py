@@ -154,7 +154,7 @@ def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> fl
 
 
 @part()
-def farthest(poles: Array) -> float:
+def largest_pole(poles: Array) -> float:
     """The largest distance of a pole from zero; infinite where one is not finite."""
     size = 0.0
     for pole in poles:
@@ -168,7 +168,7 @@ def farthest(poles: Array) -> float:
 @part()
 def frequencies(poles: Array) -> Array:
     """Zero, a logarithmic grid over all time scales, and points on and around every resonance, in order."""
-    n, fastest = poles.size, farthest(poles)
+    n, fastest = poles.size, largest_pole(poles)
     slowest = np.inf
     for pole in poles:
         slowest = min(slowest, max(abs(pole), 1e-300))
@@ -223,7 +223,7 @@ def peaks(system: Array, lost: Array) -> Any:
     A, _, _, D = system
     scale, direct = units(A), D[0, 0]
     poles, residues, good = partial_fractions(system, lost[0], scale)
-    if not good or not farthest(poles) < np.inf:
+    if not good or not largest_pole(poles) < np.inf:
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
     values = np.empty(grid.size)

@@ -12,7 +12,7 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.gain import farthest, frequencies, resolve
+from inerter.kernels.gain import frequencies, largest_pole, resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, sort
 
@@ -240,7 +240,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
             for j in range(A.shape[0]):
                 scaled[i, j] = A[i, j] * scale[j] / scale[i]
         poles = np.linalg.eigvals(scaled)
-        size = farthest(poles)
+        size = largest_pole(poles)
         if not size < np.inf:
             continue
         if exponent == 0:
@@ -307,7 +307,7 @@ def top(system: Array, low: float, high: float, limit: Array, amplitude: float, 
 
 
 @part()
-def finer(grid: Array, values: Array) -> Array:
+def refine_grid(grid: Array, values: Array) -> Array:
     """Points between those where the gain bends."""
     extra = np.empty(grid.size)
     count = 0
@@ -350,7 +350,7 @@ def peaks(
             new[k], settled = gain_at(system, points[k], limit, amplitude, reference, work)
             fine = fine and settled
         grid, values = merge_samples(grid, values, points, new)
-        points = finer(grid, values)
+        points = refine_grid(grid, values)
         if points.size == 0:
             break
     omegas, found = np.empty(grid.size), np.empty(grid.size)

@@ -23,7 +23,7 @@ from inerter.methods.equivalent_linear import EquivalentLinearModel, equivalent_
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.excitation import Excitation, ExcitedInputs, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
-from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
+from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, with_convention_filters
 from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.multisine_lines import SampledObjective
@@ -126,7 +126,7 @@ class ApproximateLinear:
         """
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        questions = [under(conventions, mechanism, index.question(mechanism)) for index in indices]
+        questions = [with_convention_filters(conventions, mechanism, index.question(mechanism)) for index in indices]
         if not always and not _is_nonlinear(mechanism):
             return [self._estimate_linear(mechanism, question) for question in questions]
         linears = [self._equivalent_linear_model(mechanism, question) for question in questions]
@@ -141,7 +141,7 @@ class ApproximateLinear:
             system, frictions = systems[way[0]]
             runs[way] = Runs(system, way[1], names, frictions, int(self.seed))
         return [
-            self._answer(question, linear, runs[way])
+            self._estimate_from_runs(question, linear, runs[way])
             for question, linear, way in zip(questions, linears, moved, strict=True)
         ]
 
@@ -194,7 +194,7 @@ class ApproximateLinear:
         """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
         return None if self._raw else equivalent_linear_model(mechanism, question, CONVENTIONS[self.conventions])
 
-    def _answer(self, question: Question, linear: EquivalentLinearModel | None, runs: Runs) -> Estimate:
+    def _estimate_from_runs(self, question: Question, linear: EquivalentLinearModel | None, runs: Runs) -> Estimate:
         notes: tuple[str, ...] = ()
         if question.amplitude is not None:
             notes = ("the amplitude of a sine is ignored: the excitation sets the size",)

@@ -87,7 +87,7 @@ class CompiledQuestion:
         return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
 
     @cached_property
-    def apart(self) -> tuple[CompiledQuestion, ...]:
+    def single_source_questions(self) -> tuple[CompiledQuestion, ...]:
         """Objectives of the single sources, whose squares add up; empty for one source."""
         sources = tuple(dict.fromkeys(self.problem.sources))
         return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
@@ -112,7 +112,7 @@ class CompiledQuestion:
     @cached_property
     def per_source_questions(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
         """Mask of the outputs that each source excites, and the objective of these outputs."""
-        sources = [one for one in self.apart or (self,) if np.any(one.reachable_outputs)]
+        sources = [one for one in self.single_source_questions or (self,) if np.any(one.reachable_outputs)]
         return tuple(
             (one.reachable_outputs, CompiledQuestion(one.problem.part(one.reachable_outputs))) for one in sources
         )
@@ -150,8 +150,8 @@ class CompiledQuestion:
         return self.problem.norms(self.problem.system(self._close_at(point)), self._values(point))[0].outputs
 
     def _exact_norms(self, point: Array) -> Array:
-        if self.apart:
-            parts = [one._exact_norms(point[self._columns(one)]) for one in self.apart]
+        if self.single_source_questions:
+            parts = [one._exact_norms(point[self._columns(one)]) for one in self.single_source_questions]
             return np.asarray(np.linalg.norm(parts, axis=0))
         system = self.problem.system(self._close_at(point))
         return self.problem.correct_norms(system, h2_exactly(system, self.problem.pade_order)[0])[0]
@@ -215,7 +215,7 @@ class CompiledQuestion:
 
         Over several sources, squares are added up for the outputs that each one excites.
         """
-        if not self.apart and np.all(self.reachable_outputs) and self._excess is None:
+        if not self.single_source_questions and np.all(self.reachable_outputs) and self._excess is None:
             norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
             return np.asarray(norms), np.asarray(gradients), np.asarray(doubts)
         squares, doubts = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])

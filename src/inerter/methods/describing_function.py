@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.kernels import harmonic as kernels
-from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly
+from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly_represented
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
@@ -147,7 +147,7 @@ class HarmonicBalance:
         bound = self._off_by(np.zeros(0), omegas, gains)
         status = OK
         if not bound <= PROMISE:
-            status = poorly("friction as large as the forces in parallel with it", bound)
+            status = poorly_represented("friction as large as the forces in parallel with it", bound)
         if not fine:
             status = Status(StatusKind.INACCURATE, "harmonic balance not converged at every frequency")
         if not np.isfinite(peaks[0].gain):

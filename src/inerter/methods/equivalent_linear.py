@@ -108,7 +108,7 @@ def equivalent_linear_model(
         return None
 
 
-def memory(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
+def remaining_share(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
     """Largest share of an r.m.s. value due to the motion `time` [s] ago, and the pole that carries most of it [rad/s].
 
     Each mode's share of the outputs, which have these H2 `norms`, is taken by itself and decays at its own rate. The

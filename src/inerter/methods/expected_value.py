@@ -16,7 +16,14 @@ from inerter.errors import InerterError, LinearSystemError, MechanismError, Perf
 from inerter.indices.question import Index, Question
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.harmonic_response import ForcedResponse, coarse_maxima, frequency_grid, local_maxima
-from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
+from inerter.methods.linear import (
+    CONVENTIONS,
+    Conventions,
+    LinearProblem,
+    check_conventions,
+    linear_problem,
+    with_convention_filters,
+)
 from inerter.methods.method import Estimate, Sees
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
@@ -147,7 +154,7 @@ class ExpectedValue:
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = under(conventions, mechanism, index.question(mechanism))
+        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
         system = piecewise(question.drive.excited_mechanism(mechanism))
         if question.is_peak:
             return None
@@ -167,7 +174,7 @@ class ExpectedValue:
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = under(conventions, mechanism, index.question(mechanism))
+        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
         system = piecewise(question.drive.excited_mechanism(mechanism))
         if not _is_held(system, question, conventions) and not is_nonlinear(system, question):

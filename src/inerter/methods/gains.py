@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.methods.equivalent_linear import EquivalentLinearModel, memory
+from inerter.methods.equivalent_linear import EquivalentLinearModel, remaining_share
 from inerter.methods.excitation import ExcitedInputs
-from inerter.methods.steady_squares import jump_scatter, share_of
+from inerter.methods.steady_squares import jump_scatter, relative_bound
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
@@ -60,7 +60,7 @@ def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) ->
     whole = h2(system, linear.problem.pade_order)
     if not whole.status.ok:
         return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, 0j)
-    left, pole = memory(system, whole.outputs, period)
+    left, pole = remaining_share(system, whole.outputs, period)
     unlike = linear.unlike(speeds, whole.outputs) if 2.0 * left > _UNSEEN else 0.0
     return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, pole)
 
@@ -107,7 +107,7 @@ class Runs:
             lines = 2.0 * squares[list(places)] / samples**2
             with np.errstate(divide="ignore", invalid="ignore"):
                 sizes = (lines * passed).sum(axis=1) / np.sqrt((lines * passed**2).sum(axis=1))
-            shares.append(share_of(scatter[list(places)], sizes))
+            shares.append(relative_bound(scatter[list(places)], sizes))
         return float(np.max(shares, initial=0.0))
 
     def _add(self, number: int) -> None:

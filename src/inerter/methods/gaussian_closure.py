@@ -18,7 +18,15 @@ from numpy.typing import NDArray
 from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
 from inerter.indices.question import Question
 from inerter.methods.compiled_norm import CompiledQuestion
-from inerter.methods.equivalent import GAUSSIAN, PROMISE, STIFFEST, Equivalent, equivalent, poorly, slipping_freely
+from inerter.methods.equivalent import (
+    GAUSSIAN,
+    PROMISE,
+    STIFFEST,
+    Equivalent,
+    equivalent,
+    poorly_represented,
+    slipping_freely,
+)
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
@@ -349,7 +357,7 @@ class GaussianClosure:
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
         bound = float(self.off_by(np.zeros((1, 0)), solved, promise=0.0)[0])
         if result.status.ok and not bound <= PROMISE:
-            result = replace(result, status=poorly(self._stick(solved.unlike[0]), bound))
+            result = replace(result, status=poorly_represented(self._stick(solved.unlike[0]), bound))
         result = with_error_sources(
             result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf
         )

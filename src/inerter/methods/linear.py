@@ -223,7 +223,10 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
     check_peak_gain(question)
-    asked, driven = under(conventions, mechanism, question), question.drive.excited_mechanism(mechanism)
+    asked, driven = (
+        with_convention_filters(conventions, mechanism, question),
+        question.drive.excited_mechanism(mechanism),
+    )
     arrivals = question.arrivals(driven)
     descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
     columns = tuple(columns_of(arrivals))
@@ -240,7 +243,7 @@ def check_peak_gain(question: Question) -> None:
         )
 
 
-def under(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
+def with_convention_filters(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
     """Index definition with the filters of the conventions added to its filters."""
     if conventions.load_filter is None:
         return question

@@ -18,8 +18,8 @@ from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
     equivalent_linear_model,
     has_play,
-    memory,
     relative_change,
+    remaining_share,
     with_velocities,
 )
 from inerter.methods.error_bounds import with_error_sources
@@ -36,7 +36,7 @@ from inerter.methods.realisations import (
     realisation_seeds,
     run,
 )
-from inerter.methods.steady_squares import steady_state_error, together
+from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
@@ -169,7 +169,7 @@ def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
     added = (design.question.drive.size * norms) ** 2 - seen
-    (left, pole), (at_last, _) = (memory(system, norms, time) for time in (way.period, design.longest))
+    (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (way.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + linear.unlike(speeds, norms), 1.0)  # once the lines tell more
@@ -277,7 +277,7 @@ def _average_index(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> 
 
 def _errors(lacking: Rest, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
-    jumps = together([ran.jumps[:outputs] for ran in found])
+    jumps = mean_bound([ran.jumps[:outputs] for ran in found])
     return [
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),

@@ -70,7 +70,7 @@ def without_roads(name: str, *, has_play: bool) -> str:
     return DEFAULT if is_blind(name) or has_play else StatisticalLinearisation.name
 
 
-def deciding(name: str, message: str) -> str:
+def decisive_method_clause(name: str, message: str) -> str:
     """Clause on the method that can decide an uncertain result, to follow the message of its status."""
     others = [other for other in METHODS if nonlinearities_of(other) is Sees.BOTH]
     if nonlinearities_of(name) is Sees.BOTH or not others or any(other in message for other in others):

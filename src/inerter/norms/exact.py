@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade_coefficients
-from inerter.norms.mean_square import Transfer, UnknownError, lasting, mean_square
+from inerter.norms.mean_square import Transfer, UnknownError, axis_frequencies, mean_square
 from inerter.norms.squared_gain import SquaredGain
 from inerter.systems.linear import LinearSystem
 from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirror, multiply
@@ -66,7 +66,7 @@ def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Stat
         for source in sources
     ]
     response = Transfer(functions.denominator, tuple(entries), (0.0,) * len(entries)).without_common_roots()
-    frequencies = lasting(response.denominator)
+    frequencies = axis_frequencies(response.denominator)
     if frequencies:
         return [(frequency, math.inf) for frequency in frequencies], undamped_status(frequencies)
     if min(len(functions.numerators), len(sources)) > 1:

@@ -192,10 +192,10 @@ def _covariance(
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     follow, noise = A[dw], W.astype(float)
     P[np.ix_(w, w)] = walks
-    P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
+    P[dw] = _solve_or_empty(A[d], -(follow @ walks + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T
-    P[d] = solver.refine(fine_A[d], W[d] + _both(follow @ P[dw].T))
-    rest = np.asarray(_both(fine_A @ P) + W, dtype=float)
+    P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+    rest = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
     rest[np.ix_(w, w)] = 8.0 * _EPS * walks
     enters = np.diag(noise)
     terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
@@ -208,13 +208,13 @@ def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: NDArray[np.bool_]
     decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     Q[d] = solver.solve(goal[d], adjoint=True)
-    Q[dw] = _once(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
+    Q[dw] = _solve_or_empty(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
     Q[np.ix_(w, decays)] = Q[dw].T
-    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _both(Q[dw].T @ A[dw])
+    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _add_transpose(Q[dw].T @ A[dw])
     return Q
 
 
-def _once(A: Matrix, right: Matrix) -> Matrix:
+def _solve_or_empty(A: Matrix, right: Matrix) -> Matrix:
     return np.asarray(np.linalg.solve(A, right)) if right.size else right
 
 
@@ -247,7 +247,7 @@ class _Lyapunov:
         """
         P, before = self.solve(W.astype(float)), np.inf
         for turn in range(20):
-            step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
+            step = self.solve(np.asarray(_add_transpose(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
             if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
                 raise np.linalg.LinAlgError("damping lost to rounding")
@@ -263,7 +263,7 @@ def _excitation(
     """W of `_squares`: the input covariance with that of delayed inputs, and its error."""
     (A, EA), (B, EB) = dynamics, entries
     size = np.abs(B).astype(float)
-    W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _LONG * size @ size.T
+    W, EW = B @ B.T, _add_transpose(EB @ size.T) + 2.0 * _LONG * size @ size.T
     for source in dict.fromkeys(system.sources):
         arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
         met = unsure = np.zeros((B.shape[0], 0))
@@ -271,10 +271,12 @@ def _excitation(
             met, unsure = np.hstack([met, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
             time = float(system.delays[now] - system.delays[before])
             met, unsure = propagate(A, EA, met.astype(float), unsure + _EPS * np.abs(met), time, pade_order)
-            W = W + _both(np.outer(met.sum(axis=1), B[:, now]))
-            EW = EW + _both(np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now]))
+            W = W + _add_transpose(np.outer(met.sum(axis=1), B[:, now]))
+            EW = EW + _add_transpose(
+                np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now])
+            )
     return W, EW
 
 
-def _both(matrix: Matrix) -> Matrix:
+def _add_transpose(matrix: Matrix) -> Matrix:
     return np.asarray(matrix + matrix.T)

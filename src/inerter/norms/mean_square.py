@@ -59,7 +59,7 @@ class Transfer:
         return max(map(len, self.numerators), default=0) >= len(self.denominator)
 
 
-def lasting(denominator: Polynomial) -> list[float]:
+def axis_frequencies(denominator: Polynomial) -> list[float]:
     """Frequencies [rad/s] of the roots on the imaginary axis, none of which lies to its right."""
     zeros = next(i for i, c in enumerate(denominator) if c)
     squares = positive_roots(mirror(on_axis(denominator[zeros:])))
@@ -72,7 +72,7 @@ def mean_square(response: Transfer) -> tuple[float, list[float]]:
     `response` is reduced and passes no noise straight through. Raises `UnknownError`.
     """
     a, numerators = response.denominator, response.numerators
-    frequencies = lasting(a)
+    frequencies = axis_frequencies(a)
     drifts = frequencies == [0.0] and a[1] != 0 and sum(n[0] for n in numerators if n) == 0
     if frequencies and not drifts:
         return math.inf, frequencies

@@ -23,9 +23,9 @@ from inerter.simulation.inputs import (
     BatchInputs,
     InputTable,
     assign,
-    check_driven,
     check_holds,
-    starting_from,
+    check_keywords,
+    initial_of,
     tabulate,
     whole_steps,
 )
@@ -98,8 +98,8 @@ def simulate_many(
         raise SimulationError(f"The number of threads must be a positive integer, got jobs = {jobs!r}.")
     if not is_number(settled):
         raise SimulationError(f"The time from which values count must be a number of seconds, got {settled!r}.")
-    check_driven("simulate_many", driven)
-    speed, initial = driven.get("speed"), starting_from(driven)
+    check_keywords("simulate_many", driven)
+    speed, initial = driven.get("speed"), initial_of(driven)
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
@@ -110,7 +110,7 @@ def simulate_many(
         same = {"outputs": names, "duration": duration, "step": step, "settled": settled, "initial": initial}
         with running_on(executor) as there:
             prepare_on(there, event_driven.KERNELS)
-            return _handed_out(cars, groups, count, {**same, "speed": speed}, progress)
+            return _run_on_executor(cars, groups, count, {**same, "speed": speed}, progress)
     squares = np.full((len(cars), count, len(names)), np.nan)
     events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)
     systems: list[PiecewiseSystem | None] = [None] * len(cars)
@@ -152,7 +152,7 @@ def simulate_many(
     return Batch(tuple(names), units, squares, events, tuple(tuple(row) for row in status))
 
 
-def _handed_out(
+def _run_on_executor(
     cars: Sequence[Vehicle],
     groups: Mapping[str, Any],
     count: int,
@@ -166,7 +166,7 @@ def _handed_out(
         for i in firsts
         for j in range(count)
     ]
-    found = mapped(partial(_some, same), items, progress=progress)
+    found = mapped(partial(_run_designs, same), items, progress=progress)
     rows = [found[k * count : (k + 1) * count] for k in range(len(firsts))]
     return Batch(
         found[0].outputs,
@@ -177,7 +177,7 @@ def _handed_out(
     )
 
 
-def _some(same: Mapping[str, Any], item: tuple[Sequence[Vehicle], Mapping[str, Any]]) -> Batch:
+def _run_designs(same: Mapping[str, Any], item: tuple[Sequence[Vehicle], Mapping[str, Any]]) -> Batch:
     cars, driven = item
     return simulate_many(cars, **same, **driven)
 

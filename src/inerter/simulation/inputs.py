@@ -75,7 +75,7 @@ class BatchInputs(TypedDict, total=False):
     initial: Initial
 
 
-def check_driven(caller: str, driven: Mapping[str, object]) -> None:
+def check_keywords(caller: str, driven: Mapping[str, object]) -> None:
     """Raises TypeError for an unknown keyword of the excitation and the initial state."""
     unknown = [name for name in driven if name not in RunInputs.__annotations__]
     if unknown:
@@ -83,7 +83,7 @@ def check_driven(caller: str, driven: Mapping[str, object]) -> None:
         raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (available: {known}).")
 
 
-def starting_from(driven: RunInputs | BatchInputs) -> Initial:
+def initial_of(driven: RunInputs | BatchInputs) -> Initial:
     """Initial state among the keywords; default: at rest."""
     return driven.get("initial", "rest")
 

@@ -107,7 +107,7 @@ class Parts:
         """Forces on the nodes of branches with forces value x row: sum of E' value row."""
         return (self.E.T * values) @ rows
 
-    def unheld(self, linear: NDArray[np.bool_]) -> Matrix:
+    def unconstrained_directions(self, linear: NDArray[np.bool_]) -> Matrix:
         """Orthonormal directions that neither masses nor the branches in `linear` hold."""
         masses = np.diag(self.masses > 0.0).astype(float)
         return range_and_null(np.vstack([masses, unit_rows(self.E[linear])]))[1]

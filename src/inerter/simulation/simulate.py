@@ -18,10 +18,10 @@ from inerter.simulation.inputs import (
     MEMORY_LIMIT,
     RunInputs,
     assign,
-    check_driven,
     check_holds,
+    check_keywords,
     check_steps,
-    starting_from,
+    initial_of,
     tabulate,
     whole_steps,
 )
@@ -100,7 +100,7 @@ def simulate(
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
-    check_driven("simulate", driven)
+    check_keywords("simulate", driven)
     plan = _plan(vehicle, driven, RunSettings(duration, step, integrator, every, energy, memory_limit))
     system, signals, delays, initial, length = plan.system, plan.signals, plan.delays, plan.initial, plan.length
     if integrator == "time-stepping":
@@ -136,7 +136,7 @@ def check_simulation(vehicle: Vehicle, driven: RunInputs, settings: RunSettings)
 
 
 def _plan(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> _Plan:
-    initial = starting_from(driven)
+    initial = initial_of(driven)
     moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
     system = piecewise(vehicle)
     signals, delays = assign(system.mechanism, **moved)

@@ -121,7 +121,7 @@ def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
     displacement = _solution(parts.rows[held], elongation[held] - parts.offset[held])
     ways = null_space(parts.rows[held])
     for branches in (open_, parts.others):
-        displacement, ways = _drawn_in(parts, branches, displacement, ways)
+        displacement, ways = _shorten_branches(parts, branches, displacement, ways)
     elongation[open_] = _sum(parts.rows[open_], displacement, parts.offset[open_])
     lower, upper = parts.ends[open_].T
     if np.any(elongation[open_] < lower - _BALANCED * np.abs(lower)):
@@ -166,7 +166,9 @@ def _forces(parts: _Parts, held: list[int], load: Matrix, given: Matrix) -> Matr
     return np.asarray(force[np.argsort(order)])
 
 
-def _drawn_in(parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix) -> tuple[Matrix, Matrix]:
+def _shorten_branches(
+    parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix
+) -> tuple[Matrix, Matrix]:
     """Displacements moved within `ways` to where some branches are shortest; and the ways that leave these alone."""
     rows = parts.rows[list(branches)]
     along = _sum(rows, ways)

@@ -21,7 +21,7 @@ from inerter.networks.elements.roles import Linear
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import incidence_rows, inertias, of_law, ports
-from inerter.systems.lever_arms import BranchRows, is_lost, lost_in
+from inerter.systems.lever_arms import BranchRows, is_lost, lost_travel_message
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 
@@ -92,7 +92,7 @@ class Frame:
         """Message on elongations lost to rounding; empty if none is."""
         shares = self.split.G
         lost = is_lost(shares, np.hstack(self.split.rates))
-        return lost_in(shares, [branch.label for branch in self.springs]) if lost else ""
+        return lost_travel_message(shares, [branch.label for branch in self.springs]) if lost else ""
 
     @cached_property
     def free(self) -> dict[str, Free]:

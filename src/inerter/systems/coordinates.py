@@ -119,7 +119,7 @@ def _analyse_graph(span: BranchRows, *matrices: tuple[tuple[int, ...], bytes]) -
     stretched = exact_rank.transpose(
         exact_rank.product(Z, exact_rank.transpose(springs, n), len(springs)), len(springs)
     )
-    off_Z = _off(stretched, len(Z))
+    off_Z = _project_out(stretched, len(Z))
     over_a, over_y = (exact_rank.product(springs, exact_rank.transpose(motions, n), len(motions)) for motions in (R, Y))
     stretched_by = [[*a, *y, *u] for a, y, u in zip(over_a, over_y, spring_roads, strict=True)]
     moved, width = len(R) + len(Y), len(R) + len(Y) + roads
@@ -146,7 +146,7 @@ def _shares(rows: FractionRows, targets: FractionRows) -> FractionRows:
     return [found for found in exact_rank.weights(rows, targets) if found is not None]
 
 
-def _off(columns: FractionRows, count: int) -> FractionRows:
+def _project_out(columns: FractionRows, count: int) -> FractionRows:
     """The projection that takes the span of so many independent columns out."""
     size = len(columns)
     turned = exact_rank.transpose(columns, count)

@@ -22,7 +22,7 @@ from inerter.networks.elements.roles import Guard, Linear
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import incidence_rows, inertia_values, inertias, ports
-from inerter.systems.lever_arms import RANK_TOLERANCE, independent_rows, is_lost, lost_in
+from inerter.systems.lever_arms import RANK_TOLERANCE, independent_rows, is_lost, lost_travel_message
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
@@ -210,7 +210,7 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
         springs, last = range(len(gaps), len(placed)), range(len(placed), len(choices))
         chosen, over_g = _select_rows(choices, [*range(len(gaps)), *last, *springs])
         if is_lost(over_g, choices[chosen]):
-            raise MechanismError(lost_in(over_g, [*(branches[i].label for i in placed), *graph.nodes]))
+            raise MechanismError(lost_travel_message(over_g, [*(branches[i].label for i in placed), *graph.nodes]))
     P, P_road = choices[chosen], choices_road[chosen]
     over_g[chosen] = np.eye(len(chosen))
     over_z = clean(choices_road - over_g @ P_road)

@@ -109,7 +109,7 @@ def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
     return bool(np.finfo(float).eps * terms.max() > most * size)
 
 
-def lost_in(shares: Matrix, labels: Sequence[str]) -> str:
+def lost_travel_message(shares: Matrix, labels: Sequence[str]) -> str:
     """Message on travels for which `is_lost` holds; `labels` are those of the elements."""
     worst = int(np.argmax(np.abs(shares).max(axis=1)))
     return (

@@ -41,7 +41,7 @@ def motion(moving: Moving, output: Output, nodes: int) -> RowBlocks:
     """An output's velocities, accelerations and external forces."""
     rows = moving.blank()
     if output.velocity.size or output.road_velocity.size:
-        add(rows, moving.velocity(_or(output.velocity, nodes), output.road_velocity))
+        add(rows, moving.velocity(_row_or_zeros(output.velocity, nodes), output.road_velocity))
     if output.acceleration.size:
         add(rows, moving.acceleration(output.acceleration))
     if output.external.size:
@@ -88,7 +88,7 @@ def observed_by_default(frame: Frame) -> list[str]:
 
 
 def _drifts(frame: Frame, output: Output) -> bool:
-    roads = _or(output.road, len(frame.mechanism.roads))
+    roads = _row_or_zeros(output.road, len(frame.mechanism.roads))
     return bool(output.displacement.size) and frame.displacement(output.displacement, roads) is None
 
 
@@ -104,8 +104,8 @@ def _resolve_output(frame: Frame, name: str) -> Output:
 
 def _displacement(frame: Frame, name: str, output: Output) -> StackedOutput:
     """A displacement: a combination of spring elongations, or a state that follows its velocity."""
-    nodes = _or(output.displacement, len(frame.graph.nodes))
-    roads = _or(output.road, len(frame.mechanism.roads))
+    nodes = _row_or_zeros(output.displacement, len(frame.graph.nodes))
+    roads = _row_or_zeros(output.road, len(frame.mechanism.roads))
     weights = frame.displacement(nodes, roads)
     rows = _constant_stacks(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
     return StackedOutput(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
@@ -131,6 +131,6 @@ def _absolute(rows: OutputStacks) -> OutputStacks:
     return eta, x, u
 
 
-def _or(row: Matrix, count: int) -> Matrix:
+def _row_or_zeros(row: Matrix, count: int) -> Matrix:
     """A row of an output, where an empty one is of zeros."""
     return row if row.size else np.zeros(count)

@@ -185,7 +185,7 @@ WRONG = {
     "a class as method": (lambda: evaluate(car(), J1, Norm), "Expected a method"),
     "a name as method": (lambda: evaluate(car(), J1, "norm"), "Expected a method such as Norm()"),
     "a number as vehicle": (lambda: evaluate(5, J1, Norm()), "Expected a vehicle"),
-    "unknown conventions": (lambda: Norm("paper2009"), "known: exact, paper2008"),
+    "unknown conventions": (lambda: Norm("paper2009"), "available: exact, paper2008"),
     "no comfort defined": (lambda: evaluate(mechanism(measures=Measures()), J1, Norm()), "Set measures.comfort"),
     "no load carrying defined": (lambda: evaluate(mechanism(), J5, Norm()), "measures.load_input"),
     "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "has no tyre"),

@@ -322,7 +322,7 @@ WRONG = {
     "roads as truth": (lambda: ExpectedValue(realisations=True), "got True"),
     "roads as text": (lambda: ExpectedValue(realisations="4"), "got '4'"),
     "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed must be a non-negative integer"),
-    "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed is a whole number"),
+    "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed must be a non-negative integer"),
     "no length": (lambda: ExpectedValue(period=0), "length of a road in seconds must be a positive integer, got 0"),
     "half a second": (lambda: ExpectedValue(period=0.5), "a positive integer, got 0.5"),
     "no threads": (lambda: ExpectedValue(jobs=0), "number of threads must be a positive integer"),
@@ -330,9 +330,9 @@ WRONG = {
     "no error": (lambda: ExpectedValue(relative_error=0.0), "between 0 and 1, got 0.0"),
     "an error of nan": (lambda: ExpectedValue(relative_error=math.nan), "between 0 and 1"),
     "an error as text": (lambda: ExpectedValue(relative_error="1 %"), "between 0 and 1"),
-    "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "known: exact, paper2008"),
+    "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "available: exact, paper2008"),
     "conventions in a list": (lambda: ExpectedValue(conventions=[]), "Unknown conventions"),
-    "no seed": (lambda: ExpectedValue(seed=None), "The seed is a whole number"),
+    "no seed": (lambda: ExpectedValue(seed=None), "The seed must be a non-negative integer"),
 }
 
 

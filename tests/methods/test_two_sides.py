@@ -34,7 +34,7 @@ def compiled(mechanism, index):
 
 def whole(question, point):
     """Norms of the whole mechanism: behind filters without rounding, and corrected where these only stand in."""
-    system = question.problem.system(question._closed(point))
+    system = question.problem.system(question._close_at(point))
     return question.problem.correct_norms(system, h2_exactly(system, None)[0])[0]
 
 

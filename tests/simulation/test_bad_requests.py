@@ -179,7 +179,10 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
         r"follows the acceleration of 'displacement'.*hold=\"cubic\"",
     ),
     "an output that is not there": (lambda: drive()["sprung_aceleration"], r"Did you mean sprung_acceleration"),
-    "intervals of an element that is not there": (lambda: drive().intervals("f", "stick"), r"named 'f' .*none"),
+    "intervals of an element that is not there": (
+        lambda: drive().intervals("f", "stick"),
+        r"Unknown friction or gap 'f'.*none",
+    ),
 }
 
 

@@ -59,7 +59,7 @@ def test_other_values_give_the_system_of_the_other_design():
 @pytest.mark.parametrize(
     ("vehicle", "values", "said"),
     [
-        (car(), {"spring": 1.0}, "labelled 'spring'"),
+        (car(), {"spring": 1.0}, "Unknown element or coordinate 'spring'"),
         (car(), {"friction": 0.0}, "any positive number"),
         (car(friction=0.0), {"friction": 1.0}, "nothing else"),
         (car(), {"k": "1e5"}, "any positive number"),

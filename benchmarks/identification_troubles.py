@@ -59,7 +59,7 @@ def fitted(task: tuple[str, int]) -> dict[str, object]:
         "status": str(fit.status),
         "misfit": [fit.misfit.fitted, fit.misfit.checked],
         "predicted": fit.predicted,
-        "explained": fit.explained,
+        "explained": fit.variance_explained,
         "parameters": parameters,
         "explanations": [[e.name, e.explained, e.misfit.worst, e.sentence] for e in fit.explanations[:5]],
         "notes": list(fit.notes),

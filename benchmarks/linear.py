@@ -50,7 +50,7 @@ def designs(count: int) -> dict[str, np.ndarray]:
 def control_systems(points: dict[str, np.ndarray], inputs: str, outputs: str, gain: float) -> list[control.StateSpace]:
     systems = []
     for c, b in zip(points["c"], points["b"], strict=True):
-        s = it.assemble(car(STRUTS["S3"]).with_values({"c": c, "b": b}), inputs, outputs)
+        s = it.state_space(car(STRUTS["S3"]).with_values({"c": c, "b": b}), inputs, outputs)
         systems.append(control.ss(s.A, s.B, gain * s.C, s.D))
     return systems
 

@@ -147,7 +147,7 @@ def batches() -> None:
     def simulated(jobs: int) -> float:
         begin = time.perf_counter()
         it.simulate_many(
-            cars, road=[SIGNAL], outputs=["sprung_acceleration"], duration=20.0, settled=10.0, jobs=jobs
+            cars, road=[SIGNAL], outputs=["sprung_acceleration"], duration=20.0, discard=10.0, jobs=jobs
         )  # fmt: skip
         return time.perf_counter() - begin
 

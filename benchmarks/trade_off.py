@@ -46,11 +46,11 @@ def main() -> None:
             0.15,
         ),
         ("mean of J1 over two conditions", lambda: it.optimise(CAR, USE.mean(J1), NORM), None),
-        ("front of J1 and J3, 25 points", lambda: it.pareto(CAR, [J1, J3], NORM, points=25), 2.0),
-        ("front of J1 and J5, 25 points", lambda: it.pareto(CAR, [J1, J5], NORM, points=25), 2.0),
-        ("front of J1, J3 and J5, 25 points", lambda: it.pareto(CAR, [J1, J3, J5], NORM, points=25), None),
-        ("tolerance of J1, 4096 samples", lambda: it.tolerance(fixed, J1, NORM, spread=SPREAD), None),
-        ("robust J1, 256 samples", lambda: it.robust(CAR, J1, NORM, spread={"c": 0.3, "b": 0.3}), None),
+        ("front of J1 and J3, 25 points", lambda: it.pareto_front(CAR, [J1, J3], NORM, points=25), 2.0),
+        ("front of J1 and J5, 25 points", lambda: it.pareto_front(CAR, [J1, J5], NORM, points=25), 2.0),
+        ("front of J1, J3 and J5, 25 points", lambda: it.pareto_front(CAR, [J1, J3, J5], NORM, points=25), None),
+        ("tolerance of J1, 4096 samples", lambda: it.tolerance_analysis(fixed, J1, NORM, spread=SPREAD), None),
+        ("robust J1, 256 samples", lambda: it.optimise_robust(CAR, J1, NORM, spread={"c": 0.3, "b": 0.3}), None),
     ]
     with threadpool_limits(1):
         for title, work, allowed in rows:

@@ -15,6 +15,6 @@ improvement = 100 * (1 - best.value / baseline.value)
 print(f"{best.value:.4f} {best.unit} with c = {best.parameters['c']:.0f} N s/m and b = {best.parameters['b']:.1f} kg")
 print(f"{improvement:.2f} % better than the best spring and damper ({baseline.value:.4f} {baseline.unit})")
 print(f"its dynamic tyre load: {it.evaluate(best.design, grip, it.Norm()).value:.1f} N")
-print(f"{best.agreed} of {best.starts} searches found it; held back by bounds: {best.active_bounds or 'none'}")
+print(f"{best.n_converged} of {best.n_starts} searches found it; held back by bounds: {best.active_bounds or 'none'}")
 
 assert abs(improvement - 18.74) < 0.01  # Wang and Su (2008), section 2.2

@@ -18,7 +18,7 @@ for state in ("open", "upper contact", "lower contact"):
     share = sum(end - begin for begin, end in run.intervals("play", state)) / run.time[-1]
     print(f"  {state:<13}  {100 * share:.1f} % of the time")
 print(f"force of the device: {run.rms('force'):.1f} N r.m.s., at most {abs(run['force']).max():.1f} N")
-print(f"energy put in: {run.energy.put_in:.4f} J, of which friction took {sum(run.energy.friction.values()):.4f} J")
+print(f"energy put in: {run.energy.input_work:.4f} J, of which friction took {sum(run.energy.friction.values()):.4f} J")
 
 # The screw rests, held by its friction, until the table has used up the play: amplitude (1 - cos(omega t)) = play.
 expected = acos(1 - play / amplitude) / omega

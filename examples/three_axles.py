@@ -18,9 +18,9 @@ truck = it.Mechanism(
     tyres=tuple(it.Tyre(f"{axle}_tyre", it.Spring(900e3), {f"{axle}_wheel": 1.0}, f"{axle}_road") for axle in levers),
     roads=tuple(it.RoadInput(f"{axle}_road", distance=levers["front"] - lever) for axle, lever in levers.items()),
     forces=(it.Force("load", {"body": 1.0}),),
-    measures=it.Measures(
-        comfort=(it.Weighted("body_acceleration"), it.Weighted("pitch_acceleration", 2.1)),
-        tyre_load=tuple(it.Weighted(f"{axle}_tyre_load") for axle in levers),
+    measures=it.PerformanceOutputs(
+        comfort=(it.OutputWeight("body_acceleration"), it.OutputWeight("pitch_acceleration", 2.1)),
+        tyre_load=tuple(it.OutputWeight(f"{axle}_tyre_load") for axle in levers),
         load_input="load",
         load_output="body_displacement",
     ),
@@ -31,7 +31,7 @@ grip = it.evaluate(best.design, it.TyreLoad(road), it.Norm())
 
 print(f"{best.value:.3f} {best.unit} with c = {best.parameters['c']:.0f} N s/m, b = {best.parameters['b']:.0f} kg")
 print(f"dynamic tyre load, three axles together: {grip.value:.0f} {grip.unit}")
-print(f"states: {', '.join(it.assemble(best.design).states)}")
+print(f"states: {', '.join(it.state_space(best.design).states)}")
 
 assert best.status.ok
 assert grip.status.ok

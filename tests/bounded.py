@@ -112,7 +112,7 @@ def _linear_index(rng: np.random.Generator, name: str, mechanism: Mechanism) -> 
     white = it.WhiteForce(force, logarithmic(rng, 0.1, 10.0))
     moved = {f"{mass}_{'velocity' if rng.random() < 0.5 else 'acceleration'}": 1.0}
     without_road: list[Callable[[], Index]] = [
-        lambda: it.RandomResponse(moved, it.Shaped(white, it.Filter([30.0], [1.0, 30.0]))),
+        lambda: it.RandomResponse(moved, it.FilteredExcitation(white, it.Filter([30.0], [1.0, 30.0]))),
         lambda: it.RandomResponse({f"{inner[0]}_force": 1.0}, it.GroundAcceleration(logarithmic(rng, 0.1, 10.0))),
         it.LoadCarrying,
         lambda: it.PeakResponse(force, f"{mass}_velocity"),
@@ -142,7 +142,7 @@ def member_with_friction(number: int) -> Member:
     mechanism = vehicle.mechanism()
     if name == "absorber":
         index: Index = it.RandomResponse({"primary_acceleration": 1.0},
-                                  it.Shaped(it.WhiteForce("primary_force", logarithmic(rng, 10, 1e4)),
+                                  it.FilteredExcitation(it.WhiteForce("primary_force", logarithmic(rng, 10, 1e4)),
                                             it.Filter([60.0], [1.0, 60.0])))  # fmt: skip
         return Member(f"{name}, {index.symbol}", vehicle, index)
     on = road(rng)
@@ -194,9 +194,9 @@ def _vehicle_with_friction(rng: np.random.Generator, name: str) -> Vehicle | Mec
             tyres=(it.Tyre("tyre", it.Spring(tyre), {"m0": 1.0}, "road"),),
             roads=(it.RoadInput("road"),),
             forces=(it.Force("load", {"m2": 1.0}),),
-            measures=it.Measures(
-                comfort=(it.Weighted("m2_acceleration"),),
-                tyre_load=(it.Weighted("tyre_load"),),
+            measures=it.PerformanceOutputs(
+                comfort=(it.OutputWeight("m2_acceleration"),),
+                tyre_load=(it.OutputWeight("tyre_load"),),
                 load_input="load",
                 load_output="m2_displacement",
             ),

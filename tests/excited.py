@@ -10,7 +10,7 @@ from filtered import random_filter
 import inerter as it
 from inerter.indices.excitation import as_excitation
 from inerter.signals.road import Road
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -32,10 +32,10 @@ class TwoSources:
     def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
-        shared = [Arrival(r.name, "both", r.distance / self.road.speed, 1.0, self.shapes[0]) for r in mechanism.roads]
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+        shared = [InputPath(r.name, "both", r.distance / self.road.speed, 1.0, self.shapes[0]) for r in mechanism.roads]
         turned = [
-            Arrival(r.name, "apart", r.distance / self.road.speed, (-0.5) ** i, self.shapes[1])
+            InputPath(r.name, "apart", r.distance / self.road.speed, (-0.5) ** i, self.shapes[1])
             for i, r in enumerate(mechanism.roads)
         ]
         return (*shared, *turned)
@@ -54,7 +54,7 @@ def random_excitation(rng: np.random.Generator, mechanism: Mechanism) -> it.Exci
     if choice == 6:
         return TwoSources(ROAD, (low_pass(rng), low_pass(rng)))
     shape = low_pass(rng) if rng.random() < 0.6 else random_filter(rng)
-    return plain[choice] if choice < 3 else it.Shaped(plain[choice - 3], shape)
+    return plain[choice] if choice < 3 else it.FilteredExcitation(plain[choice - 3], shape)
 
 
 def random_outputs(rng: np.random.Generator, mechanism: Mechanism, excitation: object) -> dict[str, float]:

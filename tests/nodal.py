@@ -87,7 +87,7 @@ class Nodal:
         self.displacements = eliminate(K, F)
 
     def response(self, output: str, source: str) -> np.ndarray:
-        """Frequency response of an output, named as in `assemble`, to a road's velocity or to a force."""
+        """Frequency response of an output, named as in `state_space`, to a road's velocity or to a force."""
         stem, _, what = output.rpartition("_")
         j = self.inputs.index(source)
         if what in ("displacement", "velocity", "acceleration"):

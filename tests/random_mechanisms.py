@@ -13,13 +13,13 @@ from inerter import (
     Damper,
     Force,
     Inerter,
-    Measures,
     Mechanism,
+    OutputWeight,
+    PerformanceOutputs,
     RoadInput,
     Spring,
     Strut,
     Tyre,
-    Weighted,
     free,
 )
 from inerter.networks.elements import Element, Network
@@ -115,9 +115,9 @@ def _measured(names: list[str], masses: list[float], struts: tuple[Strut, ...], 
         tyres=tyres,
         roads=tuple(RoadInput(road) for road in dict.fromkeys(tyre.road for tyre in tyres)),
         forces=(Force("load", {body: 1.0}),),
-        measures=Measures(
-            comfort=(Weighted(f"{body}_acceleration"),),
-            tyre_load=tuple(Weighted(f"{tyre.name}_load") for tyre in tyres),
+        measures=PerformanceOutputs(
+            comfort=(OutputWeight(f"{body}_acceleration"),),
+            tyre_load=tuple(OutputWeight(f"{tyre.name}_load") for tyre in tyres),
             load_input="load",
             load_output=f"{body}_displacement",
         ),

@@ -18,9 +18,10 @@ from inerter import (
     InerterError,
     LinearSystem,
     LoadCarrying,
-    Measures,
     Mechanism,
     Norm,
+    OutputWeight,
+    PerformanceOutputs,
     QuarterCar,
     RideComfort,
     Road,
@@ -29,8 +30,6 @@ from inerter import (
     Strut,
     Tyre,
     TyreLoad,
-    Weighted,
-    assemble,
     evaluate,
     evaluate_many,
     free,
@@ -39,6 +38,7 @@ from inerter import (
     hinf_norm,
     network,
     optimise,
+    state_space,
 )
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
@@ -66,13 +66,13 @@ def mechanism(**changes):
         "struts": (Strut("s", k | c, {"a": 1.0}, GROUND),),
         "tyres": (Tyre("t", k, {"a": 1.0}, "r"),),
         "roads": (RoadInput("r"),),
-        "measures": Measures(comfort=(Weighted("a_acceleration"),)),
+        "measures": PerformanceOutputs(comfort=(OutputWeight("a_acceleration"),)),
     }
     return Mechanism(**(parts | changes))
 
 
 def system():
-    return assemble(car(), "road", "sprung_acceleration")
+    return state_space(car(), "road", "sprung_acceleration")
 
 
 WRONG = {
@@ -137,21 +137,21 @@ WRONG = {
     "road that is not there": (lambda: mechanism(tyres=(Tyre("t", k, {"a": 1.0}, "q"),)), "unknown road 'q'"),
     "road before the first": (lambda: mechanism(roads=(RoadInput("r", -1.0),)), "zero or more metres"),
     "strut that is no network": (lambda: mechanism(struts=(Strut("s", Spring, {"a": 1.0}, GROUND),)), "got type"),
-    "friction alone": (lambda: assemble(car(Friction(5.0, "seal"))), "carries no force in linear analysis"),
-    "friction in series": (lambda: assemble(car(k - Friction(5.0, "seal"))), "(seal)"),
-    "gap alone": (lambda: assemble(car(Gap(1e-3, "play"))), "'strut' is rigid in linear analysis"),
-    "gap beside a spring": (lambda: assemble(car(k | Gap(1e-3, "play"))), "'play' joins its two ends"),
+    "friction alone": (lambda: state_space(car(Friction(5.0, "seal"))), "carries no force in linear analysis"),
+    "friction in series": (lambda: state_space(car(k - Friction(5.0, "seal"))), "(seal)"),
+    "gap alone": (lambda: state_space(car(Gap(1e-3, "play"))), "'strut' is rigid in linear analysis"),
+    "gap beside a spring": (lambda: state_space(car(k | Gap(1e-3, "play"))), "'play' joins its two ends"),
     "inerter on the road": (
-        lambda: assemble(mechanism(tyres=(Tyre("t", k | Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
+        lambda: state_space(mechanism(tyres=(Tyre("t", k | Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
         "'b1' is mounted on the road itself",
     ),
     "inerter at the foot of a tyre": (
-        lambda: assemble(mechanism(tyres=(Tyre("t", k - Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
+        lambda: state_space(mechanism(tyres=(Tyre("t", k - Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
         "'b1' is mounted on the road itself",
     ),
-    "unknown output": (lambda: assemble(car(), outputs="comfort"), "Unknown output 'comfort'"),
-    "unknown input": (lambda: assemble(car(), inputs="wind"), "Unknown input 'wind'"),
-    "assembling free values": (lambda: assemble(open_car()), "c, b is still free"),
+    "unknown output": (lambda: state_space(car(), outputs="comfort"), "Unknown output 'comfort'"),
+    "unknown input": (lambda: state_space(car(), inputs="wind"), "Unknown input 'wind'"),
+    "assembling free values": (lambda: state_space(open_car()), "c, b is still free"),
     # values
     "fixing what is not free": (lambda: open_car().with_values({"d": 1.0}), "unknown free value 'd'"),
     "fixing to nothing": (lambda: open_car().with_values({"c": 0.0}), "must be positive"),
@@ -186,7 +186,10 @@ WRONG = {
     "a name as method": (lambda: evaluate(car(), J1, "norm"), "Expected a method such as Norm()"),
     "a number as vehicle": (lambda: evaluate(5, J1, Norm()), "Expected a vehicle"),
     "unknown conventions": (lambda: Norm("paper2009"), "available: exact, paper2008"),
-    "no comfort defined": (lambda: evaluate(mechanism(measures=Measures()), J1, Norm()), "Set measures.comfort"),
+    "no comfort defined": (
+        lambda: evaluate(mechanism(measures=PerformanceOutputs()), J1, Norm()),
+        "Set measures.comfort",
+    ),
     "no load carrying defined": (lambda: evaluate(mechanism(), J5, Norm()), "measures.load_input"),
     "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "has no tyre"),
     # systems
@@ -200,10 +203,10 @@ WRONG = {
         lambda: LinearSystem([[-1.0]], [[1.0]], [[1.0]], [[0.0]], inputs=("a", "b")),
         "1 inputs, which need as many different names",
     ),
-    "negative delay": (lambda: system().delayed("road", [-1.0]), "zero or more seconds"),
-    "selecting a stranger": (lambda: system().select(outputs="x"), "Unknown output 'x'"),
+    "negative delay": (lambda: system().with_delays("road", [-1.0]), "zero or more seconds"),
+    "selecting a stranger": (lambda: system().subsystem(outputs="x"), "Unknown output 'x'"),
     "no such approximant": (
-        lambda: h2_norm(assemble(half()).delayed("road", [0.0, 0.1, 0.0, 0.0]), 0),
+        lambda: h2_norm(state_space(half()).with_delays("road", [0.0, 0.1, 0.0, 0.0]), 0),
         "order 1 to 10",
     ),
     "frequencies not finite": (lambda: frequency_response(system(), [math.nan]), "finite frequencies"),
@@ -230,27 +233,29 @@ OTHER_EXCEPTIONS = {
     "nothing as port": lambda: mechanism(struts=(Strut("s", k, {"a": 1.0}, None),)),
     "a name as coordinate": lambda: mechanism(coordinates=("a",)),
     "one coordinate instead of several": lambda: mechanism(coordinates=Coordinate("a", 1.0)),
-    "a name as measure": lambda: evaluate(mechanism(measures=Measures(comfort=("a_acceleration",))), J1, Norm()),
+    "a name as measure": lambda: evaluate(
+        mechanism(measures=PerformanceOutputs(comfort=("a_acceleration",))), J1, Norm()
+    ),
     "a weight as text": lambda: evaluate(
-        mechanism(measures=Measures(comfort=(Weighted("a_acceleration", "1"),))), J1, Norm()
+        mechanism(measures=PerformanceOutputs(comfort=(OutputWeight("a_acceleration", "1"),))), J1, Norm()
     ),
     "a weight not a number": lambda: evaluate(
-        mechanism(measures=Measures(comfort=(Weighted("a_acceleration", math.nan),))), J1, Norm()
+        mechanism(measures=PerformanceOutputs(comfort=(OutputWeight("a_acceleration", math.nan),))), J1, Norm()
     ),
     "no measures": lambda: evaluate(mechanism(measures=None), J1, Norm()),
     "a class as vehicle": lambda: evaluate(QuarterCar, J1, Norm()),
-    "assembling a number": lambda: assemble(5),
-    "assembling a class": lambda: assemble(QuarterCar),
+    "assembling a number": lambda: state_space(5),
+    "assembling a class": lambda: state_space(QuarterCar),
     "norm of a car": lambda: h2_norm(car()),
     "largest gain of a car": lambda: hinf_norm(car()),
     "ragged matrices": lambda: LinearSystem([[1.0, 2.0], [1.0]], [[1.0]], [[1.0]], [[0.0]]),
-    "outputs as a number": lambda: assemble(car(), outputs=5),
-    "outputs as numbers": lambda: assemble(car(), outputs=[5]),
-    "a selection by number": lambda: system().select(outputs=5),
+    "outputs as a number": lambda: state_space(car(), outputs=5),
+    "outputs as numbers": lambda: state_space(car(), outputs=[5]),
+    "a selection by number": lambda: system().subsystem(outputs=5),
     "states as a number": lambda: LinearSystem([[-1.0]], [[1.0]], [[1.0]], [[0.0]], states=5),
     "a delay as text": lambda: LinearSystem([[-1.0]], [[1.0]], [[1.0]], [[0.0]], delays="a"),
-    "a number as measures of comfort": lambda: mechanism(measures=Measures(comfort=5)),
-    "endless delay": lambda: system().delayed("road", [math.inf]),
+    "a number as measures of comfort": lambda: mechanism(measures=PerformanceOutputs(comfort=5)),
+    "endless delay": lambda: system().with_delays("road", [math.inf]),
     "frequencies as text": lambda: frequency_response(system(), ["a"]),
     "no values": lambda: evaluate_many(open_car(), J1, None, Norm()),
     "complex values": lambda: evaluate_many(open_car(), J1, {"c": np.array([1j]), "b": 1.0}, Norm()),

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter import errors
+from inerter import _OLD, errors
 from inerter.cli.main import app
+from inerter.renamed import renamed_keywords
 
 ROOT = Path(__file__).parents[1]
 
@@ -81,13 +82,13 @@ def test_names_of_the_first_release() -> None:
     assert values[1, 1] == pytest.approx(501.20, abs=1e-2)
     assert it.evaluate(best.design, it.TyreLoad(road), it.Norm()).value > 501.20
     assert it.evaluate(best.design, it.LoadCarrying(), it.Norm()).value > 2.5946e-5
-    system = it.assemble(best.design)
+    system = it.state_space(best.design)
     assert (system.A.shape[0], system.B.shape[1], system.C.shape[0]) == tuple(
         map(len, (system.states, system.inputs, system.outputs))
     )
-    compliance = system.select("sprung_force", "strut_travel")
+    compliance = system.subsystem("sprung_force", "strut_travel")
     assert it.hinf_norm(compliance).value == it.hinf_norm(compliance).peaks[0].gain
-    assert it.h2_norm(system.select("road", "sprung_acceleration")) * road.velocity_intensity == best.value
+    assert it.h2_norm(system.subsystem("road", "sprung_acceleration")) * road.velocity_intensity == best.value
     parts = {"k": it.Spring(120e3), "c": it.Damper(7544.2), "b": it.Inerter(366.52)}
     omega = np.array([1.0, 10.0])
     expected = 120e3 / (1j * omega) + 1.0 / (1.0 / 7544.2 + 1.0 / (366.52 * 1j * omega))
@@ -127,3 +128,22 @@ def test_a_class_has_its_name_alone() -> None:
             homes.setdefault(name, []).append(path.stem)
     assert len(homes) > 400
     assert {name: several for name, several in homes.items() if len(several) > 1} == {}
+
+
+def test_every_old_name_is_that_of_a_new_one() -> None:
+    assert not set(_OLD) & set(it.__all__)
+    for old, new in _OLD.items():
+        with pytest.warns(DeprecationWarning, match=f"`{old}` is now `{new}`"):
+            assert getattr(it, old) is getattr(it, new)
+
+
+def test_an_old_keyword_works_and_tells_the_new_one() -> None:
+    @renamed_keywords(every="output_every")
+    def sampled(count: int, output_every: int = 1) -> list[int]:
+        return list(range(count))[::output_every]
+
+    with pytest.warns(DeprecationWarning, match="`every` is now `output_every`") as warned:
+        assert sampled(5, every=2) == [0, 2, 4]  # type: ignore[call-arg]
+    assert warned[0].filename == __file__
+    with pytest.raises(TypeError, match="both 'output_every' and its old name 'every'"):
+        sampled(5, every=2, output_every=2)  # type: ignore[call-arg]

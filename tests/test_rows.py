@@ -23,7 +23,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
 from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
-from inerter.methods.registry import averages, with_gradients
+from inerter.methods.registry import averages, nonlinearities_of, with_gradients, words_of
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
 from inerter.units import parse_quantity
@@ -279,17 +279,18 @@ def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
 class Heard:
     """How loud something is beside another, whatever excites it."""
 
-    outputs: Any = field(metadata=it.formed("outputs", "What is heard.", "{ tyre_load = 1 }"))
-    ear: str = field(metadata=it.formed("output", "Where.", '"sprung_velocity"'))
-    cause: Any = field(metadata=it.formed("excitation", "Why.", "{ }", key="because"))
+    outputs: Any = field(metadata=it.typed_field("outputs", "What is heard.", "{ tyre_load = 1 }"))
+    ear: str = field(metadata=it.typed_field("output", "Where.", '"sprung_velocity"'))
+    cause: Any = field(metadata=it.typed_field("excitation", "Why.", "{ }", key="because"))
     hearing: Any = field(
-        default=None, metadata=it.formed("filter", "How.", "{ numerator = [1.0], denominator = [1.0, 0.5] }", key="by")
+        default=None,
+        metadata=it.typed_field("filter", "How.", "{ numerator = [1.0], denominator = [1.0, 0.5] }", key="by"),
     )
     symbol, title, unit, response = "X2", "loudness", "", "gain"
 
-    def question(self, mechanism: it.Mechanism) -> it.Question:
-        outputs = (*(it.Weighted(*one) for one in self.outputs.items()), it.Weighted(self.ear))
-        return it.Question(outputs, it.Combination.SUM_OF_RMS, self.cause, "", self.hearing)
+    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+        outputs = (*(it.OutputWeight(*one) for one in self.outputs.items()), it.OutputWeight(self.ear))
+        return it.IndexDefinition(outputs, it.Combination.SUM_OF_RMS, self.cause, "", self.hearing)
 
 
 HEARD = """[indices.noise]
@@ -323,9 +324,12 @@ def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added
 @pytest.mark.parametrize(
     ("metadata", "words"),
     [
-        (it.formed("filtre", "How.", "{ }"), r"has the form 'filtre'; forms are filter, outputs"),
-        (it.formed("filter", "How.", "{ }", key="kind"), r"X3 has a setting 'kind', a key that \[indices\.NAME\] has"),
-        (it.formed("filter", "How.", "{ }", key="excitation"), r"X3 has a setting 'excitation', a key that"),
+        (it.typed_field("filtre", "How.", "{ }"), r"has the form 'filtre'; forms are filter, outputs"),
+        (
+            it.typed_field("filter", "How.", "{ }", key="kind"),
+            r"X3 has a setting 'kind', a key that \[indices\.NAME\] has",
+        ),
+        (it.typed_field("filter", "How.", "{ }", key="excitation"), r"X3 has a setting 'excitation', a key that"),
     ],
 )
 def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
@@ -354,9 +358,9 @@ def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None
     taken = {key: value for key, value in given.items() if hasattr(method, key)}
     assert {key: getattr(method, key) for key in taken} == taken
     assert averages(name) == ("realisations" in taken)
-    assert isinstance(method.sees, it.Sees)
-    assert method.words[0].islower()
-    assert not method.words.endswith(".")
+    assert isinstance(method.nonlinearity_support, it.NonlinearitySupport)
+    assert method.description[0].islower()
+    assert not method.description.endswith(".")
 
 
 @pytest.fixture
@@ -367,13 +371,29 @@ def of_its_own() -> Iterator[type]:
         width: float = field(default=2.0, metadata=it.quantity("m", "How wide it looks.", "1 m", key="breadth"))
         seed: int = 0
         name = "of-its-own"
-        words = "guesses"
-        sees = it.Sees.BOTH
-        needs_amplitude = searches = False
+        description = "guesses"
+        nonlinearity_support = it.NonlinearitySupport.BOTH
+        needs_amplitude = supports_optimisation = False
         estimate = estimate_many = objective = it.Norm.estimate
 
     yield it.METHODS.add(OfItsOwn)  # type: ignore[arg-type]
     it.METHODS.remove(OfItsOwn)  # type: ignore[arg-type]
+
+
+def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
+    @dataclass(frozen=True)
+    class Older(it.Norm):
+        name = "older"
+        words = "older guesses"
+        sees = it.NonlinearitySupport.BOTH
+
+    try:
+        with pytest.warns(DeprecationWarning, match="is now") as said:
+            it.METHODS.add(Older)
+        assert "`Older.sees` is now `nonlinearity_support`" in str(said[1].message)
+        assert (words_of("older"), nonlinearities_of("older")) == ("older guesses", it.NonlinearitySupport.BOTH)
+    finally:
+        it.METHODS.remove(Older)
 
 
 def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:
@@ -439,7 +459,7 @@ def test_a_search_by_what_simulates_begins_where_a_row_with_gradients_ends(monke
     @dataclass(frozen=True)
     class Sharp(it.StatisticalLinearisation):
         name = "sharp"
-        sees = it.Sees.BOTH
+        nonlinearity_support = it.NonlinearitySupport.BOTH
 
         def objective(self, vehicle: Any, index: Any) -> Any:
             asked.append(self.conventions)

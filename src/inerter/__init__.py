@@ -9,6 +9,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from inerter.renamed import warn_renamed
+
 
 def _homes() -> dict[str, str]:
     """The module of every public name: what the stub beside this file imports."""
@@ -18,12 +20,49 @@ def _homes() -> dict[str, str]:
 
 
 _HOME = _homes()
+_OLD = {  # names of 0.1
+    "Arrival": "InputPath",
+    "Budget": "BreakEven",
+    "Choice": "ModelSelection",
+    "Front": "ParetoFront",
+    "Guard": "GuardRole",
+    "Intent": "WriteMode",
+    "Line": "SymbolLine",
+    "Linear": "LinearRole",
+    "Measures": "PerformanceOutputs",
+    "OneInput": "SingleInput",
+    "Point": "TrackedPoint",
+    "Question": "IndexDefinition",
+    "Sees": "NonlinearitySupport",
+    "Shaped": "FilteredExcitation",
+    "Staged": "StagedIdentification",
+    "Statistical": "StatisticalRole",
+    "Switch": "SwitchRole",
+    "Weighted": "OutputWeight",
+    "WeightedMotion": "WeightedAcceleration",
+    "assemble": "state_space",
+    "budget": "break_even",
+    "choice": "choice_field",
+    "choose": "select_model",
+    "claimed": "open_results",
+    "formed": "typed_field",
+    "iso2631": "iso2631_weighting",
+    "pareto": "pareto_front",
+    "pooled": "worker_pool",
+    "robust": "optimise_robust",
+    "staged": "identify_staged",
+    "tolerance": "tolerance_analysis",
+    "weighted": "frequency_weight",
+}
 __all__ = sorted([*_HOME, "__version__"])  # noqa: PLE0605 -- made of the stub
 
 
 def __getattr__(name: str) -> Any:
     if name == "__version__":
         return import_module("importlib.metadata").version("inerter")  # which takes as long as all else here
+    if name in _OLD:
+        warn_renamed(name, _OLD[name])
+        return __getattr__(_OLD[name])
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(import_module(_HOME[name]), name)

@@ -6,10 +6,11 @@ is made of `ErrorSource`s.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+
+from inerter.renamed import warn_renamed
 
 
 class InerterError(Exception):
@@ -153,6 +154,5 @@ def with_article(word: str) -> str:
 def __getattr__(name: str) -> object:
     if name != "IndicatorError":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    message = "`IndicatorError` is now `PerformanceIndexError`; the old name goes with the next version."
-    warnings.warn(message, DeprecationWarning, 2)
+    warn_renamed(name, "PerformanceIndexError")
     return PerformanceIndexError

@@ -88,12 +88,12 @@ def quantity(
     return {_QUANTITY: Field("", unit, sentence, example, key, words, may_be_free=may_be_free, usual=usual)}
 
 
-def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
+def choice_field(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
     """The metadata of a dataclass field that is one of these texts, or without `options` a name; as `quantity`.
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
-    ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
+    ...     side: str = dataclasses.field(default="left", metadata=choice_field(("left", "right"), "Where it is."))
     >>> choices_of(Wheel)
     (TextChoice(name='side', options=('left', 'right'), sentence='Where it is.', example='left',
     key='side', needed=False),)
@@ -101,7 +101,7 @@ def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: s
     return {_CHOICE: TextChoice("", options, sentence, example or (options[0] if options else ""), key)}
 
 
-def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[str, Any]:
+def typed_field(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[str, Any]:
     """The metadata of a field of an index that has this form in study files; else as `quantity`.
 
     A "filter" is a `Filter`, "outputs" are names with weights, an "excitation" is one for `RandomResponse`, an "output"
@@ -109,7 +109,7 @@ def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Heard:
-    ...     at: str = dataclasses.field(metadata=formed("output", "Where.", '"sprung_velocity"'))
+    ...     at: str = dataclasses.field(metadata=typed_field("output", "Where.", '"sprung_velocity"'))
     >>> formed_of(Heard)
     (Formed(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
     """

@@ -12,9 +12,11 @@ from difflib import get_close_matches
 from functools import lru_cache, wraps
 from pathlib import Path
 from threading import RLock
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from inerter.errors import RowError, UnknownRowError
+from inerter.renamed import warn_renamed
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -27,11 +29,19 @@ Made = TypeVar("Made")
 class Rows(Mapping[str, Row], Generic[Row]):
     """A table: rows by their keys, in the order in which they were added; our own come first.
 
-    `what` is what a row is, in words, `key` the attribute that holds its key, and `says` are the others that it has.
+    `what` is what a row is, in words, `key` the attribute that holds its key, and `says` are the others that it has;
+    `renamed` gives the present names of those that had another in the previous version.
     """
 
-    def __init__(self, what: str, key: str, says: tuple[str, ...] = (), own: tuple[Row, ...] = ()) -> None:
-        self._what, self._key, self._says = what, key, says
+    def __init__(
+        self,
+        what: str,
+        key: str,
+        says: tuple[str, ...] = (),
+        own: tuple[Row, ...] = (),
+        renamed: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        self._what, self._key, self._says, self._renamed = what, key, says, renamed
         self._rows: dict[str, Row] = {}
         for row in own:
             self.add(row)
@@ -41,6 +51,10 @@ class Rows(Mapping[str, Row], Generic[Row]):
 
         Raises `RowError` if another row has its key, or if it does not say all that a row says.
         """
+        for old, new in self._renamed.items():
+            if old in vars(row) and new not in vars(row):
+                warn_renamed(f"{getattr(row, '__name__', self._what)}.{old}", new)
+                setattr(row, new, getattr(row, old))
         silent = [name for name in (self._key, *self._says) if not hasattr(row, name)]
         name = getattr(row, "__name__", None) or repr(row)
         if silent:

@@ -242,7 +242,7 @@ def test_budgets_are_those_of_python(client: TestClient) -> None:
     first, second = (
         study.design(d["layout"]).with_values({k: float(v) for k, v in d["values"].items()}) for d in designs
     )  # type: ignore[attr-defined]
-    found = it.budget(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
+    found = it.break_even(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
     assert (told["value"], told["status"]) == (None if np.isnan(found.value) else found.value, found.status.kind.value)
 
 
@@ -301,7 +301,7 @@ def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient)
     body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
     work = client.post("/api/work", json=body).json()
     told, study = work["result"], study_from(DOCUMENT)
-    found = it.pareto(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
+    found = it.pareto_front(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
     (front,) = told["fronts"]
     assert [list(point["values"].values()) for point in front["points"]] == found.values.tolist()
     assert front["knee"] == found.knee
@@ -368,14 +368,14 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     told = client.post("/api/panel/tolerance", json=body).json()
     study = study_from(DOCUMENT)
     car = study.design("S3").with_values({"c": 3000.0, "b": 60.0})
-    found = it.tolerance(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
-    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total)
+    found = it.tolerance_analysis(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
+    assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total_order)
     assert told["quantiles"]["0.95"] == found.quantile(0.95)
     assert sum(told["histogram"]["counts"]) == found.values.size
     table = client.post("/api/export/csv", json={"panel": "tolerance", "request": body}).text
     rows = dict(list(csv.reader(io.StringIO(table)))[1:])
     assert (float(rows["mean"]), float(rows["quantile 0.95"])) == (found.mean, found.quantile(0.95))
-    assert float(rows["variance from c, total effect"]) == found.total["c"]
+    assert float(rows["variance from c, total effect"]) == found.total_order["c"]
 
 
 def test_tables_read_back_as_the_same(client: TestClient) -> None:

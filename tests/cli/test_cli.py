@@ -184,7 +184,7 @@ def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys
     assert re.search(r"16\.2 % better than S1; with friction still S3, 16\.0\d+ \+- 0\.0\d+ % better\.", words)
     assert {path.name for path in folder.iterdir()} >= {"budgets.csv", "summary.csv", "report.html"}
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "Budget of f: for which f each layout is better than S1, by simulation" in page
+    assert "Break-even value of f: for which f each layout is better than S1, by simulation" in page
     assert "The methods side by side" in page
     assert "Each mean is over 8 random inputs, which seed 0 decides" in page
     assert (folder / "figures" / "methods.svg").exists()

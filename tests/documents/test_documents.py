@@ -274,7 +274,7 @@ def test_how_fast_the_inerter_moves_on_the_road_and_on_the_excitation() -> None:
     """Sums over lines: a road of kappa V / f^2, and 3.162 mm of white noise up to 500 Hz."""
     said = re.search(r"r\.m\.s\. value of ([\d.]+) m/s on the paper's road and of ([\d.]+) m/s", text_of("methods.md"))
     assert said is not None
-    system = it.assemble(best_of_table_1(0.0), "road", "b_velocity")
+    system = it.state_space(best_of_table_1(0.0), "road", "b_velocity")
     frequency = np.arange(0.01, 500.0, 0.01)
     gains = np.abs(it.frequency_response(system, 2.0 * np.pi * frequency)[:, 0, 0])
     on_road = 2.0 * np.pi * math.sqrt(2.0 * ROAD.roughness * ROAD.speed * float(np.sum(gains**2)) * 0.01)

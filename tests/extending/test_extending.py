@@ -211,7 +211,7 @@ def test_the_ball_screw_is_the_network_that_it_stands_for(results: Path) -> None
         ),
         tyres=(it.Tyre("tyre", it.Spring(120e3), {"w": 1.0}, "road"),),
         roads=(it.RoadInput("road"),),
-        measures=it.Measures(comfort=(it.Weighted("a_acceleration"),)),
+        measures=it.PerformanceOutputs(comfort=(it.OutputWeight("a_acceleration"),)),
     )
     comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
     assert it.evaluate(mechanism, comfort, it.Norm()).value == pytest.approx(float(row["value"]), rel=1e-10)
@@ -530,7 +530,7 @@ class WheelTravel:
     symbol, title, unit, response = "D1", "tyre deflection", "m", "deflection per road velocity"
 
     def question(self, mechanism):
-        outputs = tuple(it.Weighted(f"{tyre.name}_deflection") for tyre in mechanism.tyres)
+        outputs = tuple(it.OutputWeight(f"{tyre.name}_deflection") for tyre in mechanism.tyres)
         return it.on_road(self, mechanism, outputs, "tyres")
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ import inerter as it
 from inerter.cli.main import call
 from inerter.errors import IdentificationError, NetworkError
 from inerter.identification.arguments import checked_records, model_of
-from inerter.identification.choice import choose
+from inerter.identification.choice import select_model
 from inerter.identification.models import MODELS, on_rig, with_mount
 
 TIME = np.arange(400) / 500.0
@@ -46,7 +46,7 @@ def test_samples_that_count_twice_are_refused(kind: str, tmp_path: Path) -> None
     again = AGAIN[kind](first, tmp_path)
     first = first.trim(0.0, 0.5) if kind == "overlapping parts" else first
     said = rf"Record 1 \(bench.csv\) and record 3 \({again.source}\) contain the same samples, .* Leave one of them"
-    for call_it in (lambda r: it.identify(r, "ideal"), choose):
+    for call_it in (lambda r: it.identify(r, "ideal"), select_model):
         with pytest.raises(IdentificationError, match=f"^{said}"):
             call_it([first, between, again])
 

@@ -39,7 +39,7 @@ CHOICES = [
 
 @pytest.mark.parametrize(("truth", "seed", "others"), sampled(CHOICES, seldom=CHOICES[1:]))
 def test_the_right_elements_and_no_others(truth, seed, others):
-    found = it.choose(record_of(TRUTHS[truth], seed), [*others, truth], starts=8)
+    found = it.select_model(record_of(TRUTHS[truth], seed), [*others, truth], starts=8)
     assert found.name == truth
     assert found.status.ok
     assert found.fit is found.fits[truth]
@@ -57,14 +57,16 @@ def test_the_right_elements_and_no_others(truth, seed, others):
 def test_an_element_too_many_is_seldom_chosen():
     """Where the parts predict alike, the scatter of one record decides: one record in eight may, as with seed 5."""
     truth = "elastic-friction"
-    found = [it.choose(record_of(TRUTHS[truth], n), [f"{truth}-viscous", truth], starts=8).name for n in range(5, 13)]
+    found = [
+        it.select_model(record_of(TRUTHS[truth], n), [f"{truth}-viscous", truth], starts=8).name for n in range(5, 13)
+    ]
     assert found.count(truth) >= 7
 
 
 @pytest.mark.campaign
 def test_a_damper_is_found_where_there_is_one():
     device = it.Inerter(113.0) | it.Damper(200.0)
-    found = it.choose(record_of(device, 7), ["ideal", "ideal-viscous"], starts=8)
+    found = it.select_model(record_of(device, 7), ["ideal", "ideal-viscous"], starts=8)
     assert found.name == "ideal-viscous"
     assert found.fit.parameters["c"].value == pytest.approx(200.0, rel=0.02)
 
@@ -72,7 +74,7 @@ def test_a_damper_is_found_where_there_is_one():
 def test_own_models_and_those_that_fail():
     record = record_of(TRUTHS["ideal"], 0, 1.0)
     models = {"mine": it.Inerter(it.free(1.0, 1e3, name="b")), "known": it.Inerter(113.0)}
-    found = it.choose(record, models, starts=8)
+    found = it.select_model(record, models, starts=8)
     assert found.name == "mine"
     assert any(note.startswith("known: cannot be fitted") for note in found.notes)
     assert found.device == it.Inerter(found.fit.parameters["b"].best)
@@ -89,7 +91,7 @@ def test_own_models_and_those_that_fail():
 )
 def test_choices_that_are_none(models, check, said):
     with pytest.raises(IdentificationError, match=said):
-        it.choose(record_of(TRUTHS["ideal"], 0, 1.0), models, check=check, starts=8)
+        it.select_model(record_of(TRUTHS["ideal"], 0, 1.0), models, check=check, starts=8)
 
 
 def slow(seed, *more):

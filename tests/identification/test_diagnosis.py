@@ -17,7 +17,7 @@ from test_further_causes import CAUSES, rig_under
 
 import inerter as it
 from inerter.identification.diagnosis import Causes, hypotheses
-from inerter.identification.fit import Misfit
+from inerter.identification.fit import NormalisedResidual
 from inerter.identification.intervals import fit_by_secants, robust_cost
 from inerter.identification.problem import map_problems
 from inerter.work.running import over_threads
@@ -102,7 +102,7 @@ def test_causes_are_made_anew_in_another_process() -> None:
     rig, fault = rig_under("quadratic")
     values = {"b": rig.b, "f": rig.f, "ks": rig.ks, "cs": rig.cs}
     problem = quick_fit(record_of(rig, fault, 0), model(rig), values).problem
-    causes = Causes(Misfit(9.0, 9.0, (1.1, 1.1)), ())
+    causes = Causes(NormalisedResidual(9.0, 9.0, (1.1, 1.1)), ())
     here = [h.name for h in causes.of(problem)]
     there, other = pickle.loads(pickle.dumps((causes, problem)))
     assert there.made is None

@@ -66,7 +66,7 @@ def test_a_cause_is_named_first_or_explains_as_well_as_the_first(name: str, seed
     rig, fault = rig_under(name)
     values = {"b": rig.b, "f": rig.f, "ks": rig.ks, "cs": rig.cs}
     solution = quick_fit(record_of(rig, fault, seed), model(rig), values)
-    assert not solution.misfit.sound
+    assert not solution.misfit.is_noise_limited
     found, _ = explained(solution)
     assert CAUSES[name] in [e.name for e in found[:2]], [(e.name, e.explained) for e in found[:4]]
 

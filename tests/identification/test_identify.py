@@ -44,8 +44,8 @@ def test_the_experiment_of_the_paper(paper):
 
 def test_what_a_fit_says_of_itself(paper):
     comparison = paper.comparisons[0]
-    assert comparison.explained() > 0.999
-    assert comparison.explained(check=True) > 0.999
+    assert comparison.variance_explained() > 0.999
+    assert comparison.variance_explained(check=True) > 0.999
     assert comparison.rms() < 0.3
     assert comparison.whiteness > 1e-3
     assert paper.correlation.shape == (5, 5)

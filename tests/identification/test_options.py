@@ -31,7 +31,7 @@ def test_a_changed_option_is_the_only_one_that_changes(seed: int, check: float, 
     assert it.FitOptions is FitOptions
 
 
-@pytest.mark.parametrize("function", [it.identify, it.choose])
+@pytest.mark.parametrize("function", [it.identify, it.select_model])
 def test_an_option_that_there_is_not_is_refused_in_a_sentence(function) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(IdentificationError, match="unknown option 'sead' of a fit"):
         function(None, None, sead=1)

@@ -8,7 +8,7 @@ from campaigns import sampled
 from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
-from inerter.records.saturation import plateaus, saturated_samples
+from inerter.records.saturation import _expected_at_turn, plateaus, saturated_samples
 
 MODEL = (it.Spring(1e6) | it.Damper(3200.0)) - (
     it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
@@ -41,3 +41,13 @@ def test_a_force_that_is_cut_off_gives_the_same_device(seed: int, known: bool) -
     for name, true in (("b", b), ("f", f)):
         low, high = fit.parameters[name].interval
         assert low - 0.5 * (high - low) < true < high + 0.5 * (high - low)
+
+
+def test_the_turn_of_a_triangle_is_estimated_from_a_tenth_of_its_range() -> None:
+    """Of 2 band / slope samples within the band, sqrt(step / band) are within one step of the extreme."""
+    slope, peak = 0.5, 100.0
+    force = peak - slope * np.abs(np.arange(-400.0, 401.0))
+    for step in (0.1, 1.0):
+        band = 0.1 * (peak - force.min())
+        expected = 2.0 * band / slope * np.sqrt(step / band)
+        assert _expected_at_turn(force, peak, step) == pytest.approx(expected, abs=2.0 * np.sqrt(step / band))

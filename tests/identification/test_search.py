@@ -40,7 +40,7 @@ def problem_of(record: it.Record, model: it.Network) -> FitProblem:
 def test_the_right_valley_of_a_rattling_device() -> None:
     fit = it.identify(rattle(), BALL_SCREW, seed=0)
     assert fit.status.ok
-    assert fit.explained > 0.999
+    assert fit.variance_explained > 0.999
     for name, value in RATTLING.items():
         assert fit.parameters[name].best == pytest.approx(value, rel=0.01)
 

@@ -59,7 +59,7 @@ def test_with_the_inertance_of_the_geometry_and_a_model_without_backlash(slow, f
     model = (it.Spring(it.free(1e5, 1e7, name="ks")) | it.Damper(it.free(100.0, 2e4, name="cs"))) - (
         it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
     )
-    found = it.staged(slow, fast, inertance=113.0, shaft_inertance=5.0, model=model, starts=8)
+    found = it.identify_staged(slow, fast, inertance=113.0, shaft_inertance=5.0, model=model, starts=8)
     assert list(found.parameters) == ["ks", "cs", "f"]
     for name, p in found.parameters.items():
         assert p.value == pytest.approx(TRUE[name], rel=0.02)
@@ -78,7 +78,7 @@ def test_a_check_that_does_not_agree_is_told(slow, fast, saturated):
     model = SHAFT - (it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f")))
     other = it.VirtualRig(device(150.0), seed=3).run(it.flat_multisine(0, 1e-4, 1.0, 16.0), 6.0)
     cut = replace(other, force=np.clip(other.force, -150.0, 150.0), force_range=150.0)
-    found = it.staged(slow, fast, cut if saturated else other, model=model, starts=8)
+    found = it.identify_staged(slow, fast, cut if saturated else other, model=model, starts=8)
     assert not any(band.agrees for band in found.response.bands[-2:])
     assert "differs" in found.response.bands[-1].verdict
     assert any("saturated" in note for note in found.notes) == saturated
@@ -87,11 +87,11 @@ def test_a_check_that_does_not_agree_is_told(slow, fast, saturated):
 def test_protocols_that_cannot_be(slow, fast):
     none = it.VirtualRig(SHAFT - it.Inerter(5.0), seed=0).run(it.cosine(1e-3, 0.1), 20.0)
     with pytest.raises(IdentificationError, match="friction is not identifiable"):
-        it.staged(none, fast)
+        it.identify_staged(none, fast)
     with pytest.raises(IdentificationError, match="friction named f"):
-        it.staged(slow, fast, model=it.Inerter(it.free(1.0, 10.0, name="b")))
+        it.identify_staged(slow, fast, model=it.Inerter(it.free(1.0, 10.0, name="b")))
     with pytest.raises(IdentificationError, match="positive"):
-        it.staged(slow, fast, inertance=-1.0)
+        it.identify_staged(slow, fast, inertance=-1.0)
 
 
 @pytest.mark.parametrize("size", [-0.03, -1e-6, 0.0, 1e-6, 0.03])

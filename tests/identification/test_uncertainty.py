@@ -118,7 +118,7 @@ def test_a_misfit_may_be_a_tenth_and_three_standard_deviations_of_sound_sensors(
     residual = (1.1 + deviations * spread) * usual * white
     misfit = judge.misfit(Still(residual), np.zeros(0))  # type: ignore[arg-type]
     assert mean_square(residual) == pytest.approx(((1.1 + deviations * spread) * usual) ** 2 * mean_square(white), 1e-3)
-    assert misfit.sound == sound
+    assert misfit.is_noise_limited == sound
 
 
 def test_an_interval_of_a_friction_test_is_two_quantiles_of_its_standard_error() -> None:

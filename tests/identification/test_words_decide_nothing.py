@@ -131,7 +131,7 @@ def test_a_choice_and_a_law_are_the_same_with_tokens_for_words() -> None:
             if tokens:
                 opaque(patch)
             with_few_rivals(patch)
-            found, law = it.choose(record, ["ideal", "friction"], starts=8), friction_law(record, 113.0)
+            found, law = it.select_model(record, ["ideal", "friction"], starts=8), friction_law(record, 113.0)
             assert (found.notes[0] == TOKEN) == (law.sentence == TOKEN) == tokens
             ran.append((found.name, [(c.name, c.loss, c.as_good, c.status.kind) for c in found.candidates], law.law))
     assert ran[0] == ran[1]

@@ -53,7 +53,7 @@ def by_quadrature(vehicle, road, outputs, coherence):
 def squared_gains(vehicle, road, outputs, coherence, omega):
     """Of outputs over white road velocity (frequencies, outputs); `coherence` is a function of wavenumber [cycle/m]."""
     roads = {r.name: r for r in vehicle.mechanism().roads}
-    system = it.assemble(vehicle, list(roads), outputs)
+    system = it.state_space(vehicle, list(roads), outputs)
     s = 1j * omega[:, None, None]
     gains = system.C @ np.linalg.solve(s * np.eye(len(system.A)) - system.A, system.B[None]) + system.D
     late = np.array([r.distance / road.speed for r in roads.values()])
@@ -134,7 +134,7 @@ def test_a_filter_without_states_is_a_number():
         **{f"{name}_{where}": value for name, value in axle.items() for where in ("front", "rear")},
     )
     road = it.Road(5e-7, 22.0)
-    indices = [it.RideComfort(road), it.RideComfort(it.Shaped(road, it.Filter([4.0], [2.0])))]
+    indices = [it.RideComfort(road), it.RideComfort(it.FilteredExcitation(road, it.Filter([4.0], [2.0])))]
     many = it.evaluate_many(vehicle, indices, {"c": [1.5e3, 4e3]}, it.Norm())
     one = [it.evaluate(vehicle.with_values({"c": 4e3}), index, it.Norm()).value for index in indices]
     np.testing.assert_allclose(many[:, 1], 2.0 * many[:, 0], rtol=1e-9)

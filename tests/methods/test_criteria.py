@@ -48,19 +48,22 @@ def decibels(ratio: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", TABLE)
 def test_weightings_are_those_of_the_table(name: str) -> None:
     """The standard allows 1 dB within the nominal band and 2 dB beyond; factors have two or three digits."""
-    found = np.abs(frequency_response(it.iso2631(name), 2.0 * np.pi * np.array(FREQUENCIES))[:, 0, 0])
+    found = np.abs(frequency_response(it.iso2631_weighting(name), 2.0 * np.pi * np.array(FREQUENCIES))[:, 0, 0])
     off = decibels(found[: len(TABLE[name])] / (0.001 * np.array(TABLE[name])))
     assert off.max() < 0.5
     assert np.median(off) < 0.05
     if name == "Wf":
-        low = np.abs(frequency_response(it.iso2631(name), 2.0 * np.pi * np.array(list(LOW)))[:, 0, 0])
+        low = np.abs(frequency_response(it.iso2631_weighting(name), 2.0 * np.pi * np.array(list(LOW)))[:, 0, 0])
         assert decibels(low / (0.001 * np.array(list(LOW.values())))).max() < 0.2
 
 
 @pytest.mark.parametrize("name", WEIGHTINGS)
 def test_a_weighting_is_the_same_as_system_and_as_filter(name: str) -> None:
     omega = 2.0 * np.pi * np.geomspace(0.01, 1000.0, 200)
-    system, exact = frequency_response(it.iso2631(name), omega)[:, 0, 0], weighting_filter(name).response(omega)
+    system, exact = (
+        frequency_response(it.iso2631_weighting(name), omega)[:, 0, 0],
+        weighting_filter(name).response(omega),
+    )
     np.testing.assert_allclose(system, exact, rtol=1e-12)
     if name == "Wk":
         np.testing.assert_allclose(exact, iso_2631_wk().response(omega), rtol=1e-12)
@@ -70,7 +73,7 @@ def test_the_weighted_values_of_a_signal() -> None:
     """A sine that has settled: r.m.s. value, its largest over 1 s, and the dose, which is (3/8 T)^(1/4) of the peak."""
     time = np.arange(0.0, 100.0, 2e-3)
     for name, frequency in (("Wk", 5.0), ("Wd", 2.0), ("We", 1.0), ("Wf", 0.2)):
-        felt = it.weighted(time, 0.7 * np.sin(2.0 * np.pi * frequency * time), name)
+        felt = it.frequency_weight(time, 0.7 * np.sin(2.0 * np.pi * frequency * time), name)
         peak = 0.7 * float(np.abs(weighting_filter(name).response([2.0 * np.pi * frequency]))[0])
         assert felt.rms == pytest.approx(peak / math.sqrt(2.0), rel=0.03)
         if name != "Wf":  # a second of a slow sine is a part of a wave
@@ -88,7 +91,7 @@ def test_a_simulation_is_felt_as_the_norm_says() -> None:
         road = it.multisine(ROAD, seed, lowest=0.05, highest=200.0)
         run = it.simulate(car, road=road, duration=40.0, step=1e-3)
         late = run.time >= 20.0  # what is left of the beginning has died out
-        felt = it.weighted(run.time, run["sprung_acceleration"])
+        felt = it.frequency_weight(run.time, run["sprung_acceleration"])
         found.append(np.mean(felt.values[late] ** 2))
     error = np.std(found, ddof=1) / math.sqrt(len(found))
     assert abs(np.mean(found) - wanted**2) < 4.0 * error + 0.01 * wanted**2
@@ -98,7 +101,7 @@ def test_gravity_in_a_record_is_no_step() -> None:
     """A sensor that reads gravity gives the values of one that does not, and what was taken away."""
     time = np.arange(0.0, 20.0, 2e-3)
     motion = 1.5 * np.sin(2.0 * np.pi * 5.0 * time)
-    plain, record = it.weighted(time, motion), it.weighted(time, motion + 9.81)
+    plain, record = it.frequency_weight(time, motion), it.frequency_weight(time, motion + 9.81)
     assert record.constant == pytest.approx(9.81)
     assert plain.constant == 0.0
     for name in ("rms", "mtvv", "vdv"):
@@ -120,7 +123,7 @@ BAD_SIGNALS = {
 def test_signals_that_cannot_be_weighted_are_refused_in_a_sentence(case: str) -> None:
     given, words = BAD_SIGNALS[case]
     with pytest.raises(PerformanceIndexError, match=words) as caught:
-        it.weighted(*given)  # type: ignore[arg-type]
+        it.frequency_weight(*given)  # type: ignore[arg-type]
     assert str(caught.value).endswith((".", ")."))
 
 
@@ -175,7 +178,7 @@ def by_quadrature(mechanism: it.Mechanism, index: object) -> float:
 
 def is_damped(mechanism: it.Mechanism) -> bool:
     """Enough for a quadrature with equal panels."""
-    poles = np.linalg.eigvals(it.assemble(mechanism).A)
+    poles = np.linalg.eigvals(it.state_space(mechanism).A)
     moving = poles[np.abs(poles) > 1e-9 * np.abs(poles).max()]
     return bool(
         np.all(-moving.real > 0.02 * np.abs(moving)) and 1.0 < np.abs(moving).min() < np.abs(moving).max() < 3e3
@@ -239,14 +242,14 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
     car = paper_half_car(Spring(60e3) | Damper(2e3), Spring(50e3) | Damper(2e3)).mechanism()
     sick = it.RideComfort(ROAD, weighting="Wf").question(car)
     assert [w.output for w in sick.outputs] == ["sprung_acceleration"]
-    yaw = replace(car, measures=replace(car.measures, comfort=(it.Weighted("front_travel"),)))
+    yaw = replace(car, measures=replace(car.measures, comfort=(it.OutputWeight("front_travel"),)))
     with pytest.raises(PerformanceIndexError, match="weights accelerations"):
         it.RideComfort(ROAD, weighting="Wk").question(yaw)
     strut = it.Strut("s", Spring(1e3) | Damper(10.0), upper={"tilt": 1.0}, lower={})
     tilting = it.Mechanism(
         (it.Coordinate("tilt", 1.0, angle=True),),
         (strut,),
-        measures=it.Measures(comfort=(it.Weighted("tilt_acceleration"),)),
+        measures=it.PerformanceOutputs(comfort=(it.OutputWeight("tilt_acceleration"),)),
     )
     with pytest.raises(PerformanceIndexError, match=r"weights pitch and roll.*'tilt'"):
         it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").question(tilting)
@@ -337,9 +340,9 @@ def test_a_shock_from_rest_keeps_its_mean_and_a_sensor_loses_gravity(weighting: 
     """A mean of the shock, 0.076 m/s^2, goes with gravity: 8 % of a motion below 1 Hz at most."""
     time = np.arange(0.0, 10.0, 1e-3)
     shock = np.where((time > 1.0) & (time < 1.3), 4.0 * np.sin(np.pi * (time - 1.0) / 0.3), 0.0)
-    system = it.iso2631(weighting)
+    system = it.iso2631_weighting(weighting)
     values = scipy.signal.lsim((system.A, system.B, system.C, system.D), shock, time)[1]
     expected = np.sqrt(np.trapezoid(values**2, time) / time[-1])
-    found = it.weighted(time, shock + gravity, weighting)
+    found = it.frequency_weight(time, shock + gravity, weighting)
     assert found.rms == pytest.approx(expected, rel=0.08 if gravity else 1e-3)
     assert found.constant == pytest.approx(gravity, abs=0.08 if gravity else 0.0)

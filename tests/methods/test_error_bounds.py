@@ -106,7 +106,7 @@ def test_what_stands_in_for_an_excitation_is_among_the_sources():
     assert found.status.ok
     assert found.value == exact.value
     assert found.error_bound == pytest.approx(2e-3 + exact.error_bound)
-    shaped = it.Shaped(Approximate(ROAD), it.Filter([1.0], [1.0, 1.0]))
+    shaped = it.FilteredExcitation(Approximate(ROAD), it.Filter([1.0], [1.0, 1.0]))
     assert it.evaluate(car(), replace(COMFORT, road=shaped), it.Norm()).error_bound > 2e-3
 
 

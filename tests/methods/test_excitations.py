@@ -56,7 +56,7 @@ def test_compiled_values_and_gradients_under_random_excitations(seed):
     for mechanism, index in members(seed, 2):
         made, values = opened(mechanism)
         expected = rational.index_value(mechanism, index)
-        poles = np.linalg.eigvals(it.assemble(mechanism).A)
+        poles = np.linalg.eigvals(it.state_space(mechanism).A)
         if not values or expected in (None, rational.INFINITE) or np.any(-poles.real < 1e-5 * np.abs(poles)):
             continue
         (found,) = it.evaluate_many(made, index, values, it.Norm())[:, 0]
@@ -132,8 +132,8 @@ def test_a_push_on_moving_ground_is_that_on_ground_at_rest():
     """Motions relative to the ground answer a force in the same way, whether the ground may move or not."""
     one = single(3.0, 0.7, 50.0)
     moving = it.GroundAcceleration(4.0).excited_mechanism(one)
-    found = it.h2_norm(it.assemble(moving, "push", "mass_relative_displacement"))
-    assert found == pytest.approx(it.h2_norm(it.assemble(one, "push", "mass_displacement")), rel=1e-12)
+    found = it.h2_norm(it.state_space(moving, "push", "mass_relative_displacement"))
+    assert found == pytest.approx(it.h2_norm(it.state_space(one, "push", "mass_displacement")), rel=1e-12)
 
 
 def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
@@ -153,7 +153,7 @@ def simulated(mechanism, index, roads=4):
 
 def is_quick(mechanism):
     """Whether ten seconds of it, in steps of 0.2 ms, tell what it does."""
-    poles = np.linalg.eigvals(it.assemble(mechanism).A)
+    poles = np.linalg.eigvals(it.state_space(mechanism).A)
     moving = poles[np.abs(poles) > 1e-9 * np.abs(poles).max()]
     return bool(np.all(-moving.real > 0.3) and np.abs(moving).max() < 2500.0)
 
@@ -196,7 +196,7 @@ def test_friction_under_all_excitations_by_three_methods():
     masses = (it.Coordinate("primary", 100.0), it.Coordinate("absorber", 10.0))
     made = it.Mechanism(masses, struts, forces=(it.Force("push", {"primary": 1.0}),))
     push, quake = it.WhiteForce("push", 100.0), it.GroundAcceleration(0.1)
-    shaped = it.Shaped(quake, Filter([100.0], [1.0, 10.0, 100.0]))
+    shaped = it.FilteredExcitation(quake, Filter([100.0], [1.0, 10.0, 100.0]))
     for name, excitation in (
         ("primary_displacement", push),
         ("primary_relative_displacement", quake),
@@ -236,7 +236,7 @@ def test_a_peak_is_where_a_simulated_sine_is_largest(source):
     """The highest of all peaks, against the steady state under a sine of that frequency."""
     car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
     found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
-    (arrival,) = it.OneInput(source).arrivals(car)
+    (arrival,) = it.SingleInput(source).arrivals(car)
     by_time, squares = ForcedResponse(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
     assert squares.status.ok
     assert by_time == pytest.approx(found.value, rel=1e-5)
@@ -264,15 +264,15 @@ BAD = {
     "nothing": (lambda: it.RandomResponse({"a": 0.0}, ROAD), "other than 0"),
     "no excitation": (lambda: it.RandomResponse({"a": 1.0}, 5.0), "needs an excitation"),
     "a class": (lambda: it.RandomResponse({"a": 1.0}, it.WhiteForce), "needs an excitation"),
-    "one input": (lambda: ask({"a": 1.0}, it.OneInput("push")), "needs a random excitation"),
+    "one input": (lambda: ask({"a": 1.0}, it.SingleInput("push")), "needs a random excitation"),
     "filter": (lambda: it.RandomResponse({"a": 1.0}, ROAD, "Wk"), r"Filter\(numerator"),
     "no name": (lambda: it.WhiteForce(3, 1.0), "name of a force"),
     "intensity": (lambda: it.WhiteForce("push", -1.0), "positive number"),
     "text": (lambda: it.GroundAcceleration("1"), "positive number"),
     "infinite": (lambda: it.GroundAcceleration(math.inf), "positive number"),
-    "no shape": (lambda: it.Shaped(ROAD, None), "needs a filter"),
+    "no shape": (lambda: it.FilteredExcitation(ROAD, None), "needs a filter"),
     "shape of one input": (
-        lambda: it.Shaped(it.OneInput("push"), Filter([1.0], [1.0, 1.0])),
+        lambda: it.FilteredExcitation(it.SingleInput("push"), Filter([1.0], [1.0, 1.0])),
         "requires a random excitation",
     ),
     "no force": (lambda: ask({"mass_velocity": 1.0}, it.WhiteForce("shove", 1.0)), r"Unknown force 'shove'.*push"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -30,8 +31,11 @@ from inerter import (
     TyreLoad,
 )
 from inerter.errors import DesignError, PerformanceIndexError
+from inerter.methods.linear import CONVENTIONS
 from inerter.methods.objective import Differentiable
+from inerter.methods.out_of_band import on_roads, rest_of
 from inerter.methods.realisations import realisation_seeds
+from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
@@ -73,7 +77,7 @@ def high_passed(samples, step, corner):
 def outside(car, output, corner):
     """Mean square of a linear output from the road but for the lines of its multisine, by quadrature over frequency."""
     inputs = [r.name for r in car.mechanism().roads]
-    system = it.assemble(car, inputs, output).delayed("road", [0.0, LATE][: len(inputs)])
+    system = it.state_space(car, inputs, output).with_delays("road", [0.0, LATE][: len(inputs)])
 
     def gain(frequencies):
         s = 2j * np.pi * frequencies
@@ -373,3 +377,19 @@ def assert_near_the_norm(car, linear, index):
     found, norm = it.evaluate(car, index, TWO), it.evaluate(linear, index, Norm()).value
     assert found.value == pytest.approx(norm, rel=1e-6)
     assert abs(found.value - norm) < 3.0 * found.standard_error + found.error_bound * norm
+
+
+@pytest.mark.parametrize("scale", [1.0, 0.1, 1e-4])
+def test_what_lies_outside_the_band_is_uncertain_by_at_most_itself(scale):
+    """Also where the linear model of the motion that is found is of no use."""
+    system = piecewise(quarter_car(30.0).mechanism())
+    question = J1.question(system.mechanism)
+    design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
+    with ThreadPoolExecutor(1) as pool:
+        found = [replace(ran, power=scale * ran.power) for ran in design.runs(0, 2, pool)]
+    lacking = rest_of(design, found)
+    mean_square = np.mean([ran.power[:1] for ran in found], axis=0)
+    part = float(np.max(np.abs(lacking.power) / (mean_square + lacking.power)))
+    assert lacking.beyond <= part
+    if scale < 0.01:
+        assert lacking.beyond == pytest.approx(part - 2.0 * lacking.unseen, rel=1e-3)

@@ -71,7 +71,7 @@ def test_compiled_norms_and_gradients_with_random_filters(seed):
         objective, point = it.Norm().objective(made, index), np.array(list(values.values()))
         value, gradient = objective.value_and_gradient(point)
         step = 5e-4
-        poles = np.linalg.eigvals(it.assemble(mechanism).A)
+        poles = np.linalg.eigvals(it.state_space(mechanism).A)
         if np.any(-poles.real < 1e-5 * np.abs(poles)):
             continue
 
@@ -152,7 +152,7 @@ def test_indices_with_and_without_filters_are_valued_side_by_side(conventions):
 def test_what_a_body_does_over_a_road_is_finite_behind_a_filter_that_is_zero_at_rest():
     """The height of a body drifts with the road; s^2 over two poles takes the drift away."""
     mechanism = paper_quarter_car(k | Damper(4e3) - Inerter(100.0)).mechanism()
-    height = replace(mechanism, measures=replace(mechanism.measures, comfort=(it.Weighted("sprung_displacement"),)))
+    height = replace(mechanism, measures=replace(mechanism.measures, comfort=(it.OutputWeight("sprung_displacement"),)))
     for passed, finite in ((Filter([1.0, 0.0], [1.0, 1.0]), True), (Filter([1.0, 2.0], [1.0, 1.0]), False)):
         found, expected = (
             it.evaluate(height, Weighed(J1, passed), it.Norm()),

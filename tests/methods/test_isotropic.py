@@ -70,7 +70,7 @@ class Car:
 
     def poles(self) -> np.ndarray:
         """Where gains are large: they only place the panels of a quadrature."""
-        return np.linalg.eigvals(it.assemble(self.mechanism()).A)
+        return np.linalg.eigvals(it.state_space(self.mechanism()).A)
 
 
 OUTPUTS = (

@@ -37,7 +37,7 @@ def test_norms_by_quadrature_of_the_power_law(waviness):
     speed = 20.0
     car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
     found = it.evaluate(car, it.RandomResponse({"travel": 1.0}, it.measured_road(line(waviness), speed)), it.Norm())
-    system = it.assemble(car, outputs="travel")
+    system = it.state_space(car, outputs="travel")
     omega = np.geomspace(2 * np.pi * speed * 0.011 / 10, 2 * np.pi * speed * 28.3, 20000)
     resolvent = np.linalg.solve(1j * omega[:, None, None] * np.eye(len(system.A)) - system.A, system.B[None])
     gain = np.abs((system.C @ resolvent + system.D)[:, 0, 0])

@@ -14,10 +14,10 @@ from strategies import random_network, random_quarter_car
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, frequency_response
 from inerter.errors import InerterError, PerformanceIndexError
-from inerter.systems.assemble import assemble
+from inerter.systems.assemble import state_space
 from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import outputs
-from inerter.vehicle.mechanism import Measures, Weighted
+from inerter.vehicle.mechanism import OutputWeight, PerformanceOutputs
 
 ROAD = it.Road(roughness=5e-7, speed=25)
 LINEAR = (it.Norm(), it.StatisticalLinearisation())
@@ -32,7 +32,7 @@ STRUTS = {
 
 def asking(name, strut=STRUTS["linear"]):
     mechanism = it.QuarterCar(250.0, 35.0, 150e3, strut).mechanism()
-    return replace(mechanism, measures=Measures(comfort=(Weighted(name),)))
+    return replace(mechanism, measures=PerformanceOutputs(comfort=(OutputWeight(name),)))
 
 
 def answer(name, strut, method):
@@ -119,7 +119,7 @@ def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
 
 def test_an_input_that_is_not_there_gets_the_same_sentence_everywhere():
     mechanism = asking("sprung_acceleration")
-    car = replace(mechanism, measures=Measures(load_input="sprung_farce", load_output="sprung_displacement"))
+    car = replace(mechanism, measures=PerformanceOutputs(load_input="sprung_farce", load_output="sprung_displacement"))
     told = set()
     for method in (*LINEAR, *SIMULATING):
         with pytest.raises(InerterError) as error:
@@ -135,7 +135,7 @@ def test_force_and_velocity_of_every_element_are_those_of_nodal_equations(seed):
     omega = np.exp(rng.uniform(0.0, 5.0, 8))
     nodal, labels = Nodal(car, omega), [branch.label for branch in full_graph(car).branches]
     named = [f"{label}_{what}" for label in labels for what in ("force", "velocity")]
-    system = assemble(car, ["road", "sprung_force"], named)
+    system = state_space(car, ["road", "sprung_force"], named)
     response = frequency_response(system, omega)
     for i, (stiffness, _, _) in enumerate(nodal.placed):
         for j, source in enumerate(system.inputs):

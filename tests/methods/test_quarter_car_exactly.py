@@ -21,9 +21,9 @@ from inerter import (
     Road,
     Spring,
     TyreLoad,
-    assemble,
     evaluate,
     frequency_response,
+    state_space,
 )
 
 ROAD = Road(roughness=5e-7, speed=25.0)
@@ -149,10 +149,10 @@ def test_a_symmetric_half_car_is_two_quarter_cars():
     quarter = QuarterCar(mass / 2.0, 25.0, 120e3, strut)
     assert evaluate(half, J3, Norm()).value == pytest.approx(2.0 * evaluate(quarter, J3, Norm()).value, rel=1e-10)
     omega = np.geomspace(1.0, 100.0, 9)
-    front = frequency_response(assemble(half, "road_front", ["sprung_acceleration", "pitch_acceleration"]), omega)[
+    front = frequency_response(state_space(half, "road_front", ["sprung_acceleration", "pitch_acceleration"]), omega)[
         :, :, 0
     ]
-    alone = frequency_response(assemble(quarter, "road", "sprung_acceleration"), omega)[:, 0, 0]
+    alone = frequency_response(state_space(quarter, "road", "sprung_acceleration"), omega)[:, 0, 0]
     np.testing.assert_allclose(front[:, 0] + length * front[:, 1], alone, rtol=1e-10)
     np.testing.assert_allclose(front[:, 0], length * front[:, 1], rtol=1e-10)
 
@@ -160,7 +160,7 @@ def test_a_symmetric_half_car_is_two_quarter_cars():
 def test_load_carrying_is_the_largest_compliance():
     car = paper_quarter_car(LAYOUTS["S3"](60e3, 3e3, 150.0))
     estimate = evaluate(car, J5, Norm())
-    system = assemble(car, "sprung_force", "sprung_displacement")
+    system = state_space(car, "sprung_force", "sprung_displacement")
     grid = np.abs(frequency_response(system, np.linspace(0.0, 300.0, 300001)))[:, 0, 0]
     assert estimate.value == pytest.approx(grid.max(), rel=1e-7)
     assert estimate.value >= grid.max() * (1.0 - 1e-12)

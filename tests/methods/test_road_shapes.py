@@ -13,9 +13,10 @@ from inerter import (
     Coordinate,
     Damper,
     Inerter,
-    Measures,
     Mechanism,
     Norm,
+    OutputWeight,
+    PerformanceOutputs,
     RideComfort,
     Road,
     RoadInput,
@@ -23,7 +24,6 @@ from inerter import (
     Strut,
     Tyre,
     TyreLoad,
-    Weighted,
     evaluate,
     evaluate_many,
     free,
@@ -64,9 +64,9 @@ def vehicle(rng, axles, twins):
         ),
         tyres=tuple(tyres),
         roads=tuple(roads),
-        measures=Measures(
-            comfort=(Weighted("body_acceleration"), Weighted("pitch_acceleration", 2.0)),
-            tyre_load=tuple(Weighted(f"{tyre.name}_load") for tyre in tyres),
+        measures=PerformanceOutputs(
+            comfort=(OutputWeight("body_acceleration"), OutputWeight("pitch_acceleration", 2.0)),
+            tyre_load=tuple(OutputWeight(f"{tyre.name}_load") for tyre in tyres),
         ),
     )
 
@@ -191,7 +191,9 @@ def test_a_shape_that_grows_without_bound_is_left_to_the_exact_way():
         ),
         tyres=(Tyre("tyre", Spring(2e5), {"wheel": 1.0}, "road"),),
         roads=(RoadInput("road"),),
-        measures=Measures(comfort=(Weighted("body_acceleration"),), tyre_load=(Weighted("tyre_load"),)),
+        measures=PerformanceOutputs(
+            comfort=(OutputWeight("body_acceleration"),), tyre_load=(OutputWeight("tyre_load"),)
+        ),
     )
     road, values = Road(2e-6, 20.0), np.array([2e3, 5e3])
     objective = Norm().objective(height, RideComfort(road))

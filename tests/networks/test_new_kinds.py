@@ -21,7 +21,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.networks.elements import Element, Network, Value
 from inerter.networks.elements.drawing import BOX, circle
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
-from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.parser import network
 from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import outputs
@@ -44,7 +44,7 @@ class Flywheel(Element):
     sentence = "Moment of inertia of the flywheel."
     example = "0.001 kg m^2"
     more = (Field("lead", "m", "Travel of the screw in one turn."),)
-    linear = Linear.MASS
+    linear = LinearRole.MASS
     drawing = (((0.0, 20.0), (0.0, 6.0)), circle(0.0, 0.0, 6.0), ((0.0, -6.0), (0.0, -20.0)))
 
     @property
@@ -70,7 +70,7 @@ class TwoSlopes(Element):
         Field("beyond", "N s/m", "Slope of the force beyond the knee."),
         Field("knee", "m/s", "Speed at which the slope changes."),
     )
-    linear = Linear.DAMPING
+    linear = LinearRole.DAMPING
 
     def as_linear(self) -> Network:
         return it.Damper(self.damping)
@@ -94,9 +94,9 @@ class Clutch(Element):
     unit = "N"
     sentence = "Force at which it slips."
     example = "10 N"
-    linear = Linear.OPEN
-    switch = Switch(Guard.FORCE, "pushed on", "engaged", "pulled on")
-    statistical = Statistical.DAMPER
+    linear = LinearRole.OPEN
+    switch = SwitchRole(GuardRole.FORCE, "pushed on", "engaged", "pulled on")
+    statistical = StatisticalRole.DAMPER
     may_vanish = True
     tried = (0.1, 1e3)
 
@@ -106,7 +106,7 @@ class Play(it.Gap):
     """A gap, with words of its own."""
 
     key = "play"
-    switch = Switch(Guard.ELONGATION, "pressed", "adrift", "stretched")
+    switch = SwitchRole(GuardRole.ELONGATION, "pressed", "adrift", "stretched")
 
 
 OWN = (Flywheel, TwoSlopes, Clutch)
@@ -147,7 +147,7 @@ def test_its_admittance_is_that_of_its_role(omega):
 
 
 def test_exact_transfer_functions_know_its_transmission():
-    systems = [it.assemble(car(k | c - b)) for b in (WHEEL, it.Inerter(INERTANCE))]
+    systems = [it.state_space(car(k | c - b)) for b in (WHEEL, it.Inerter(INERTANCE))]
     own, known = (s.origin.functions(s.inputs, s.outputs[:1]) for s in systems)
     for s in (0.3, 2.0, 50.0):
         values = [
@@ -278,8 +278,8 @@ def test_the_force_of_a_composite_is_that_of_the_whole_to_all(monkeypatch, name,
     assert {f"{label}_force", f"{label}_velocity"} <= linear.keys() <= full.keys()
     run = it.simulate(design, road=it.multisine(ROAD, seed=0), duration=0.5, step=5e-4)
     known = it.simulate(car(k | it.Damper(3000.0, "x")), road=it.multisine(ROAD, seed=0), duration=0.5, step=5e-4)
-    system = it.assemble(design, outputs=[f"{label}_force", f"{label}_velocity"])
-    expected = it.assemble(car(k | it.Damper(3000.0, "x")), outputs=["x_force", "x_velocity"])
+    system = it.state_space(design, outputs=[f"{label}_force", f"{label}_velocity"])
+    expected = it.state_space(car(k | it.Damper(3000.0, "x")), outputs=["x_force", "x_velocity"])
     omega = np.array([1.0, 30.0])
     assert it.frequency_response(system, omega) == pytest.approx(it.frequency_response(expected, omega), rel=1e-9)
     for what in ("force", "velocity"):
@@ -323,9 +323,11 @@ def test_a_clutch_has_a_budget():
     own, plain = car(k | c - (it.Inerter(328.7) | Clutch(0.0))), car(k | it.Damper(4981.0))
     same = car(k | c - (it.Inerter(328.7) | it.Friction(0.0)))
     method = it.StatisticalLinearisation()
-    found = it.budget(own, plain, COMFORT, parameter="clutch", method=method, bounds=(1.0, 1e4))
-    assert found.value == it.budget(same, plain, COMFORT, parameter="friction", method=method, bounds=(1.0, 1e4)).value
-    assert it.budget(own, plain, COMFORT, parameter="clutch", method=method).bounds == Clutch.tried
+    found = it.break_even(own, plain, COMFORT, parameter="clutch", method=method, bounds=(1.0, 1e4))
+    assert (
+        found.value == it.break_even(same, plain, COMFORT, parameter="friction", method=method, bounds=(1.0, 1e4)).value
+    )
+    assert it.break_even(own, plain, COMFORT, parameter="clutch", method=method).bounds == Clutch.tried
 
 
 @pytest.mark.campaign
@@ -472,7 +474,7 @@ def test_other_numbers_are_checked_as_values_are(lead):
 def test_statistical_linearisation_refuses_what_says_so():
     class Refused(Clutch):
         key = "ratchet"
-        statistical = Statistical.ITSELF
+        statistical = StatisticalRole.ITSELF
 
     with pytest.raises(PerformanceIndexError, match="'f' in 'strut' is a ratchet"):
         it.evaluate(car(k | c | Refused(5.0, "f")), COMFORT, it.StatisticalLinearisation())

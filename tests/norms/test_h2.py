@@ -119,7 +119,7 @@ def test_random_systems_against_quadrature(order):
 @given(st.integers(0, 1000), st.integers(1, 12), st.integers(1, 3))
 def test_white_noise_on_several_inputs_adds_in_squares(seed, order, inputs):
     system = random_stable(np.random.default_rng(seed), order, inputs, 2, 1e-2)
-    alone = [h2_norm(system.select(inputs=name)) for name in system.inputs]
+    alone = [h2_norm(system.subsystem(inputs=name)) for name in system.inputs]
     assert h2_norm(system) == pytest.approx(math.hypot(*alone), rel=1e-11)
 
 
@@ -211,7 +211,7 @@ def test_white_noise_straight_to_an_output_is_infinite():
 def test_direct_terms_of_one_source_may_cancel():
     system = LinearSystem([[-1.0]], [[1.0, 1.0]], [[1.0]], [[2.0, -2.0]], sources=("road", "road"))
     assert h2_norm(system) == pytest.approx(math.sqrt(2.0), rel=1e-12)
-    assert h2_norm(system.delayed("road", [0.0, 0.1])) == math.inf
+    assert h2_norm(system.with_delays("road", [0.0, 0.1])) == math.inf
 
 
 def test_an_output_that_does_not_move_has_the_mean_square_zero():

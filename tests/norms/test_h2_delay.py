@@ -20,11 +20,12 @@ from inerter import (
     Spring,
     Strut,
     Tyre,
-    assemble,
     h2_norm,
+    state_space,
 )
 from inerter.errors import LinearSystemError
-from inerter.norms.delay import pade, transfer
+from inerter.kernels.h2 import propagate_columns
+from inerter.norms.delay import pade, propagate, transfer
 from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import h2
 
@@ -59,7 +60,7 @@ def axles(mechanism, outputs):
 def test_half_car_with_the_exact_delay(name, speed):
     car = paper_half_car(STRUTS[name], STRUTS[name])
     delays = [0.0, (car.distance_front + car.distance_rear) / speed]
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS).with_delays("road", delays)
     exact, responses = h2(system).outputs, axles(car.mechanism(), OUTPUTS)
     for i, output in enumerate(OUTPUTS):
         expected = h2_by_quadrature(responses[output], delays, edge=4000.0)
@@ -90,14 +91,14 @@ def test_three_axles_two_delays_and_a_drift_that_cancels(name):
     mechanism = three_axles(STRUTS[name])
     delays = [road.distance / 20.0 for road in mechanism.roads]
     outputs = ["body_acceleration", "pitch_acceleration", "tyre0_load", "tyre1_load", "tyre2_load"]
-    system = assemble(mechanism, outputs=outputs).delayed("road", delays)
+    system = state_space(mechanism, outputs=outputs).with_delays("road", delays)
     result, responses = h2(system), axles(mechanism, outputs)
     assert result.status.ok
     for i, output in enumerate(outputs):
         expected = h2_by_quadrature(responses[output], delays, edge=4000.0)
         assert result.outputs[i] == pytest.approx(expected, rel=1e-8), output
         if output.endswith("load"):
-            assert h2_norm(system.select("road0", output)) == math.inf
+            assert h2_norm(system.subsystem("road0", output)) == math.inf
 
 
 def approximant(order, time):
@@ -148,10 +149,10 @@ def by_kronecker(system):
 @pytest.mark.parametrize("name", ["S1", "S3"])
 def test_half_car_with_a_pade_delay(order, name):
     car = paper_half_car(STRUTS[name], STRUTS[name])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
     expected = by_kronecker(with_chain(system, order, delays))
-    np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
+    np.testing.assert_allclose(h2(system.with_delays("road", delays), order).outputs, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -159,16 +160,16 @@ def test_two_pade_delays_in_a_chain(order):
     system = random_stable(np.random.default_rng(order), 6, 3, 2, 0.05)
     delays = [0.0, 0.3, 0.75]
     expected = by_kronecker(with_chain(system, order, delays))
-    np.testing.assert_allclose(h2(system.delayed("road", delays), order).outputs, expected, rtol=1e-9)
+    np.testing.assert_allclose(h2(system.with_delays("road", delays), order).outputs, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_the_norm_without_rounding_has_the_pade_delays_too(order):
     """A half car's road at two axles, from its transfer functions against the states of the approximant."""
     car = paper_half_car(STRUTS["S1"], STRUTS["S3"])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
     delays = [0.0, 2.04 / 25.0]
-    found, status = h2_exactly(system.delayed("road", delays), order)
+    found, status = h2_exactly(system.with_delays("road", delays), order)
     assert status.ok
     np.testing.assert_allclose(found, by_kronecker(with_chain(system, order, delays)), rtol=1e-8)
 
@@ -191,7 +192,7 @@ def test_orders_that_there_are_not(order):
 
 def test_the_pade_norm_tends_to_the_exact_one():
     car = paper_half_car(STRUTS["S1"], STRUTS["S1"])
-    system = assemble(car, ["road_front", "road_rear"], "sprung_acceleration").delayed("road", [0.0, 0.0816])
+    system = state_space(car, ["road_front", "road_rear"], "sprung_acceleration").with_delays("road", [0.0, 0.0816])
     exact = h2_norm(system)
     errors = [abs(h2_norm(system, order) / exact - 1.0) for order in (2, 4, 6, 8, 10)]
     assert all(later < 0.1 * earlier for earlier, later in pairwise(errors))
@@ -201,27 +202,27 @@ def test_the_pade_norm_tends_to_the_exact_one():
 def test_no_delay_is_one_input_and_an_endless_one_is_two(seed):
     system = random_stable(np.random.default_rng(seed), 8, 2, 2, 0.1)
     together = LinearSystem(system.A, system.B.sum(axis=1, keepdims=True), system.C, np.zeros((2, 1)))
-    assert h2_norm(system.delayed("road", [0.0, 0.0])) == pytest.approx(h2_norm(together), rel=1e-12)
-    assert h2_norm(system.delayed("road", [0.0, 1e5])) == pytest.approx(h2_norm(system), rel=1e-9)
+    assert h2_norm(system.with_delays("road", [0.0, 0.0])) == pytest.approx(h2_norm(together), rel=1e-12)
+    assert h2_norm(system.with_delays("road", [0.0, 1e5])) == pytest.approx(h2_norm(system), rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_only_differences_of_delays_count_and_not_the_order_of_inputs(seed):
     rng = np.random.default_rng(seed)
     car = random_half_car(rng, STRUTS["S1"], STRUTS["S3"])
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
-    base = h2(system.delayed("road", [0.0, 0.1])).outputs
-    np.testing.assert_allclose(h2(system.delayed("road", [0.4, 0.5])).outputs, base, rtol=1e-9)
-    turned = system.select(["road_rear", "road_front"]).delayed("road", [0.1, 0.0])
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
+    base = h2(system.with_delays("road", [0.0, 0.1])).outputs
+    np.testing.assert_allclose(h2(system.with_delays("road", [0.4, 0.5])).outputs, base, rtol=1e-9)
+    turned = system.subsystem(["road_rear", "road_front"]).with_delays("road", [0.1, 0.0])
     np.testing.assert_allclose(h2(turned).outputs, base, rtol=1e-10)
 
 
 def test_driving_backwards_differs_for_one_output_but_not_for_a_symmetric_car():
     strut = STRUTS["S1"]
     car = type(paper_half_car(strut, strut))(400.0, 200.0, 25.0, 25.0, 1e5, 1e5, 1.0, 1.0, strut, strut)
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS)
-    forwards = h2(system.delayed("road", [0.0, 0.1])).outputs
-    backwards = h2(system.delayed("road", [0.1, 0.0])).outputs
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS)
+    forwards = h2(system.with_delays("road", [0.0, 0.1])).outputs
+    backwards = h2(system.with_delays("road", [0.1, 0.0])).outputs
     np.testing.assert_allclose(forwards[:2], backwards[:2], rtol=1e-10)
     np.testing.assert_allclose(forwards[2:], backwards[3:1:-1], rtol=1e-10)
     assert abs(forwards[2] / forwards[3] - 1.0) > 1e-3
@@ -232,6 +233,28 @@ def test_a_stiff_design_keeps_its_digits(damping):
     """A damper so hard that its rate is 1e6 times the car's must not cost the exponential of the delay its digits."""
     car = paper_half_car(k | c | Damper(damping) - Inerter(2.0), k | c | Damper(damping) - Inerter(2.0))
     delays = [0.0, 0.0816]
-    system = assemble(car, ["road_front", "road_rear"], OUTPUTS[:1]).delayed("road", delays)
+    system = state_space(car, ["road_front", "road_rear"], OUTPUTS[:1]).with_delays("road", delays)
     expected = h2_by_quadrature(axles(car.mechanism(), OUTPUTS[:1])[OUTPUTS[0]], delays, edge=4000.0)
     assert h2_norm(system) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_the_rounding_bound_of_an_exponential_doubles_with_the_delay(compiled):
+    """Each squaring doubles the error of a rotation, which keeps its size (Higham, Functions of Matrices, 10.3)."""
+    A, u = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([0.6, 0.8])
+    none, nothing = np.zeros((2, 2)), (np.zeros(0, complex), np.zeros(0, complex), 0.0)
+
+    def error_and_bound(time):
+        if compiled:
+            out, bound = np.empty(2), np.empty(2)
+            propagate_columns(A, none, time, u, np.zeros(2), nothing, out, bound)
+        else:
+            moved, unsure = propagate(A, none, u[:, None], np.zeros((2, 1)), time, None)
+            out, bound = moved[:, 0], unsure[:, 0]
+        turned = np.array([[math.cos(time), math.sin(time)], [-math.sin(time), math.cos(time)]]) @ u
+        return np.abs(out - turned).max(), bound.max()
+
+    found = [error_and_bound(float(2**power)) for power in range(6, 14)]
+    assert all(error <= bound < 3e4 * max(error, 1e-16 * 2**i) for i, (error, bound) in enumerate(found))
+    ratios = [later / earlier for (_, earlier), (_, later) in pairwise(found)]
+    assert np.exp(np.mean(np.log(ratios))) == pytest.approx(2.0, rel=0.05)

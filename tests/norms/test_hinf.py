@@ -189,6 +189,6 @@ def test_nothing_in_nothing_out_is_zero():
 def test_inputs_of_one_source_add_up_if_they_arrive_together():
     system = LinearSystem([[-1.0]], [[1.0, 2.0]], [[1.0]], [[0.0, 0.0]])
     assert hinf_norm(system).value == pytest.approx(math.sqrt(5.0))
-    assert hinf_norm(system.delayed("road", [0.2, 0.2])).value == pytest.approx(3.0)
+    assert hinf_norm(system.with_delays("road", [0.2, 0.2])).value == pytest.approx(3.0)
     with pytest.raises(LinearSystemError, match=r"0\.3 s apart"):
-        hinf_norm(system.delayed("road", [0.2, 0.5]))
+        hinf_norm(system.with_delays("road", [0.2, 0.5]))

@@ -12,7 +12,7 @@ from campaigns import sampled
 from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, budget
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, break_even
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import OK, DesignError, PerformanceIndexError, StatusKind
 from inerter.optimisation.budget import Crossing, lies_on_the_way, with_element
@@ -44,7 +44,7 @@ def test_two_stiffness_curves_cross_where_their_values_are_equal():
     at = np.flatnonzero(np.diff(signs))
     roots = [scipy.optimize.brentq(difference, scan[i], scan[i + 1]) for i in at]
     assert len(roots) == 1
-    found = budget(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
+    found = break_even(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
     assert [c.value for c in found.crossings] == pytest.approx(roots, rel=3e-5)
     assert found.value == found.crossings[0].value
     assert found.crossings[0].better == "above"
@@ -56,13 +56,13 @@ def test_two_stiffness_curves_cross_where_their_values_are_equal():
 @pytest.mark.campaign
 def test_a_damper_of_the_design_alone_has_a_range():
     """Better between two dampings: the smallest that beats the baseline is the budget, and both are crossings."""
-    found = budget(series(), conventional(), J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
+    found = break_even(series(), conventional(), J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
     scan = np.geomspace(500.0, 1e5, 300)
     better = [value(series(damping=c), J3, Norm()) < value(conventional(damping=c), J3, Norm()) for c in scan]
     edges = scan[1:][np.diff(better)]
     assert [c.value for c in found.crossings] == pytest.approx(edges, rel=0.02)
     alone = paper_quarter_car(Spring(120e3) | Damper(4674.8, "c0"))
-    found = budget(series(), alone, J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
+    found = break_even(series(), alone, J3, parameter="c", method=Norm(), bounds=(500.0, 1e5))
     level = value(alone, J3, Norm())
     sides = [c.better for c in found.crossings]
     assert sides == ["above", "below"]
@@ -76,7 +76,7 @@ def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
     for damping in (4674.8, 5600.0, 6500.0):
         level = value(conventional(damping=damping), J3, Norm())
         root = scipy.optimize.brentq(lambda f, y=level: value(series(friction=f), J3, Linearisation()) - y, 1.0, 1.5e3)
-        found = budget(series(), conventional(damping=damping), J3, parameter="friction", method=Linearisation())
+        found = break_even(series(), conventional(damping=damping), J3, parameter="friction", method=Linearisation())
         assert found.value == pytest.approx(root, rel=3e-5)
         assert found.bounds == (0.1, 1e4)
         assert found.unit == "N"
@@ -88,7 +88,7 @@ def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
 @pytest.mark.campaign
 def test_a_friction_budget_of_simulated_values_is_where_the_difference_vanishes():
     method = ExpectedValue(realisations=3, seed=2)
-    found = budget(series(), conventional(), J3, parameter="f", method=method, bounds=(200.0, 2000.0))
+    found = break_even(series(), conventional(), J3, parameter="f", method=method, bounds=(200.0, 2000.0))
     assert found.status.ok
     here = it.compare(series(friction=found.value), conventional(), J3, method)
     assert abs(here.difference.value) < 0.02 * here.difference.standard_error
@@ -107,7 +107,7 @@ def test_a_friction_budget_of_simulated_values_is_where_the_difference_vanishes(
 def test_an_adaptive_method_keeps_its_roads_throughout(lower, upper):
     method, fixed = ExpectedValue(relative_error=0.02, seed=2), ExpectedValue(realisations=8, seed=2)
     wanted = {"parameter": "f", "bounds": (lower, upper)}
-    found, expected = (budget(series(), conventional(), J3, method=m, **wanted) for m in (method, fixed))
+    found, expected = (break_even(series(), conventional(), J3, method=m, **wanted) for m in (method, fixed))
     assert found == expected
 
 
@@ -117,7 +117,7 @@ def test_a_gap_budget():
         return paper_quarter_car(Spring(120e3, "k") | Damper(6666.4) - inner)
 
     method = ExpectedValue(realisations=2, seed=2, conventions="paper2008")
-    found = budget(backlash(0.0), conventional(), J3, parameter="gap", method=method, bounds=(1e-4, 2e-2))
+    found = break_even(backlash(0.0), conventional(), J3, parameter="gap", method=method, bounds=(1e-4, 2e-2))
     assert found.status.ok
     assert found.unit == "m"
     inside, outside = (it.compare(backlash(found.value * r), conventional(), J3, method) for r in (0.95, 1.05))
@@ -126,17 +126,17 @@ def test_a_gap_budget():
 
 def test_better_or_worse_throughout_is_said():
     best, worst = conventional(damping=4674.8), conventional(damping=100.0)
-    always = budget(series(), worst, J3, parameter="friction", method=Linearisation(), bounds=(1.0, 100.0))
+    always = break_even(series(), worst, J3, parameter="friction", method=Linearisation(), bounds=(1.0, 100.0))
     assert always.status.kind is StatusKind.UNBOUNDED
     assert always.status.message == "the design is better for every friction from 1 N to 100 N"
-    never = budget(series(), best, J3, parameter="friction", method=Linearisation(), bounds=(2e3, 1e4))
+    never = break_even(series(), best, J3, parameter="friction", method=Linearisation(), bounds=(2e3, 1e4))
     assert never.status.kind is StatusKind.UNBOUNDED
     assert never.status.message == "the design is better for no friction from 2 kN to 10 kN"
     for found in (always, never):
         assert found.crossings == ()
         assert np.isnan([found.value, found.standard_error, *found.interval]).all()
     poor = paper_quarter_car(Spring(120e3) | Damper(1000.0) | Friction(0.0))
-    only = budget(
+    only = break_even(
         poor, conventional(damping=1500.0), J3, parameter="friction", method=Linearisation(), bounds=(1.0, 500.0)
     )
     assert [c.better for c in only.crossings] == ["above"]
@@ -149,7 +149,7 @@ def test_better_or_worse_throughout_is_said():
 def test_equal_at_a_bound_is_a_crossing_too():
     at_bound = float(np.exp(np.log(8000.0)))
     alone = paper_quarter_car(Spring(120e3) | Damper(at_bound, "c0"))
-    found = budget(conventional(), alone, J3, parameter="c", method=Norm(), bounds=(5000.0, 8000.0))
+    found = break_even(conventional(), alone, J3, parameter="c", method=Norm(), bounds=(5000.0, 8000.0))
     assert [c.value for c in found.crossings] == pytest.approx([8000.0], rel=1e-5)
 
 
@@ -158,7 +158,7 @@ def test_values_that_cannot_be_had_are_not_taken_for_worse():
     method = ExpectedValue(realisations=2)
     base = Spring(120e3) | Damper(4e3)
     design = paper_quarter_car(base | Damper(1e5) - (Inerter(100.0, "b") | Friction(10.0)))
-    found = budget(design, paper_quarter_car(base), J3, parameter="b", method=method, bounds=(1e-4, 2e-4))
+    found = break_even(design, paper_quarter_car(base), J3, parameter="b", method=method, bounds=(1e-4, 2e-4))
     assert found.status.kind is StatusKind.FAILED
     assert "faster than the step" in found.status.message
 
@@ -177,7 +177,7 @@ def test_both_struts_of_a_half_car_change():
         rear = Spring(100e3) | Damper(3e3) - shaft - (Inerter(250.0) | Friction(f))
         return value(paper_half_car(front, rear), J3, Linearisation())
 
-    found = budget(half_car(), base, J3, parameter="friction", method=Linearisation())
+    found = break_even(half_car(), base, J3, parameter="friction", method=Linearisation())
     root = scipy.optimize.brentq(lambda f: same(f) - value(base, J3, Norm()), 1.0, 1e4)
     assert found.value == pytest.approx(root, rel=3e-5)
     changed = with_element(half_car(), "k", 5e4)
@@ -200,7 +200,7 @@ def test_what_is_in_a_tyre_has_a_budget(seed):
             ),
             tyres=(it.Tyre("tyre", tyre, port={"wheel": 1.0}, road="road"),),
             roads=(it.RoadInput("road"),),
-            measures=it.Measures(comfort=(it.Weighted("body_acceleration", 1.0),)),
+            measures=it.PerformanceOutputs(comfort=(it.OutputWeight("body_acceleration", 1.0),)),
         )
 
     more = Damper(10.0, "hysteresis") - Spring(1e5, "more")
@@ -208,14 +208,14 @@ def test_what_is_in_a_tyre_has_a_budget(seed):
         (Spring(1.3 * stiffness, "kt"), Spring(stiffness)),
         (Spring(1e5, "kt") | more, Spring(stiffness) | more),
     ):
-        found = budget(
+        found = break_even(
             car(design), car(plain), J1, parameter="kt", method=Norm(), bounds=(stiffness / 3, 3 * stiffness)
         )
         assert [c.value for c in found.crossings] == pytest.approx([stiffness], rel=3e-5)
 
 
 def test_bounds_by_default_lie_about_the_present_value():
-    found = budget(series(friction=10.0), conventional(), J3, parameter="f", method=Linearisation())
+    found = break_even(series(friction=10.0), conventional(), J3, parameter="f", method=Linearisation())
     assert found.bounds == pytest.approx((0.01, 1e4))
     assert found.evaluations > 16
 
@@ -226,7 +226,7 @@ def test_a_stiffness_is_looked_for_up_to_a_thousand_times_its_value(kept):
     expected = math.sqrt(120e3 * 3e3 * 5e3 / 206.75)
     present = expected / kept
     design, baseline = conventional(present, 5e3), conventional(present, 3e3)
-    found = budget(design, baseline, J1, parameter="k", method=Norm())
+    found = break_even(design, baseline, J1, parameter="k", method=Norm())
     if 1e-3 < kept < 1e3:
         assert found.value == pytest.approx(expected, rel=3e-5)
     else:
@@ -241,7 +241,7 @@ def test_a_friction_that_is_not_there_yet_is_looked_for_between_a_tenth_of_a_new
     index = RideComfort(Road(roughness=density / (4.0 * math.pi**2 * 25.0), speed=25.0))
     design = paper_quarter_car(Spring(80e3) | Damper(damping - more) | Friction(0.0))
     baseline = paper_quarter_car(Spring(80e3) | Damper(damping))
-    found = budget(design, baseline, index, parameter="friction", method=Linearisation())
+    found = break_even(design, baseline, index, parameter="friction", method=Linearisation())
     if 0.1 < expected < 1e4:
         assert found.value == pytest.approx(expected, rel=3e-5)
     else:
@@ -253,42 +253,45 @@ def test_a_friction_that_is_not_there_yet_is_looked_for_between_a_tenth_of_a_new
 def test_a_play_that_is_not_there_yet_is_looked_for_between_a_micrometre_and_a_centimetre():
     """The norm closes gaps, so that one is as good as another."""
     design = paper_quarter_car(Spring(120e3) | Damper(6666.4) - shaft - Gap(0.0) - Inerter(363.55))
-    found = budget(design, conventional(), J3, parameter="gap", method=Norm())
+    found = break_even(design, conventional(), J3, parameter="gap", method=Norm())
     assert found.status.message == "the design is better for every gap from 1 um to 10 mm"
     assert found.bounds == (1e-6, 1e-2)
 
 
 WRONG = {
-    "no such name": (lambda: budget(series(), conventional(), J3, parameter="q", method=Norm()), "unknown element 'q'"),
-    "no gap there": (lambda: budget(series(), conventional(), J3, parameter="gap", method=Norm()), "Gap(0.0)"),
+    "no such name": (
+        lambda: break_even(series(), conventional(), J3, parameter="q", method=Norm()),
+        "unknown element 'q'",
+    ),
+    "no gap there": (lambda: break_even(series(), conventional(), J3, parameter="gap", method=Norm()), "Gap(0.0)"),
     "two kinds": (
-        lambda: budget(
+        lambda: break_even(
             paper_quarter_car(Spring(1e5, "x") | Damper(1e3, "x")), conventional(), J3, parameter="x", method=Norm()
         ),
         "different kinds",
     ),
     "reversed bounds": (
-        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(2.0, 1.0)),
+        lambda: break_even(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(2.0, 1.0)),
         "positive and in order",
     ),
     "a bound of zero": (
-        lambda: budget(series(), conventional(), J3, parameter="f", method=Norm(), bounds=(0.0, 1.0)),
+        lambda: break_even(series(), conventional(), J3, parameter="f", method=Norm(), bounds=(0.0, 1.0)),
         "positive and in order",
     ),
     "bounds of text": (
-        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds="12"),
+        lambda: break_even(series(), conventional(), J3, parameter="k", method=Norm(), bounds="12"),
         "two numbers in SI units",
     ),
     "one bound": (
-        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=5.0),
+        lambda: break_even(series(), conventional(), J3, parameter="k", method=Norm(), bounds=5.0),
         "two numbers in SI units",
     ),
     "an endless bound": (
-        lambda: budget(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(1.0, math.inf)),
+        lambda: break_even(series(), conventional(), J3, parameter="k", method=Norm(), bounds=(1.0, math.inf)),
         "two numbers in SI units",
     ),
     "a free value": (
-        lambda: budget(
+        lambda: break_even(
             paper_quarter_car(Spring(it.free(1e4, 1e5, "k"), "k") | Damper(1e3)),
             conventional(), J3, parameter="k", method=Norm(),
         ),
@@ -307,7 +310,7 @@ def test_wrong_requests_are_one_clear_error(case):
 
 def test_a_method_that_is_none():
     with pytest.raises(PerformanceIndexError, match="Expected a method"):
-        budget(series(), conventional(), J3, parameter="k", method="norm")
+        break_even(series(), conventional(), J3, parameter="k", method="norm")
 
 
 def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
@@ -320,8 +323,8 @@ def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
     comfort = it.RideComfort(it.Road(5e-7, 25.0))
     laden = it.Conditions([it.Condition(1.0, vehicle={"sprung_mass": 300.0, "mass": 100.0})])
     asked = {"parameter": "f", "method": it.StatisticalLinearisation(), "bounds": (1.0, 500.0)}
-    over = it.budget(*(seated(strut, 320.0, 70.0) for strut in struts), laden.mean(comfort), **asked)
-    alone = it.budget(*(seated(strut, 300.0, 100.0) for strut in struts), comfort, **asked)
+    over = it.break_even(*(seated(strut, 320.0, 70.0) for strut in struts), laden.mean(comfort), **asked)
+    alone = it.break_even(*(seated(strut, 300.0, 100.0) for strut in struts), comfort, **asked)
     assert np.isfinite(over.value)
     assert over.value == pytest.approx(alone.value, rel=1e-6)
 
@@ -337,7 +340,7 @@ def test_a_budget_is_no_better_than_what_it_rests_on(seed):
     other = it.QuarterCar(
         car.sprung_mass, car.unsprung_mass, car.tyre_stiffness, Spring(2e4) | Damper(10.0 ** rng.uniform(2.0, 4.0))
     )
-    found = budget(car, other, J1, parameter="friction", method=Linearisation())
+    found = break_even(car, other, J1, parameter="friction", method=Linearisation())
     end = found.value if np.isfinite(found.value) else found.bounds[1]
     inside = np.geomspace(found.bounds[0], end, 12)
     statuses = [it.evaluate(with_element(car, "friction", f), J1, Linearisation()).status for f in inside]

@@ -185,7 +185,7 @@ def test_limits_with_friction():
     best = it.optimise(car, J1, it.StatisticalLinearisation(), subject_to=[limit])
     assert best.limits[0].value == pytest.approx(limit.value, rel=1e-6)
     assert best.limits[0].sensitivity < 0.0
-    assert best.over_linear is not None
+    assert best.gain_over_linear is not None
 
 
 @pytest.mark.campaign

@@ -181,8 +181,8 @@ def test_the_same_seed_gives_the_same_result_and_the_result_is_a_design():
     assert one.design == car.with_values(one.parameters)
     assert one.value == evaluate(one.design, J5, Norm()).value
     assert one.seed == 3
-    assert 1 <= one.agreed <= one.starts
-    assert one.evaluations > one.starts
+    assert 1 <= one.n_converged <= one.n_starts
+    assert one.evaluations > one.n_starts
 
 
 def test_a_flat_optimum_shows_in_the_ranges():
@@ -192,7 +192,7 @@ def test_a_flat_optimum_shows_in_the_ranges():
     alone = optimise(paper_quarter_car(STRUTS["S1"]), J1, Norm())
     assert best.value == pytest.approx(alone.value, rel=1e-8)
     assert best.parameters["c1"] + best.parameters["c2"] == pytest.approx(alone.parameters["c"], rel=1e-3)
-    assert best.agreed > 1
+    assert best.n_converged > 1
     low, high = best.ranges["c1"]
     assert high > 1.5 * low
 
@@ -201,7 +201,7 @@ def test_an_index_that_no_value_makes_finite_says_so():
     best = optimise(paper_quarter_car(Spring(free(1e4, 1e5, "k"))), J1, Norm())
     assert best.value == math.inf
     assert best.status.kind is StatusKind.MARGINAL
-    assert best.agreed == 0
+    assert best.n_converged == 0
 
 
 def test_more_freedom_is_never_worse():

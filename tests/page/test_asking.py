@@ -370,7 +370,7 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     )
     (body,) = asked
     study = study_from(body["study"])
-    found = it.budget(
+    found = it.break_even(
         design_of(study, "S3", {}).vehicle,
         design_of(study, "S1", {}).vehicle,
         study.index("J1"),

@@ -382,7 +382,9 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
     assert body["spread"] == {"c": 0.2, "cs": 0.1, "b": 0.1}
     study = study_from(body["study"])
     design = design_of(study, **{key: body["design"][key] for key in ("layout", "values")})
-    found = it.tolerance(design.vehicle, study.index(body["index"]), it.Norm(), spread=body["spread"], samples=1024)
+    found = it.tolerance_analysis(
+        design.vehicle, study.index(body["index"]), it.Norm(), spread=body["spread"], samples=1024
+    )
     values = page.eval_on_selector_all("[data-scatter] td", "all => all.map(td => Number(td.dataset.value))")
     assert values == [
         found.nominal.value,

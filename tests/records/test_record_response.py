@@ -90,7 +90,7 @@ def test_a_simulated_steady_state_is_the_linear_response(slope):
     """The rig's own linear system, through a simulation, at the lines of a multisine: without noise exact."""
     omega = OMEGA * 0.5 * np.arange(1, 31)
     truth = it.linear_response(DEVICE, omega)
-    system = it.assemble(it.Rig(DEVICE), outputs="device_force")
+    system = it.state_space(it.Rig(DEVICE), outputs="device_force")
     assert truth.value == pytest.approx(1j * omega * it.frequency_response(system, omega)[:, 0, 0], rel=1e-9)
     time, moved = np.arange(2000) / 1000.0, multisine(0, count=30, periods=1, rate=1000.0, slope=slope)
     source = it.Signal.sampled(

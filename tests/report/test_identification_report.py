@@ -19,13 +19,13 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import IdentificationResult, Reading, Responses, responses
 from inerter.identification.choice import Candidate
 from inerter.identification.finding_texts import FitFinding
-from inerter.identification.fit import Explanation, Localisation, Misfit
+from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.parser import format_expression
 from inerter.records.channel_selection import ROLES
 from inerter.records.finding import Finding
@@ -87,7 +87,7 @@ def found() -> IdentificationResult:
 def without(found: IdentificationResult, name: str, interval: tuple[float, float]) -> IdentificationResult:
     fit = found.fit
     changed = replace(fit.parameters[name], value=math.nan, interval=interval)
-    verdict = Identifiability(name, Verdict.BELOW, "N", (0.0, 3.0), role=Linear.OPEN)
+    verdict = Identifiability(name, Verdict.BELOW, "N", (0.0, 3.0), role=LinearRole.OPEN)
     verdicts = {**fit.identifiable, name: verdict}
     return replace(found, fit=replace(fit, parameters={**fit.parameters, name: changed}, identifiable=verdicts))
 
@@ -238,7 +238,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
     """Whatever law explains a misfit, "what to do" holds whether its values are shown or not."""
     chain = chain_of(it.Rig(MODEL).device)
     assert chain is not None
-    left = Misfit(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
+    left = NormalisedResidual(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
     proposed = [
         Explanation(h.name, 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.details(middle(h)))
         for h in laws(chain, 0.02, 1e-3)
@@ -328,7 +328,8 @@ def test_a_misfit_that_nothing_explains_begins_with_what_records_were_warned_of(
         for name, one in (("a.csv", "info"), ("b.csv", severity))
     ]
     fit = SimpleNamespace(
-        status=Status(StatusKind.INACCURATE, "it leaves much"), doubt=SimpleNamespace(numbers={"likeliest": likeliest})
+        status=Status(StatusKind.INACCURATE, "it leaves much"),
+        reliability_warning=SimpleNamespace(numbers={"likeliest": likeliest}),
     )
     said = unreliable(SimpleNamespace(readings=readings, fit=fit))
     assert said.startswith("it leaves much")

@@ -85,7 +85,7 @@ USE = it.Conditions([it.Condition(0.5, road={"speed": 10.0}), it.Condition(0.5, 
 MADE = {  # of what, and which of its estimates is worse
     "comparison": (lambda: compare(car(K | C | B), car(K | C), J1, it.Norm()), has_inerter),
     "tie": (lambda: compare(car(K | C | B), car(K | C | B), J1, it.Norm()), has_inerter),
-    "budget": (lambda: it.budget(car(K | C | B), car(K | C), J1, parameter="b", method=it.Norm()), has_inerter),
+    "budget": (lambda: it.break_even(car(K | C | B), car(K | C), J1, parameter="b", method=it.Norm()), has_inerter),
     "mean over conditions": (lambda: it.evaluate(car(K | C), USE.mean(J1), it.Norm()), is_slow),
     "worst of conditions": (lambda: it.evaluate(car(K | C), USE.worst(J1), it.Norm()), is_slow),
     "quantile": (
@@ -93,7 +93,7 @@ MADE = {  # of what, and which of its estimates is worse
         lambda *_: True,
     ),
     "tolerance": (
-        lambda: it.tolerance(car(K | C), J1, it.Norm(), spread={"k": 0.1}, samples=16),
+        lambda: it.tolerance_analysis(car(K | C), J1, it.Norm(), spread={"k": 0.1}, samples=16),
         lambda *_: True,
     ),
     "limit": (
@@ -103,7 +103,7 @@ MADE = {  # of what, and which of its estimates is worse
         is_about_tyres,
     ),
     "front": (
-        lambda: it.pareto(car(K | it.Damper(it.free(500, 9e3, name="c"))), [J1, J3], it.Norm(), points=3),
+        lambda: it.pareto_front(car(K | it.Damper(it.free(500, 9e3, name="c"))), [J1, J3], it.Norm(), points=3),
         is_about_tyres,
     ),
 }

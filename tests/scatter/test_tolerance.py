@@ -35,7 +35,7 @@ def free():
 @pytest.mark.parametrize("distribution", ["uniform", "normal"])
 def test_the_distribution_is_that_of_plain_random_numbers(distribution):
     spread = {"c": 0.3, "b": 0.2, "k": 0.1}
-    found = it.tolerance(fixed(), J1, NORM, spread=spread, samples=1024, distribution=distribution)
+    found = it.tolerance_analysis(fixed(), J1, NORM, spread=spread, samples=1024, distribution=distribution)
     rng, count = np.random.default_rng(5), 40_000
     factors = {}
     for name, part in spread.items():
@@ -65,12 +65,14 @@ def test_effects_are_those_of_a_product():
     """The static stiffness of springs in series and parallel against exact integrals of variances."""
     parts = {"k1": 0.2, "k2": 0.1}
     strut = it.Spring(1e5, "k1") | it.Spring(2e5, "k2") | it.Damper(3e3)
-    found = it.tolerance(paper_quarter_car(strut), it.static_stiffness("strut"), NORM, spread=parts, samples=4096)
+    found = it.tolerance_analysis(
+        paper_quarter_car(strut), it.static_stiffness("strut"), NORM, spread=parts, samples=4096
+    )
     variances = {"k1": (1e5 * 0.2) ** 2 / 3.0, "k2": (2e5 * 0.1) ** 2 / 3.0}
     whole = sum(variances.values())
     for name, variance in variances.items():
-        assert found.main[name] == pytest.approx(variance / whole, abs=0.01)
-        assert found.total[name] == pytest.approx(variance / whole, abs=0.01)
+        assert found.first_order[name] == pytest.approx(variance / whole, abs=0.01)
+        assert found.total_order[name] == pytest.approx(variance / whole, abs=0.01)
     assert found.mean == pytest.approx(3e5, rel=1e-4)
     assert found.standard_deviation == pytest.approx(np.sqrt(whole), rel=5e-3)
     assert found.worst == pytest.approx(1.2e5 + 2.2e5, rel=1e-12)
@@ -78,18 +80,18 @@ def test_effects_are_those_of_a_product():
 
 def found_again(executor=None):
     spread = {"c": 0.1, "sprung_mass": 0.1}
-    return it.tolerance(fixed(), J1, NORM, spread=spread, samples=16, executor=executor)
+    return it.tolerance_analysis(fixed(), J1, NORM, spread=spread, samples=16, executor=executor)
 
 
 def test_quantities_of_the_vehicle_scatter_one_by_one():
-    found = it.tolerance(fixed(), J1, NORM, spread={"sprung_mass": 0.1, "c": 0.1}, samples=16)
+    found = it.tolerance_analysis(fixed(), J1, NORM, spread={"sprung_mass": 0.1, "c": 0.1}, samples=16)
     top = found.worst_values
     car = dataclasses.replace(fixed(c=top["c"]), sprung_mass=top["sprung_mass"])
     assert it.evaluate(car, J1, NORM).value == pytest.approx(found.worst, rel=1e-9)
-    alike = it.tolerance(fixed(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
-    mechanism = it.tolerance(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "sprung": 0.1}, samples=16)
+    alike = it.tolerance_analysis(fixed(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    mechanism = it.tolerance_analysis(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "sprung": 0.1}, samples=16)
     assert mechanism.values == pytest.approx(found_again().values, rel=1e-9)
-    strut = it.tolerance(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    strut = it.tolerance_analysis(fixed().mechanism(), J1, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
     assert strut.values == pytest.approx(alike.values, rel=1e-9)
     with ThreadPoolExecutor(2) as pool:
         assert np.array_equal(found_again(pool).values, found_again().values)
@@ -108,15 +110,15 @@ def test_elements_of_one_name_and_several_values_do_not_scatter_as_one(others):
         rear=it.Spring(4e4, "k") | it.Damper(1500.0),
     )
     with pytest.raises(DesignError, match="is ambiguous"):
-        it.tolerance(car, J1, NORM, spread={"k": 0.01, **others}, samples=16)
+        it.tolerance_analysis(car, J1, NORM, spread={"k": 0.01, **others}, samples=16)
 
 
 def test_a_design_whose_index_is_not_known_somewhere():
     car = paper_quarter_car(it.Spring(1.2e5) | it.Damper(it.free(1.0, 2.0, "c")))
-    found = it.tolerance(car.with_values({"c": 1.5}), J1, NORM, spread={"c": 0.1}, samples=16)
+    found = it.tolerance_analysis(car.with_values({"c": 1.5}), J1, NORM, spread={"c": 0.1}, samples=16)
     assert found.status.ok
     friction = paper_quarter_car(it.Spring(1.2e5) | it.Friction(1e4) - it.Spring(1e5) | it.Damper(1e-9))
-    lost = it.tolerance(friction, J1, it.StatisticalLinearisation(), spread={"f": 0.5}, samples=16)
+    lost = it.tolerance_analysis(friction, J1, it.StatisticalLinearisation(), spread={"f": 0.5}, samples=16)
     assert lost.status.ok == bool(np.isfinite(lost.mean))
     assert np.isfinite(lost.worst) == lost.status.ok
 
@@ -135,7 +137,7 @@ def test_gradients_of_a_quantile(index):
 
 def test_the_robust_design_is_best_at_its_quantile():
     spread = {"c": 0.4, "b": 0.4}
-    found = it.robust(free(), J1, NORM, spread=spread, samples=32)
+    found = it.optimise_robust(free(), J1, NORM, spread=spread, samples=32)
     of = it.Quantile(J1, scatter_of(spread, "uniform"), samples=32)
 
     def at(x):
@@ -147,7 +149,7 @@ def test_the_robust_design_is_best_at_its_quantile():
     assert at(np.log([found.parameters["c"], found.parameters["b"]])) <= other.fun * (1.0 + 1e-5)
     best = it.optimise(free(), J1, NORM)
     worse, robust = (
-        it.tolerance(design, J1, NORM, spread=spread, samples=256).quantile(0.95)
+        it.tolerance_analysis(design, J1, NORM, spread=spread, samples=256).quantile(0.95)
         for design in (best.design, found.design)
     )
     assert robust < worse
@@ -179,7 +181,7 @@ def test_what_is_tied_follows_in_the_design_and_scatters_by_itself(spread):
     c, c2 = (it.Damper(it.free(1.0, 1e6, name)) for name in ("c", "c2"))
     loose = paper_quarter_car((k1 - k2) | c - it.Inerter(300.0) | c2)
     values = it.evaluate_many(loose, J3, made, NORM)[:, 0]
-    found = it.tolerance(design, J3, NORM, spread=spread, samples=1024)
+    found = it.tolerance_analysis(design, J3, NORM, spread=spread, samples=1024)
     of = it.Quantile(J3, scatter_of(spread, "uniform"), samples=1024)
     objective, point = objective_of(made_up(), of, NORM), np.array([at[name] for name in made_up().free_values()])
     near = 0.1 * values.std()
@@ -230,7 +232,7 @@ def test_two_parts_of_one_free_value_scatter_by_their_names():
 def test_tolerances_that_cannot_be(given, said):
     asked = {"design": fixed(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
     with pytest.raises(it.InerterError, match=said):
-        it.tolerance(**asked)
+        it.tolerance_analysis(**asked)
 
 
 @pytest.mark.parametrize(
@@ -245,16 +247,16 @@ def test_tolerances_that_cannot_be(given, said):
 def test_robust_designs_that_cannot_be(given, said):
     asked = {"vehicle": free(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
     with pytest.raises(it.InerterError, match=said):
-        it.robust(**asked)
+        it.optimise_robust(**asked)
 
 
 def test_shares_of_a_quantile():
-    found = it.tolerance(fixed(), J1, NORM, spread={"c": 0.1}, samples=16)
+    found = it.tolerance_analysis(fixed(), J1, NORM, spread={"c": 0.1}, samples=16)
     assert found.quantile(0.0) == found.values.min()
     with pytest.raises(it.InerterError, match="between 0 and 1"):
         found.quantile(1.5)
     with pytest.raises(it.InerterError, match="is 0, so it cannot have a relative tolerance"):
-        it.tolerance(
+        it.tolerance_analysis(
             paper_quarter_car(it.Spring(1e5) | it.Damper(1e3) | it.Friction(0.0)),
             J1,
             NORM,
@@ -279,8 +281,8 @@ def test_the_interval_of_a_quantile_covers(count, share):
 def test_a_robust_quantile_is_that_of_its_design(seed):
     """By a sample of its own: within its interval of that by 4096 samples, not below as that of the search."""
     spread = {"c": 0.4, "b": 0.4}
-    found = it.robust(free(), J1, NORM, spread=spread, samples=64, seed=seed)
-    truth = it.tolerance(found.design, J1, NORM, spread=spread, samples=4096, seed=99).quantile_estimate(0.95)
+    found = it.optimise_robust(free(), J1, NORM, spread=spread, samples=64, seed=seed)
+    truth = it.tolerance_analysis(found.design, J1, NORM, spread=spread, samples=4096, seed=99).quantile_estimate(0.95)
     low, high = found.estimate.interval
     assert low <= truth.value <= high
     assert truth.interval[0] < truth.value < truth.interval[1]
@@ -298,7 +300,7 @@ def test_designs_beyond_double_precision_are_sampled_less_and_said_so(over: str,
     use = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 3e-22})])
     if over != "one condition":
         index = getattr(use, over)(index)
-    found = it.tolerance(car, index, NORM, spread=spread, seed=0)
+    found = it.tolerance_analysis(car, index, NORM, spread=spread, seed=0)
     assert found.values.size == 2 * 256
     assert str(found.status.kind) == "inaccurate"
     assert "256 of 4096 designs of the sample" in found.status.message
@@ -312,7 +314,7 @@ def test_designs_beyond_double_precision_are_sampled_less_and_said_so(over: str,
 def test_designs_within_double_precision_keep_their_sample_over_conditions(spread: dict[str, float]):
     car = fixed()
     use = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 30.0})])
-    found = it.tolerance(car, use.mean(J1), NORM, spread=spread, samples=512)
+    found = it.tolerance_analysis(car, use.mean(J1), NORM, spread=spread, samples=512)
     assert found.values.size == 2 * 512
     assert found.status.ok
 
@@ -335,7 +337,7 @@ def rubbing(**values: float) -> it.QuarterCar:
 )
 def test_what_linear_analysis_leaves_out_does_not_scatter_in_silence(spread: dict[str, float], unseen: str) -> None:
     """The friction itself, and a damper in series with it, which carries no force without it."""
-    found = it.tolerance(rubbing(), J1, it.Norm(), spread=spread, samples=64)
+    found = it.tolerance_analysis(rubbing(), J1, it.Norm(), spread=spread, samples=64)
     quantile = it.evaluate(rubbing(), it.Quantile(J1, scatter_of(spread, "uniform"), samples=64), it.Norm())
     assert found.status.ok == (not unseen)
     assert unseen in found.status.message
@@ -344,7 +346,7 @@ def test_what_linear_analysis_leaves_out_does_not_scatter_in_silence(spread: dic
 
 def test_a_method_that_simulates_sees_friction_scatter() -> None:
     method = it.ExpectedValue(realisations=2, seed=1)
-    found = it.tolerance(rubbing(), J1, method, spread={"f": 0.5}, samples=16)
+    found = it.tolerance_analysis(rubbing(), J1, method, spread={"f": 0.5}, samples=16)
     assert found.status.ok
     assert found.standard_deviation > 0.0
 
@@ -352,6 +354,6 @@ def test_a_method_that_simulates_sees_friction_scatter() -> None:
 def test_a_value_without_effect_in_a_linear_design_is_no_fault() -> None:
     """Where damping is high, load carrying is that of the springs at rest."""
     car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(22e3, "k") | it.Damper(2e4, "c"))
-    found = it.tolerance(car, J5, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
+    found = it.tolerance_analysis(car, J5, NORM, spread={"c": 0.1, "k": 0.1}, samples=16)
     assert found.status.ok
-    assert found.total["c"] == pytest.approx(0.0, abs=1e-6)
+    assert found.total_order["c"] == pytest.approx(0.0, abs=1e-6)

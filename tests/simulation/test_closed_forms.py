@@ -163,7 +163,7 @@ def test_den_hartog_as_a_periodic_steady_state(ratio: float, friction: float) ->
     assert np.abs(settled["x_displacement"]).max() == pytest.approx(theory.amplitude, rel=1e-6)
     assert settled.energy is not None
     assert settled.energy.friction["f"] == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
-    assert settled.energy.put_in == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
+    assert settled.energy.input_work == pytest.approx(4.0 * friction * theory.amplitude, rel=1e-8)
 
 
 @pytest.mark.parametrize("ratio", [0.65, 0.8, 1.3, 1.7])
@@ -278,7 +278,7 @@ def test_an_element_alone_on_the_rig(duration: float) -> None:
         assert_close(spring["force"][:: round(2e-4 / step)], 3e4 * value[: end + 1], 1e-11)
         assert_close(damper["force"][:: round(2e-4 / step)], 500.0 * slope[: end + 1], 1e-11)
         assert inerter.energy is not None
-        assert inerter.energy.put_in == pytest.approx(40.0 * (slope[end] ** 2 - slope[0] ** 2), rel=1e-10)
+        assert inerter.energy.input_work == pytest.approx(40.0 * (slope[end] ** 2 - slope[0] ** 2), rel=1e-10)
 
 
 def bent(rng: np.random.Generator, duration: float, step: float, size: float) -> tuple[it.Signal, Array, Array]:
@@ -333,7 +333,7 @@ def test_linear_quarter_car_by_the_matrix_exponential(seed: int) -> None:
     road, height, climb = bent(rng, duration, h, 3e-3)
     push, force, rate = bent(rng, duration, h, 300.0)
     names = ("sprung_acceleration", "unsprung_acceleration", "tyre_load", "strut_force", "strut_travel")
-    system = it.assemble(car, inputs=("road", "sprung_force"), outputs=names)
+    system = it.state_space(car, inputs=("road", "sprung_force"), outputs=names)
     pieces = np.stack([derivative(cubic(height, climb, h)), cubic(force, rate, h)], axis=1)
     expected = exactly(system, pieces, h)
     result = run(car, road=road, forces={"sprung_force": push}, duration=duration, step=h)
@@ -352,7 +352,7 @@ def test_linear_half_car_by_the_matrix_exponential(seed: int) -> None:
     road, height, climb = bent(rng, duration, h, 3e-3)
     push, force, rate = bent(rng, duration, h, 300.0)
     names = ("sprung_acceleration", "pitch_acceleration", "tyre_front_load", "tyre_rear_load", "rear_force")
-    system = it.assemble(car, inputs=("road_front", "road_rear", "pitch_moment"), outputs=names)
+    system = it.state_space(car, inputs=("road_front", "road_rear", "pitch_moment"), outputs=names)
     ahead = derivative(cubic(height, climb, h))
     behind = np.concatenate([np.zeros((late, 4)), ahead[:-late]])
     expected = exactly(system, np.stack([ahead, behind, cubic(force, rate, h)], axis=1), h)
@@ -369,7 +369,7 @@ def test_held_force_by_the_matrix_exponential(hold: str) -> None:
     h, count = 5e-4, 100
     value = 200.0 * rng.standard_normal(count + 1)
     car = paper_quarter_car(it.Spring(120e3) | it.Damper(2500.0) - it.Spring(3e5))
-    system = it.assemble(car, inputs="sprung_force", outputs=("tyre_load", "strut_travel"))
+    system = it.state_space(car, inputs="sprung_force", outputs=("tyre_load", "strut_travel"))
     pieces = np.zeros((count, 1, 4))
     pieces[:, 0, 0] = value[:-1]
     if hold == "linear":
@@ -386,7 +386,7 @@ def test_periodic_state_of_a_linear_car_by_its_frequency_response(frequency: flo
     """The transfer function from the road's velocity, at the amplitude and phase of a sine."""
     car = paper_quarter_car(it.Spring(60e3) | it.Damper(2500.0) | LEG)
     names = ("sprung_acceleration", "tyre_load", "strut_force")
-    system = it.assemble(car, inputs="road", outputs=names)
+    system = it.state_space(car, inputs="road", outputs=names)
     omega, height = 2.0 * np.pi * frequency, 4e-3
     gain = system.C @ np.linalg.solve(1j * omega * np.eye(system.order) - system.A, system.B) + system.D
     result = run(car, road=it.sine(height, frequency), initial="periodic", step=1.0 / frequency / 2000)
@@ -529,7 +529,7 @@ def test_sticking_for_the_whole_run() -> None:
     assert np.abs(result["f_velocity"]).max() <= 1e-15
     assert_close(result["f_force"], 2e4 * result["strut_travel"], 1e-10)
     assert result.energy is not None
-    assert abs(result.energy.friction["f"]) < 1e-12 * result.energy.put_in
+    assert abs(result.energy.friction["f"]) < 1e-12 * result.energy.input_work
 
 
 @pytest.mark.parametrize("excess", [-1e-9, 1e-9])

@@ -135,7 +135,7 @@ def test_going_on_from_where_a_run_ended(half_gap: float) -> None:
     assert begin.energy is not None
     assert rest.energy is not None
     assert whole.energy is not None
-    assert begin.energy.put_in + rest.energy.put_in == pytest.approx(whole.energy.put_in, rel=1e-9)
+    assert begin.energy.input_work + rest.energy.input_work == pytest.approx(whole.energy.input_work, rel=1e-9)
 
 
 def test_a_sample_every_so_many_steps() -> None:

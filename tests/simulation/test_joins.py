@@ -68,7 +68,7 @@ def balances(cut: Cut) -> float:
     parts = [run.energy for run in (cut.whole, cut.begin, cut.rest)]
     assert all(part is not None for part in parts)
     sums = np.array([
-        [part.put_in, part.stored, sum(part.dampers.values()), sum(part.friction.values()), part.residual]
+        [part.input_work, part.stored, sum(part.dampers.values()), sum(part.friction.values()), part.residual]
         for part in parts if part is not None
     ])  # fmt: skip
     return float(np.abs(sums[0] - sums[1] - sums[2]).max() / max(np.abs(sums).max(), 1e-12))
@@ -198,4 +198,4 @@ def test_a_period_that_begins_with_a_jump_has_its_energy() -> None:
     run = it.simulate(car, road=it.sine(0.01, 2.0, phase=1.0).held(0.05), step=1e-3, initial="periodic", energy=True)
     assert run.energy is not None
     assert run.energy.relative_residual < 1e-9
-    assert abs(run.energy.stored) < 1e-8 * abs(run.energy.put_in)
+    assert abs(run.energy.stored) < 1e-8 * abs(run.energy.input_work)

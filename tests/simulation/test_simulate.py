@@ -110,7 +110,7 @@ def test_a_periodic_steady_state_repeats():
     steady = it.simulate(car, road=signal, initial="periodic", energy=True)
     assert steady.repetition.mismatch < 1e-9
     assert steady.repetition.period == pytest.approx(0.5)
-    assert abs(steady.energy.stored) < 1e-8 * steady.energy.put_in
+    assert abs(steady.energy.stored) < 1e-8 * steady.energy.input_work
     again = it.simulate(car, road=signal, duration=0.5, initial=steady)
     np.testing.assert_allclose(again["tyre_load"], steady["tyre_load"], atol=1e-7 * steady.rms("tyre_load"))
     settled = it.simulate(car, road=signal, duration=10.0)
@@ -157,7 +157,7 @@ def test_mean_squares_of_a_batch_are_those_of_single_runs():
     noise = it.held_noise(seed=4, power=1e-8, duration=1.0)
     signals = [it.multisine(ROAD, seed=0), it.multisine(ROAD, seed=1), noise]
     outputs = ["sprung_acceleration", "tyre_load", "friction_force"]
-    batch = it.simulate_many(cars, road=signals, outputs=outputs, duration=1.0, settled=0.4, jobs=2)
+    batch = it.simulate_many(cars, road=signals, outputs=outputs, duration=1.0, discard=0.4, jobs=2)
     assert batch.rms.shape == (3, 3, 3)
     for i, car in enumerate(cars):
         for j, signal in enumerate(signals):
@@ -167,7 +167,7 @@ def test_mean_squares_of_a_batch_are_those_of_single_runs():
                 assert batch.rms[i, j, o] == pytest.approx(expected, rel=1e-11, abs=1e-300)
             assert batch.events[i, j] == len(run.events)
             assert batch.status[i][j].ok
-    alone = it.simulate_many(cars, road=signals, outputs=outputs, duration=1.0, settled=0.4, jobs=1)
+    alone = it.simulate_many(cars, road=signals, outputs=outputs, duration=1.0, discard=0.4, jobs=1)
     np.testing.assert_array_equal(alone.mean_square, batch.mean_square)
     data = batch.to_xarray()
     assert data["tyre_load"].attrs["units"] == "N"

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.signal import lsim
 
-from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, assemble, free
+from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, free, state_space
 from inerter.errors import SimulationError
 from inerter.networks.elements import Network
 from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
@@ -227,7 +227,7 @@ def test_linear_quarter_car_at_second_order(hold: str) -> None:
 def test_linear_networks_with_massless_nodes_at_second_order(strut: Network) -> None:
     """Free motion from a velocity, against the matrix exponential of the assembled system."""
     car = quarter_car(strut)
-    system = assemble(car)
+    system = state_space(car)
     names = [f"{c.name}_velocity" for c in car.mechanism().coordinates]
     start = np.zeros(len(system.states))
     errors = []
@@ -353,9 +353,9 @@ def test_energy_balance_closes_at_first_order(device: str) -> None:
                 if not isinstance(branch.element, Gap):
                     assert -work[work < 0.0].sum() < 2e-3 * work.sum()
         tyre = r.forces[:, -1]
-        put_in = np.zeros(r.time.size)
-        put_in[1:] = np.cumsum(-0.5 * (tyre[1:] + tyre[:-1]) * np.diff(bumpy(r.time)))
-        left.append(float(np.abs(put_in - stored - spent).max() / stored.max()))
+        input_work = np.zeros(r.time.size)
+        input_work[1:] = np.cumsum(-0.5 * (tyre[1:] + tyre[:-1]) * np.diff(bumpy(r.time)))
+        left.append(float(np.abs(input_work - stored - spent).max() / stored.max()))
     assert left[1] < 3e-3
     assert left[1] < 0.5 * left[0]
 

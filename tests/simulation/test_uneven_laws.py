@@ -18,7 +18,7 @@ import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, simulate
 from inerter.errors import DesignError, MechanismError, PerformanceIndexError, SimulationError
 from inerter.networks.elements import Element, Network
-from inerter.networks.elements.roles import Guard, Statistical, Switch
+from inerter.networks.elements.roles import GuardRole, StatisticalRole, SwitchRole
 from inerter.systems.piecewise import piecewise, with_element_values
 
 MASS, STIFFNESS = 10.0, 4000.0  # 20 rad/s
@@ -220,15 +220,15 @@ class Between(Push):
 
     ends: ClassVar[tuple[float, float]]
     key = "law"
-    switch = Switch(Guard.FORCE, "down", "stick", "up")
+    switch = SwitchRole(GuardRole.FORCE, "down", "stick", "up")
 
     @property
     def limits(self) -> tuple[float, float]:
         return self.ends
 
 
-def between(lower: float, upper: float, guard: Guard = Guard.FORCE) -> Element:
-    kind = type("Law", (Between,), {"ends": (lower, upper), "switch": Switch(guard, "down", "middle", "up")})
+def between(lower: float, upper: float, guard: GuardRole = GuardRole.FORCE) -> Element:
+    kind = type("Law", (Between,), {"ends": (lower, upper), "switch": SwitchRole(guard, "down", "middle", "up")})
     return kind(1.0, "x")
 
 
@@ -245,7 +245,7 @@ def between(lower: float, upper: float, guard: Guard = Guard.FORCE) -> Element:
     ],
 )
 def test_limits_that_cannot_be_are_one_sentence(lower, upper, integrator):
-    for guard in Guard:
+    for guard in GuardRole:
         strut = Spring(STIFFNESS) | Damper(40.0) | between(lower, upper, guard) - Spring(1e3)
         with pytest.raises(it.InerterError, match=f"Law 'x' switches at {lower} and {upper}; expected two numbers in"):
             simulate(oscillator(strut), forces={"force": pushed(1.0)}, duration=0.1, integrator=integrator)
@@ -253,13 +253,13 @@ def test_limits_that_cannot_be_are_one_sentence(lower, upper, integrator):
 
 @pytest.mark.parametrize(("lower", "upper", "rest"), [(0.005, 0.02, 0.005), (-0.02, -0.005, -0.005)])
 def test_a_gap_on_one_side_of_zero_rests_at_its_nearer_end(lower, upper, rest):
-    strut = Spring(STIFFNESS) | Damper(40.0) | between(lower, upper, Guard.ELONGATION) - Damper(300.0)
+    strut = Spring(STIFFNESS) | Damper(40.0) | between(lower, upper, GuardRole.ELONGATION) - Damper(300.0)
     run = simulate(oscillator(strut), forces={"force": pushed(0.0)}, duration=0.1, step=1e-3)
     np.testing.assert_allclose(run["x_stroke"], rest, rtol=1e-12)
 
 
 def test_a_rest_between_a_slot_and_a_gap_is_one_that_both_can_have():
-    parts = between(0.005, 0.02, Guard.ELONGATION) | Gap(0.01, "g")
+    parts = between(0.005, 0.02, GuardRole.ELONGATION) | Gap(0.01, "g")
     strut = Spring(STIFFNESS) | Damper(40.0) | Friction(50.0) - parts - Damper(300.0)
     for integrator in ("event-driven", "time-stepping"):
         run = simulate(
@@ -276,7 +276,7 @@ def test_what_rests_at_a_limit_with_none_beyond_is_not_struck_by_rounding(drag):
     assert simulate(car, road=rough, duration=0.2, step=2e-4).status.ok
 
 
-@pytest.mark.parametrize("statistical", list(Statistical))
+@pytest.mark.parametrize("statistical", list(StatisticalRole))
 def test_statistical_linearisation_refuses_what_is_uneven_whatever_it_says_of_itself(statistical, monkeypatch):
     monkeypatch.setattr(UnevenFriction, "statistical", statistical)
     car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - UnevenFriction(300.0, 100.0, "u"))
@@ -295,7 +295,7 @@ def test_a_budget_of_what_has_no_usual_size_asks_for_bounds():
     other = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
     road = it.Road(roughness=5e-7, speed=25.0)
     with pytest.raises(DesignError, match=r"'w' is 0\. Give bounds=\(lower, upper\)"):
-        it.budget(first, other, it.RideComfort(road), parameter="w", method=it.ExpectedValue(realisations=2))
+        it.break_even(first, other, it.RideComfort(road), parameter="w", method=it.ExpectedValue(realisations=2))
 
 
 def test_a_constant_force_leaves_gains_as_they_are():
@@ -318,7 +318,7 @@ def test_new_values_that_change_what_holds_are_refused():
 class Reach(Push):
     """Holds between a limit that grows with another, and that."""
 
-    switch = Switch(Guard.FORCE, "down", "stick", "up")
+    switch = SwitchRole(GuardRole.FORCE, "down", "stick", "up")
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from inerter.fields import Field
 from inerter.networks.elements import Damper, Element, Network, Value
-from inerter.networks.elements.roles import Guard, Linear, Switch
+from inerter.networks.elements.roles import GuardRole, LinearRole, SwitchRole
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class Push(Element):
     unit = "N"
     sentence = "The force."
     example = "100 N"
-    linear = Linear.OPEN
-    switch = Switch(Guard.FORCE, "down", "none", "up")
+    linear = LinearRole.OPEN
+    switch = SwitchRole(GuardRole.FORCE, "down", "none", "up")
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -42,8 +42,8 @@ class OneSidedStop(Element):
     unit = "m"
     sentence = "Travel to the contact."
     example = "50 mm"
-    linear = Linear.OPEN
-    switch = Switch(Guard.ELONGATION, "contact", "open", "never")
+    linear = LinearRole.OPEN
+    switch = SwitchRole(GuardRole.ELONGATION, "contact", "open", "never")
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -62,8 +62,8 @@ class OneWay(Element):
     unit = "N"
     sentence = "Force against which it gives way."
     example = "1 N"
-    linear = Linear.OPEN
-    switch = Switch(Guard.FORCE, "slip down", "stick", "never")
+    linear = LinearRole.OPEN
+    switch = SwitchRole(GuardRole.FORCE, "slip down", "stick", "never")
     may_vanish = True
 
     @property
@@ -85,8 +85,8 @@ class UnevenFriction(Element):
     sentence = "Force while it gets longer."
     example = "10 N"
     more = (Field("compression", "N", "Force while it gets shorter."),)
-    linear = Linear.OPEN
-    switch = Switch(Guard.FORCE, "slip down", "stick", "slip up")
+    linear = LinearRole.OPEN
+    switch = SwitchRole(GuardRole.FORCE, "slip down", "stick", "slip up")
 
     @property
     def limits(self) -> tuple[float, float]:

@@ -82,7 +82,7 @@ def in_a_file(mechanism: it.Mechanism, index: str) -> str:
 
 def is_damped(mechanism: it.Mechanism) -> bool:
     """Enough for a quadrature with panels that grow with frequency."""
-    poles = np.linalg.eigvals(it.assemble(mechanism).A)
+    poles = np.linalg.eigvals(it.state_space(mechanism).A)
     sizes = np.abs(poles)
     return bool(sizes.size) and bool(np.all(-poles.real > 0.01 * sizes) and 0.1 < sizes.min() < sizes.max() < 3e3)
 
@@ -228,7 +228,7 @@ OPTIMISED = BUILDING + 'optimise = "norm"\n'
 
 def test_a_building_is_that_of_python_digit_by_digit(load: Load) -> None:
     study, ground = load(OPTIMISED), it.GroundAcceleration(1.0)
-    shaped = it.Shaped(ground, it.Filter([3.0], [1.0, 3.0]))
+    shaped = it.FilteredExcitation(ground, it.Filter([3.0], [1.0, 3.0]))
     assert study.index("sway") == it.RandomResponse({"primary_relative_displacement": 1.0}, ground)
     assert study.index("felt") == it.RandomResponse({"primary_acceleration": 1.0}, shaped)
     assert study.index("receptance") == it.PeakResponse("primary_force", "primary_displacement")
@@ -376,7 +376,7 @@ def test_a_car_under_a_force_alone_needs_no_road(load: Load) -> None:
     study = load(CAR.replace("INDEX", 'excitation = { force = "sprung_force", intensity = "1 N^2/Hz", shaping = { '
                                       "numerator = [9.0], denominator = [1.0, 9.0] } }"))  # fmt: skip
     assert study.road is None
-    drive = it.Shaped(it.WhiteForce("sprung_force", 1.0), it.Filter([9.0], [1.0, 9.0]))
+    drive = it.FilteredExcitation(it.WhiteForce("sprung_force", 1.0), it.Filter([9.0], [1.0, 9.0]))
     assert study.index("shaken") == it.RideComfort(drive)
     check_study(study)
     with pytest.raises(StudyError, match="road: missing, but shaken needs it"):
@@ -521,7 +521,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "building_quake.toml"
 def test_the_example_is_that_of_python_and_keeps_its_limit(tmp_path: Path) -> None:
     study = load_study(EXAMPLE)
     kanai_tajimi = it.Filter([18.72, 243.36], [1.0, 18.72, 243.36])  # 2 x 0.6 x 15.6 and 15.6^2
-    ground = it.Shaped(it.GroundAcceleration(0.02), kanai_tajimi)
+    ground = it.FilteredExcitation(it.GroundAcceleration(0.02), kanai_tajimi)
     sway, stroke = it.RandomResponse({"primary_relative_displacement": 1.0}, ground), it.ElementStroke(ground, "k")
     assert study.index("stroke") == stroke
     data = run_study(study, tmp_path / "out").data

@@ -45,7 +45,7 @@ def test_a_front_is_that_of_python(found: StudyResult) -> None:
     study = found.study
     assert study.indices == ("J1", "tyre-load")
     for layout in study.layouts:
-        by_hand = it.pareto(
+        by_hand = it.pareto_front(
             study.design(layout), [it.RideComfort(study.road), it.TyreLoad(study.road)], it.Norm(), points=5, seed=0
         )
         row = found.data.sel(layout=layout)

@@ -22,7 +22,7 @@ from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
-from inerter.optimisation.budget import budget
+from inerter.optimisation.budget import break_even
 from inerter.optimisation.optimise import optimise
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
@@ -136,7 +136,7 @@ def test_budgets_are_those_of_the_library_with_the_best_designs(budgeted: StudyR
     assert (found.layout, found.index, found.method, found.at_most) == ("serial", "J1", "expected-value", True)
     c = {row["layout"]: float(row["c [N s/m]"]) for row in rows(budgeted)}
     designs = [study.design(name).with_values({"c": c[name]}) for name in ("serial", "plain")]
-    expected = budget(*designs, study.index("J1"), parameter="h", method=ROADS)
+    expected = break_even(*designs, study.index("J1"), parameter="h", method=ROADS)
     assert (found.value, found.standard_error, found.status) == (expected.value, expected.standard_error, "ok")
     (row,) = rows(budgeted, "budgets.csv")
     assert (row["value"], row["better"], row["status"]) == (repr(expected.value), "below", "ok")
@@ -192,7 +192,9 @@ def test_threads_change_no_digit(study: Study) -> None:
 def test_a_search_by_simulation_says_what_it_gains_over_the_best_linear_design(study: Study) -> None:
     simulated = replace(study, optimise="expected-value", evaluate=("expected-value",), realisations=2)
     outcome = run_case(simulated, Case("serial", "J1"))
-    expected = optimise(study.design("serial"), study.index("J1"), ExpectedValue(realisations=2, jobs=1)).over_linear
+    expected = optimise(
+        study.design("serial"), study.index("J1"), ExpectedValue(realisations=2, jobs=1)
+    ).gain_over_linear
     assert expected is not None
     assert outcome.over_linear == (-expected.percent, expected.percent_error)
     assert outcome.over_linear[0] >= 0.0

@@ -17,7 +17,7 @@ import xarray as xr
 from campaigns import sampled
 
 from inerter.errors import StudyError
-from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.study.cases import Outcome, cases
 from inerter.files.study.checking import check_study
 from inerter.files.study.journal import journal_of, outcomes
@@ -235,7 +235,7 @@ def test_journal_cut_before_its_first_line_begins_anew(tmp_path: Path, text: str
 def test_folder_in_use_is_refused(tmp_path: Path) -> None:
     study = load_study(write(tmp_path, points=2))
     run_study(study, tmp_path / "out")
-    with claimed(Intent(tmp_path / "out", "run", result_names(), resume=True)):
+    with open_results(WriteMode(tmp_path / "out", "run", result_names(), resume=True)):
         for options in ({"force": True}, {"resume": True}, {}):
             with pytest.raises(StudyError, match=r"another run is writing|is not empty"):
                 run_study(study, tmp_path / "out", **options)

@@ -42,7 +42,7 @@ def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
     assert (first.layout, second.layout) == ("S1", "S2")
     best = found.data.sel(layout="S2", index="J1").squeeze("method")
     values = dict(zip(("c", "b"), best["parameter_value"].values.tolist(), strict=True))
-    by_hand = it.tolerance(
+    by_hand = it.tolerance_analysis(
         found.study.design("S2").with_values(values),
         it.RideComfort(found.study.road),
         it.Norm(),
@@ -51,7 +51,7 @@ def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
     )
     assert second.numbers["mean"] == by_hand.mean
     assert second.numbers["quantile"] == by_hand.quantile(0.95)
-    assert second.effects == {name: [by_hand.main[name], by_hand.total[name]] for name in ("c", "b")}
+    assert second.effects == {name: [by_hand.first_order[name], by_hand.total_order[name]] for name in ("c", "b")}
     assert list(first.effects) == ["c"]
     with (found.folder / "tolerances.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -85,7 +85,9 @@ def test_a_tolerance_survives_being_written_and_resumed(found: StudyResult, tmp_
 def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     fixed = FREE.replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "30 kg"')
     study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)
-    best = it.robust(study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0)
+    best = it.optimise_robust(
+        study.design("S1"), it.RideComfort(study.road), it.Norm(), spread={"c": 0.1}, quantile=0.9, seed=0
+    )
     asked = study.resolve_index("J1", "S1")
     assert isinstance(asked, it.Quantile)
     assert it.evaluate(best.design, asked.apart, it.Norm()).value == best.value
@@ -114,7 +116,7 @@ def test_a_tied_value_scatters_by_its_own_name(tmp_path: Path) -> None:
         k2 = 1.0 / (1.0 / 30e3 - 1.0 / values["k1"])
         strut = it.Spring(values["k1"]) - it.Spring(k2, "k2") | it.Damper(values["c"])
         car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
-        by_hand = it.tolerance(car, it.RideComfort(study.road), it.Norm(), spread={"k2": 0.2}, seed=0)
+        by_hand = it.tolerance_analysis(car, it.RideComfort(study.road), it.Norm(), spread={"k2": 0.2}, seed=0)
         (one,) = found.answers
         assert one.numbers["mean"] == pytest.approx(by_hand.mean, rel=1e-9)
         if line:

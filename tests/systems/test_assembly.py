@@ -23,10 +23,10 @@ from inerter import (
     Spring,
     Strut,
     Tyre,
-    assemble,
     evaluate,
     frequency_response,
     hinf_norm,
+    state_space,
 )
 from inerter.errors import LinearSystemError, StatusKind
 from inerter.norms.stability import stability
@@ -81,7 +81,7 @@ def test_five_hundred_random_networks_in_both_cars(chunk):
         front, rear = random_network(rng), random_network(rng)
         for car, outputs in ((paper_quarter_car(front), QUARTER), (paper_half_car(front, rear), HALF)):
             omega = random_frequencies(rng)
-            system = assemble(car, outputs=outputs)
+            system = state_space(car, outputs=outputs)
             assert difference(solved(system, omega), car.mechanism(), system.inputs, outputs, omega) < 1e-9, seed
 
 
@@ -92,7 +92,7 @@ def test_random_networks_in_random_cars_by_the_public_frequency_response(chunk):
         front, rear = random_network(rng), random_network(rng)
         for car, outputs in ((random_quarter_car(rng, front), QUARTER), (random_half_car(rng, front, rear), HALF)):
             omega = random_frequencies(rng)
-            system = assemble(car, outputs=outputs)
+            system = state_space(car, outputs=outputs)
             G = frequency_response(system, omega)
             assert difference(G, car.mechanism(), system.inputs, outputs, omega) < 1e-9, seed
 
@@ -123,7 +123,7 @@ def test_degenerate_struts_in_both_cars(name):
     strut, rng = DEGENERATE[name], np.random.default_rng(0)
     for car, outputs in ((paper_quarter_car(strut), QUARTER), (paper_half_car(strut, strut), HALF)):
         omega = random_frequencies(rng, 40)
-        system = assemble(car, outputs=outputs)
+        system = state_space(car, outputs=outputs)
         assert difference(frequency_response(system, omega), car.mechanism(), system.inputs, outputs, omega) < 1e-9
 
 
@@ -149,18 +149,18 @@ def test_degenerate_struts_in_both_cars(name):
     ],
 )
 def test_no_more_states_than_energies(strut, order):
-    assert assemble(paper_quarter_car(strut), "road").order == order
+    assert state_space(paper_quarter_car(strut), "road").order == order
 
 
 @pytest.mark.parametrize("strut", [b, b - Inerter(20.0), k, k - Spring(1e5), b | k])
 def test_chains_of_one_kind_make_no_motion_of_their_own(strut):
     """A free node or a sum of elongations that stays constant would show up as a pole at zero."""
-    poles = np.linalg.eigvals(assemble(paper_quarter_car(strut), "road").A)
+    poles = np.linalg.eigvals(state_space(paper_quarter_car(strut), "road").A)
     assert np.abs(poles).min() > 1.0
 
 
 def twice(strut):
-    return assemble(paper_quarter_car(strut), outputs=QUARTER)
+    return state_space(paper_quarter_car(strut), outputs=QUARTER)
 
 
 @pytest.mark.parametrize(
@@ -225,7 +225,7 @@ def test_any_mechanism_agrees_with_the_nodal_solve(seed):
     rng = np.random.default_rng(seed)
     mechanism = three_axles(*(random_network(rng, depth=2, most=5) for _ in range(3)))
     omega = random_frequencies(rng, 30)
-    system = assemble(mechanism, outputs=OUTPUTS)
+    system = state_space(mechanism, outputs=OUTPUTS)
     assert difference(frequency_response(system, omega), mechanism, system.inputs, OUTPUTS, omega) < 1e-8
 
 
@@ -233,7 +233,7 @@ def test_any_mechanism_agrees_with_the_nodal_solve(seed):
 def test_no_passive_mechanism_is_unstable(seed):
     rng = np.random.default_rng(seed)
     for car in (random_quarter_car(rng, random_network(rng)), three_axles(*(random_network(rng) for _ in range(3)))):
-        assert stability(assemble(car)).kind is not StatusKind.UNSTABLE
+        assert stability(state_space(car)).kind is not StatusKind.UNSTABLE
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -241,7 +241,7 @@ def test_responses_are_reciprocal(seed):
     """The displacement at A for a force at B is that at B for a force at A (Maxwell and Betti)."""
     rng = np.random.default_rng(seed)
     car = random_half_car(rng, Spring(3e4) | random_network(rng), Spring(4e4) | random_network(rng))
-    system = assemble(car, ["sprung_force", "pitch_moment"], ["sprung_displacement", "pitch_displacement"])
+    system = state_space(car, ["sprung_force", "pitch_moment"], ["sprung_displacement", "pitch_displacement"])
     G = solved(system, random_frequencies(rng))
     scale = np.sqrt(np.abs(G[:, 0, 0] * G[:, 1, 1]))
     assert np.max(np.abs(G[:, 0, 1] - G[:, 1, 0]) / scale) < 1e-9
@@ -249,41 +249,43 @@ def test_responses_are_reciprocal(seed):
 
 def test_at_rest_the_tyres_carry_the_load():
     car = paper_half_car(k | c | b, Spring(3e4) | c - b)
-    G = frequency_response(assemble(car, "sprung_force", ["tyre_front_load", "tyre_rear_load"]), 0.0)[0, :, 0]
+    G = frequency_response(state_space(car, "sprung_force", ["tyre_front_load", "tyre_rear_load"]), 0.0)[0, :, 0]
     assert G.sum() == pytest.approx(1.0, rel=1e-10)  # in tension against an upward force
     assert G[0] * car.distance_front == pytest.approx(G[1] * car.distance_rear, rel=1e-10)
 
 
 def test_at_rest_a_force_is_carried_by_the_springs_in_series():
-    system = assemble(paper_quarter_car(k | c - b), "sprung_force", "sprung_displacement")
+    system = state_space(paper_quarter_car(k | c - b), "sprung_force", "sprung_displacement")
     assert frequency_response(system, 0.0)[0, 0, 0] == pytest.approx(1 / 4e4 + 1 / 120e3, rel=1e-12)
 
 
 def test_at_low_speed_the_car_follows_the_road():
-    system = assemble(paper_half_car(k | c, k | c), ["road_front", "road_rear"], ["sprung_velocity", "pitch_velocity"])
+    system = state_space(
+        paper_half_car(k | c, k | c), ["road_front", "road_rear"], ["sprung_velocity", "pitch_velocity"]
+    )
     G = frequency_response(system, 1e-9)[0].real
     np.testing.assert_allclose(G.sum(axis=1), [1.0, 0.0], atol=1e-9)
 
 
 def test_a_force_on_an_inerter_alone_meets_the_mass_and_the_inertance():
-    system = assemble(paper_quarter_car(b), "sprung_force", "sprung_acceleration")
+    system = state_space(paper_quarter_car(b), "sprung_force", "sprung_acceleration")
     expected = 1 / (181.75 + 60.0 * 25.0 / 85.0)  # far above the tyre's resonance
     assert abs(frequency_response(system, 1e6)[0, 0, 0]) == pytest.approx(expected, rel=1e-6)
 
 
 def test_what_linear_analysis_leaves_out_is_noted():
     screw = (Spring(1e6, "ks") | Damper(3200.0)) - Gap(1e-4, "play") - (b | Friction(10.0, "f"))
-    system = assemble(paper_quarter_car(k | c | screw | Damper(1.0, "idler") - Friction(2.0, "slip")))
+    system = state_space(paper_quarter_car(k | c | screw | Damper(1.0, "idler") - Friction(2.0, "slip")))
     for words in ("friction 'f'", "friction 'slip'", "gap 'play'", "'idler'"):
         assert any(words in note for note in system.notes)
-    plain = assemble(paper_quarter_car(k | c | (Spring(1e6) | Damper(3200.0)) - b))
+    plain = state_space(paper_quarter_car(k | c | (Spring(1e6) | Damper(3200.0)) - b))
     np.testing.assert_allclose(
         np.sort_complex(np.linalg.eigvals(system.A)), np.sort_complex(np.linalg.eigvals(plain.A))
     )
 
 
 def test_names_are_one_to_one_with_rows_and_columns():
-    system = assemble(three_axles(k | c - b, k | c - b, k - Spring(5.0) | c - b))
+    system = state_space(three_axles(k | c - b, k | c - b, k - Spring(5.0) | c - b))
     assert len(set(system.states)) == system.order
     assert system.B.shape == (system.order, len(system.inputs))
     assert system.C.shape == (len(system.outputs), system.order)
@@ -291,50 +293,52 @@ def test_names_are_one_to_one_with_rows_and_columns():
 
 def test_springs_that_share_a_chain_make_states_of_different_names():
     strut = ((k - c) | (k - b) | Spring(2e4)) - Spring(3e3) | c
-    assert len(set(assemble(paper_quarter_car(strut)).states)) == assemble(paper_quarter_car(strut)).order
+    assert len(set(state_space(paper_quarter_car(strut)).states)) == state_space(paper_quarter_car(strut)).order
 
 
 def test_inputs_and_outputs_come_in_the_order_asked_for():
     car = paper_half_car(k | c, k | c)
-    whole = assemble(car)
+    whole = state_space(car)
     inputs, outputs = ["pitch_moment", "road_front"], ["tyre_rear_load", "sprung_velocity"]
-    part = assemble(car, inputs, outputs)
+    part = state_space(car, inputs, outputs)
     assert (list(part.inputs), list(part.outputs)) == (inputs, outputs)
     np.testing.assert_allclose(
-        frequency_response(part, [3.0, 30.0]), frequency_response(whole.select(inputs, outputs), [3.0, 30.0]), rtol=1e-9
+        frequency_response(part, [3.0, 30.0]),
+        frequency_response(whole.subsystem(inputs, outputs), [3.0, 30.0]),
+        rtol=1e-9,
     )
 
 
 def test_a_road_that_is_no_input_lies_still():
     car = paper_half_car(k | c, k | c)
-    alone = assemble(car, "road_front", "tyre_rear_load")
+    alone = state_space(car, "road_front", "tyre_rear_load")
     assert hinf_norm(alone).value == pytest.approx(
-        hinf_norm(assemble(car).select("road_front", "tyre_rear_load")).value
+        hinf_norm(state_space(car).subsystem("road_front", "tyre_rear_load")).value
     )
 
 
 def test_a_second_system_of_units_changes_no_response():
     """Masses in t, lengths in mm and forces in N: a displacement per force is then 1000 times larger."""
     si = frequency_response(
-        assemble(paper_quarter_car(k | c - b), "sprung_force", "sprung_displacement"), [1.0, 10.0, 99.0]
+        state_space(paper_quarter_car(k | c - b), "sprung_force", "sprung_displacement"), [1.0, 10.0, 99.0]
     )
     car = type(paper_quarter_car(k))(0.18175, 0.025, 120.0, Spring(40.0) | Damper(2.0) - Inerter(0.060))
-    mm = frequency_response(assemble(car, "sprung_force", "sprung_displacement"), [1.0, 10.0, 99.0])
+    mm = frequency_response(state_space(car, "sprung_force", "sprung_displacement"), [1.0, 10.0, 99.0])
     np.testing.assert_allclose(mm, 1000.0 * si, rtol=1e-11)
 
 
 def test_unknown_inputs_and_outputs_are_refused_with_the_known_ones():
     with pytest.raises(LinearSystemError, match=r"Unknown output 'nose_load'.*tyre_front_load"):
-        assemble(paper_half_car(k | c, k | c), outputs=["nose_load"])
+        state_space(paper_half_car(k | c, k | c), outputs=["nose_load"])
     with pytest.raises(LinearSystemError, match=r"Unknown input 'wind'.*road_rear"):
-        assemble(paper_half_car(k | c, k | c), inputs=["wind"])
+        state_space(paper_half_car(k | c, k | c), inputs=["wind"])
 
 
 def test_matrices_without_a_certain_digit_are_refused_and_the_indices_are_there_all_the_same():
     strut = Spring(1e5) | Damper(1e3) - Inerter(1e300)
     car = QuarterCar(181.75, 25.0, 120e3, strut)
     with pytest.raises(LinearSystemError, match="no digit of its matrices is certain"):
-        assemble(car)
+        state_space(car)
     rigid = QuarterCar(181.75, 25.0, 120e3, Spring(1e5) | Damper(1e3))  # so heavy an inerter is a fixed end
     comfort = RideComfort(Road(roughness=5e-7, speed=25.0))
     assert evaluate(car, comfort, Norm()).value == pytest.approx(evaluate(rigid, comfort, Norm()).value, rel=1e-9)

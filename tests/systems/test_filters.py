@@ -11,8 +11,8 @@ from filtered import iso_2631_wk, random_filter
 import inerter as it
 from inerter import Filter, LinearSystem
 from inerter.errors import LinearSystemError, PerformanceIndexError
-from inerter.indices.question import Combination, Question
-from inerter.vehicle.mechanism import Weighted
+from inerter.indices.question import Combination, IndexDefinition
+from inerter.vehicle.mechanism import OutputWeight
 
 # Frequency [Hz] and factor of Wk, ISO 2631-1:1997, Table 3
 WK = [(0.5, 0.418), (1.0, 0.482), (2.0, 0.531), (4.0, 0.967), (8.0, 1.036), (16.0, 0.768), (31.5, 0.405), (80.0, 0.132)]
@@ -105,11 +105,11 @@ def test_what_is_no_filter_is_refused_in_a_sentence(case):
 
 
 def question(outputs, passed):
-    return Question(outputs, Combination.SUM_OF_RMS, it.Road(1e-6, 20.0), "N", filter=passed)
+    return IndexDefinition(outputs, Combination.SUM_OF_RMS, it.Road(1e-6, 20.0), "N", filter=passed)
 
 
 def test_a_question_takes_a_filter_for_all_outputs_or_one_for_each():
-    two, one = (Weighted("a"), Weighted("b")), Filter([1.0], [1.0, 3.0])
+    two, one = (OutputWeight("a"), OutputWeight("b")), Filter([1.0], [1.0, 3.0])
     assert question(two, None).filters == (None, None)
     assert question(two, one).filters == (one, one)
     assert question(two, (None, one)).filters == (None, one)
@@ -117,6 +117,6 @@ def test_a_question_takes_a_filter_for_all_outputs_or_one_for_each():
     with pytest.raises(PerformanceIndexError, match="1 filters for 2 outputs"):
         question(two, (one,))
     with pytest.raises(PerformanceIndexError, match="each output once"):
-        question((Weighted("a"), Weighted("a")), (one, None))
+        question((OutputWeight("a"), OutputWeight("a")), (one, None))
     with pytest.raises(LinearSystemError, match=r"Filter\(numerator, denominator\) or a LinearSystem"):
         question(two, "Wk")

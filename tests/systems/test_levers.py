@@ -12,7 +12,7 @@ from quadrature import h2_by_quadrature
 from strategies import random_network
 
 import inerter as it
-from inerter import Coordinate, Damper, Force, Friction, Mechanism, RoadInput, Spring, Strut, Tyre, assemble
+from inerter import Coordinate, Damper, Force, Friction, Mechanism, RoadInput, Spring, Strut, Tyre, state_space
 from inerter.systems.piecewise import piecewise
 
 OUTPUTS = ("body_acceleration", "roll_acceleration", "pitch_acceleration", "bar_travel", "diagonal_travel", "bar_force")
@@ -78,7 +78,7 @@ def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_ro
         rng = np.random.default_rng([41, seed])
         mechanism = full_car(rng)
         omega = 2 * np.pi * 10 ** rng.uniform(-1, 2, 10)
-        system = assemble(mechanism, outputs=OUTPUTS)
+        system = state_space(mechanism, outputs=OUTPUTS)
         G, nodal = it.frequency_response(system, omega), Nodal(mechanism, omega)
         for i, output in enumerate(OUTPUTS):
             for kind in (slice(0, 4), slice(4, 5)):
@@ -95,7 +95,7 @@ def test_norms_of_dependent_struts_are_those_of_quadrature(seed):
         def response(omega, output=output):
             return np.array(Nodal(mechanism, omega).response(output, "road"), complex)[:, None]
 
-        norm = it.h2_norm(assemble(mechanism, "road", output))
+        norm = it.h2_norm(state_space(mechanism, "road", output))
         assert norm == pytest.approx(h2_by_quadrature(response, [0.0], 1e4), rel=1e-8)
 
 
@@ -105,7 +105,7 @@ def test_a_simulated_impulse_has_the_energy_of_the_norm():
     run = it.simulate(mechanism, road=it.step(1.0, 0.0005), duration=12.0, step=5e-4, energy=False)
     for output in ("body_acceleration", "diagonal_travel"):
         squared = float(np.trapezoid(run[output] ** 2, run.time))
-        assert math.sqrt(squared) == pytest.approx(it.h2_norm(assemble(mechanism, "road", output)), rel=1e-3)
+        assert math.sqrt(squared) == pytest.approx(it.h2_norm(state_space(mechanism, "road", output)), rel=1e-3)
 
 
 def beam(rng, first, second):
@@ -136,7 +136,7 @@ def test_infinite_is_infinite_however_levers_are_rounded(seed):
     found = []
     for mechanism in (alike, apart):
         systems = [
-            assemble(mechanism, name, output)
+            state_space(mechanism, name, output)
             for name in ("road", "load", "turn")
             for output in ("body_acceleration", "pitch_velocity", "pitch_displacement", "two_travel")
         ]
@@ -181,7 +181,7 @@ def test_matrices_of_struts_that_nearly_depend_on_each_other_are_right_or_refuse
     omega = 2 * np.pi * 10 ** rng.uniform(-1, 2, 8)
     outputs = ("body_acceleration", "roll_acceleration", "bar_force", "diagonal_force")
     try:
-        system = assemble(mechanism, ["road", "load"], outputs)
+        system = state_space(mechanism, ["road", "load"], outputs)
     except it.InerterError as error:
         assert "depends on those of others up to a relative difference of" in str(error)  # noqa: PT017 - either is right
         assert distance < 1e-6

@@ -17,7 +17,7 @@ from inerter.networks.transform import map_elements
 from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import force_of, main_outputs, stroke_of, velocity_of
 from inerter.systems.piecewise import piecewise
-from inerter.vehicle.mechanism import Measures, Weighted
+from inerter.vehicle.mechanism import OutputWeight, PerformanceOutputs
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 
@@ -42,14 +42,14 @@ def members(seed, count):
             made = with_friction_and_gaps(rng, mechanism) if i % 3 else mechanism
             try:
                 linear_graph(made)
-                it.assemble(made)
+                it.state_space(made)
                 yield made, piecewise(made)
             except MechanismError:
                 continue
 
 
 def asking(mechanism, name):
-    return replace(mechanism, measures=Measures(comfort=(Weighted(name),)))
+    return replace(mechanism, measures=PerformanceOutputs(comfort=(OutputWeight(name),)))
 
 
 def misspelt(rng, name):
@@ -81,14 +81,14 @@ def test_all_analyses_know_the_same_names(seed):
         gone = {b.label for b in full_graph(mechanism).branches} - {b.label for b in linear_graph(mechanism).branches}
         unknown = {called(label) for label in gone for called in (force_of, velocity_of, stroke_of)}
         linear = [name for name in names if name not in unknown or name in main_outputs(mechanism)]
-        assert it.assemble(mechanism, [road.name for road in mechanism.roads], linear).outputs == tuple(linear)
+        assert it.state_space(mechanism, [road.name for road in mechanism.roads], linear).outputs == tuple(linear)
         for name in set(names) - set(linear):
             with pytest.raises(
                 LinearSystemError, match="in linear analysis, which neglects friction and treats gaps as closed"
             ):
-                it.assemble(mechanism, outputs=name)
+                it.state_space(mechanism, outputs=name)
         assert set(main_outputs(mechanism)) <= set(linear)
-        assert set(it.assemble(mechanism).outputs) <= set(main_outputs(mechanism))
+        assert set(it.state_space(mechanism).outputs) <= set(main_outputs(mechanism))
         looked_at, left_out = looked_at + 1, left_out + len(names) - len(linear)
     assert looked_at >= 10
     assert left_out >= 10
@@ -98,7 +98,7 @@ def all_who_are_asked(mechanism, name):
     signal, times = it.sine(1e-3, 1.0), {"duration": 2e-3, "step": 1e-3, "speed": 20.0}
     run, car = it.simulate(mechanism, road=signal, **times), asking(mechanism, name)
     return (
-        lambda: it.assemble(mechanism, outputs=name),
+        lambda: it.state_space(mechanism, outputs=name),
         lambda: run[name],
         lambda: it.simulate_many([mechanism], outputs=[name], road=[signal], **times),
         lambda: it.evaluate(car, it.RideComfort(ROAD), it.Norm()),

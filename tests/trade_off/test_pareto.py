@@ -78,7 +78,7 @@ MEMBERS = list(product(KINDS, range(3), range(3), [20_000, 100_000]))  # with so
 def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(other):
     """The least static stiffness has any damper."""
     car, indices = paper_quarter_car(strut("S3 k")), [it.static_stiffness("strut"), other]
-    front = it.pareto(car, indices, NORM, points=9, seed=0)
+    front = it.pareto_front(car, indices, NORM, points=9, seed=0)
     softest = paper_quarter_car(it.Spring(3e4) | strut("S3").parts[1])
     least = it.optimise(softest, other, NORM, seed=0).value
     assert front.values[0] == pytest.approx([3e4, least], rel=1e-6)
@@ -95,7 +95,7 @@ def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(oth
 def test_no_random_design_dominates_a_point(kind, pair, number, count):
     car, indices = random_quarter_car(np.random.default_rng([number, 77]), strut(kind)), list(TWO[pair])
     points = 9 if count == 20_000 else 15
-    front = it.pareto(car, indices, NORM, points=points)
+    front = it.pareto_front(car, indices, NORM, points=points)
     assert all(status.ok for status in front.statuses)
     check_undominated(front, random_designs(car, indices, count))
     check_undominated(front, random_designs(car, indices, count // 5, 1, front.parameters))
@@ -121,7 +121,7 @@ def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
     car = random_quarter_car(rng, strut(kind))
     other = [J1, J3, J5, it.SuspensionTravel(ROAD), J1, it.ElementVelocity(ROAD, "c")][int(rng.integers(6))]
     indices = [it.ElementForce(ROAD, "c"), other][:: -1 if rng.random() < 0.5 else 1]
-    front = it.pareto(car, indices, NORM, points=15)
+    front = it.pareto_front(car, indices, NORM, points=15)
     check_undominated(front, random_designs(car, indices, 2_000))
     across = [gap for i, gap in enumerate(gaps(front)) if (i, i + 1) not in front.jumps]
     assert len(front.values) in (1, 15)
@@ -131,18 +131,18 @@ def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
 
 def test_each_point_is_a_design_that_can_be_taken_on():
     car = paper_quarter_car(strut("S3"))
-    front = it.pareto(car, [J1, J3], NORM, points=5)
+    front = it.pareto_front(car, [J1, J3], NORM, points=5)
     for design, parameters, values in zip(front.designs, front.parameters, front.values, strict=True):
         assert design == car.with_values(parameters)
         assert [it.evaluate(design, index, NORM).value for index in (J1, J3)] == pytest.approx(values, rel=1e-12)
-    again = it.pareto(car, [J1, J3], NORM, points=5)
+    again = it.pareto_front(car, [J1, J3], NORM, points=5)
     assert np.array_equal(front.values, again.values)
 
 
 @pytest.mark.parametrize("share", sampled([0.25, 0.75], [0.25]))
 def test_points_are_optima_with_the_other_criterion_as_a_limit(share):
     car = paper_quarter_car(strut("S3 k"))
-    front = it.pareto(car, [J1, J5], NORM, points=9)
+    front = it.pareto_front(car, [J1, J5], NORM, points=9)
     i = int(share * 8)
     best = it.optimise(car, J1, NORM, subject_to=[it.at_most(J5, float(front.values[i, 1]))])
     assert best.value == pytest.approx(front.values[i, 0], rel=1e-5)
@@ -150,7 +150,7 @@ def test_points_are_optima_with_the_other_criterion_as_a_limit(share):
 
 def test_limits_hold_along_a_front():
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 2e3, "b")))
-    front = it.pareto(car, [J1, J5], NORM, points=5, subject_to=[it.at_most(J3, 540.0)])
+    front = it.pareto_front(car, [J1, J5], NORM, points=5, subject_to=[it.at_most(J3, 540.0)])
     for design, held in zip(front.designs, front.limits, strict=True):
         value = it.evaluate(design, J3, NORM).value
         assert value <= 540.0 * (1.0 + 1e-6)
@@ -207,7 +207,7 @@ class Made:
 @pytest.mark.parametrize("count", sampled([15, 25, 50], [25]))
 def test_a_front_in_pieces_says_where_it_leaps(count):
     car = paper_quarter_car(it.Spring(1e5) | it.Damper(it.free(1e-3, 1.0, "x")))
-    front = it.pareto(car, [Made(0), Made(1)], NORM, points=count)
+    front = it.pareto_front(car, [Made(0), Made(1)], NORM, points=count)
     x = np.array([values["x"] for values in front.parameters])
     every = np.linspace(1e-3, 1.0, 200_001)
     low = np.minimum.accumulate(Made(1).function(every)[0])
@@ -226,13 +226,13 @@ def test_a_front_in_pieces_says_where_it_leaps(count):
 def test_criteria_that_do_not_contradict_each_other():
     car = paper_quarter_car(strut("S3"))
     slow = it.RideComfort(it.Road(roughness=5e-7, speed=10.0))
-    front = it.pareto(car, [J1, slow], NORM, points=7)
+    front = it.pareto_front(car, [J1, slow], NORM, points=7)
     assert front.values.shape == (1, 2)
     assert front.values[0, 0] == pytest.approx(it.optimise(car, J1, NORM).value, rel=1e-6)
 
 
 def test_a_front_that_no_design_reaches():
-    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
+    front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
     assert front.values.shape == (0, 2)
     assert front.status.kind is it.StatusKind.INFEASIBLE
     assert front.designs == ()
@@ -243,7 +243,7 @@ def test_a_front_that_no_design_reaches():
 @pytest.mark.parametrize("kind", sampled(["S3", "S3 k", "four"], kept=0))
 def test_three_criteria(kind):
     car = paper_quarter_car(strut(kind))
-    front = it.pareto(car, [J1, J3, J5], NORM, points=15)
+    front = it.pareto_front(car, [J1, J3, J5], NORM, points=15)
     check_undominated(front, random_designs(car, [J1, J3, J5], 20_000), 1e-6)
     check_undominated(front, random_designs(car, [J1, J3, J5], 5_000, 1, front.parameters), 1e-6)
     for i, index in enumerate((J1, J3, J5)):
@@ -252,7 +252,7 @@ def test_three_criteria(kind):
 
 
 def test_hypervolume_of_two_criteria_is_an_area():
-    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=9)
+    front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=9)
     reference = front.nadir * 1.05
     rng = np.random.default_rng(0)
     low, size = front.ideal, reference - front.ideal
@@ -269,7 +269,7 @@ def test_hypervolume_of_two_criteria_is_an_area():
 @pytest.mark.marathon
 def test_hypervolume_of_three_criteria_is_a_volume():
     pytest.importorskip("moocore", reason="the volume of three criteria needs moocore (extra fronts)")
-    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3, J5], NORM, points=6)
+    front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J3, J5], NORM, points=6)
     check_undominated(front, random_designs(paper_quarter_car(strut("S3")), [J1, J3, J5], 2_000), 1e-6)
     reference = front.nadir * 1.05
     rng = np.random.default_rng(0)
@@ -284,7 +284,7 @@ def test_hypervolume_of_three_criteria_is_a_volume():
 
 
 def test_the_knee_is_farthest_from_the_line_of_the_ends():
-    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J5], NORM, points=11)
+    front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J5], NORM, points=11)
     a, z = front.normalised[0], front.normalised[-1]
     along = (z - a) / np.linalg.norm(z - a)
     away = [np.linalg.norm((u - a) - ((u - a) @ along) * along) for u in front.normalised]
@@ -295,7 +295,7 @@ def test_the_knee_is_farthest_from_the_line_of_the_ends():
 def test_a_front_of_what_is_simulated():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
-    quick = it.pareto(car, [J1, J3], it.StatisticalLinearisation(), points=3)
+    quick = it.pareto_front(car, [J1, J3], it.StatisticalLinearisation(), points=3)
     assert len(quick.values) == 3
     assert np.all(np.diff(quick.values[:, 1]) < 0.0)
 
@@ -303,7 +303,10 @@ def test_a_front_of_what_is_simulated():
 @pytest.mark.campaign
 def test_a_front_without_gradients_is_the_same():
     car = paper_quarter_car(strut("S3"))
-    exact, found = it.pareto(car, [J1, J5], NORM, points=3), it.pareto(car, [J1, J5], WithoutGradients(), points=3)
+    exact, found = (
+        it.pareto_front(car, [J1, J5], NORM, points=3),
+        it.pareto_front(car, [J1, J5], WithoutGradients(), points=3),
+    )
     assert found.values == pytest.approx(exact.values, rel=2e-3)
 
 
@@ -311,7 +314,7 @@ def test_a_front_without_gradients_is_the_same():
 def test_a_front_of_what_is_simulated_on_roads():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
     car = paper_quarter_car(it.Spring(12e4) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
-    front = it.pareto(car, [J1, J3], it.ExpectedValue(realisations=2), points=3)
+    front = it.pareto_front(car, [J1, J3], it.ExpectedValue(realisations=2), points=3)
     assert np.all(np.diff(front.values[:, 0]) > 0.0)
     assert np.all(np.diff(front.values[:, 1]) < 0.0)
 
@@ -323,7 +326,7 @@ def test_a_front_of_a_half_car_over_conditions():
         it.Spring(5e4) | it.Damper(it.tied("c", factor=0.8)),
     )
     car = random_half_car(np.random.default_rng(4), front, rear)
-    found = it.pareto(car, [use.mean(J1), use.worst(J3)], NORM, points=5)
+    found = it.pareto_front(car, [use.mean(J1), use.worst(J3)], NORM, points=5)
     check_undominated(found, random_designs(car, [use.mean(J1), use.worst(J3)], 300))
 
 
@@ -346,10 +349,10 @@ def test_a_front_of_a_half_car_over_conditions():
 def test_fronts_that_cannot_be(given, said):
     asked = {"vehicle": paper_quarter_car(strut("S3")), "indices": [J1, J3], "method": NORM, **given}
     with pytest.raises(it.InerterError, match=said):
-        it.pareto(**asked)
+        it.pareto_front(**asked)
 
 
 def test_a_reference_that_cannot_be():
-    front = it.pareto(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=3)
+    front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J3], NORM, points=3)
     with pytest.raises(it.InerterError, match="must have 2 numbers"):
         front.hypervolume([1.0])

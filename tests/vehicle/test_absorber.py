@@ -93,7 +93,7 @@ def random_force(mu: float) -> tuple[float, float, float]:
 @pytest.mark.parametrize(("mu", "beta"), MASSES)
 def test_the_mean_square_under_a_white_force(mu: float, beta: float) -> None:
     least, k, c = random_force(mu + beta)
-    found = it.h2_norm(it.assemble(absorber(mu, beta, k, c), "primary_force", "primary_displacement"))
+    found = it.h2_norm(it.state_space(absorber(mu, beta, k, c), "primary_force", "primary_displacement"))
     assert found**2 == pytest.approx(mean_square(mu, beta, k, c, 0.0), rel=1e-8)
     assert found**2 == pytest.approx(least, rel=1e-8)
     for step in (0.99, 1.01):  # it is the least

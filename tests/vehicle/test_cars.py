@@ -17,9 +17,9 @@ from inerter import (
     Road,
     Spring,
     Strut,
-    assemble,
     free,
     frequency_response,
+    state_space,
 )
 from inerter.indices.question import Combination
 
@@ -36,10 +36,10 @@ def test_a_lever_multiplies_an_element_by_its_square(lever):
         )
 
     omega = np.array([0.5, 20.0, 300.0])
-    levered = frequency_response(assemble(rigid(k | c - b, lever), outputs="arm_displacement"), omega)
+    levered = frequency_response(state_space(rigid(k | c - b, lever), outputs="arm_displacement"), omega)
     square = lever**2
     direct = Spring(60e3 * square) | Damper(3e3 * square) - Inerter(50.0 * square)
-    expected = frequency_response(assemble(rigid(direct, 1.0), outputs="arm_displacement"), omega)
+    expected = frequency_response(state_space(rigid(direct, 1.0), outputs="arm_displacement"), omega)
     np.testing.assert_allclose(levered, expected, rtol=1e-10)
 
 
@@ -55,8 +55,8 @@ def test_a_strut_may_be_mounted_upside_down(sign):
     turned = spring_mass({"z": 1.0}, {"a": 1.0}) if sign < 0 else spring_mass({"a": 1.0}, {"z": 1.0})
     plain = spring_mass({"a": 1.0}, {"z": 1.0})
     outputs, omega = ["a_displacement", "s_force", "s_travel"], np.array([1.0, 50.0])
-    ratio = frequency_response(assemble(turned, outputs=outputs), omega) / frequency_response(
-        assemble(plain, outputs=outputs), omega
+    ratio = frequency_response(state_space(turned, outputs=outputs), omega) / frequency_response(
+        state_space(plain, outputs=outputs), omega
     )
     np.testing.assert_allclose(ratio[:, :, 0], [[1.0, sign, sign]] * 2, rtol=1e-10)
 
@@ -64,7 +64,7 @@ def test_a_strut_may_be_mounted_upside_down(sign):
 @given(networks(depth=2, most=5))
 def test_the_force_of_a_strut_is_its_admittance_times_its_velocity(network):
     omega = np.array([0.7, 9.0, 120.0])
-    system = assemble(paper_quarter_car(network), "road", ["strut_force", "sprung_velocity", "unsprung_velocity"])
+    system = state_space(paper_quarter_car(network), "road", ["strut_force", "sprung_velocity", "unsprung_velocity"])
     force, upper, lower = frequency_response(system, omega)[:, :, 0].T
     size = np.abs(network.admittance(1j * omega)) * (np.abs(upper) + np.abs(lower))
     difference = np.abs(force - network.admittance(1j * omega) * (upper - lower))
@@ -75,7 +75,7 @@ def test_forces_balance_in_every_motion():
     """Newton's law for the body, and for the pitch with the lever arms."""
     car = paper_half_car(k | c - b, k | c | b)
     outputs = ["sprung_acceleration", "pitch_acceleration", "front_force", "rear_force"]
-    heave, pitch, front, rear = frequency_response(assemble(car, "road_front", outputs), [3.0, 40.0])[:, :, 0].T
+    heave, pitch, front, rear = frequency_response(state_space(car, "road_front", outputs), [3.0, 40.0])[:, :, 0].T
     np.testing.assert_allclose(car.sprung_mass * heave, -(front + rear), rtol=1e-10)
     np.testing.assert_allclose(
         car.pitch_inertia * pitch, -car.distance_front * front + car.distance_rear * rear, rtol=1e-9

@@ -126,7 +126,7 @@ def test_statistical_linearisation_takes_a_free_mass_like_a_number() -> None:
 
 def test_free_masses_and_scatter() -> None:
     car = it.QuarterCar(it.free(200.0, 300.0, name="m"), 35.0, 150e3, STRUT)
-    scattered = it.tolerance(
+    scattered = it.tolerance_analysis(
         car.with_values({"m": 250.0}), it.RideComfort(ROAD), NORM, spread={"sprung_mass": 0.1}, samples=64
     )
     assert scattered.quantile(0.05) < it.evaluate(car.with_values({"m": 250.0}), it.RideComfort(ROAD), NORM).value

@@ -93,12 +93,12 @@ def test_frequency_responses_are_those_of_matrices_written_by_hand(seed: int) ->
     roads = [f"road_{axle}_{side}" for axle, side in WHEELS]
     names = ["sprung", "pitch", "roll", *(f"unsprung_{axle}_{side}" for axle, side in WHEELS)]
     omega = np.array([0.5, 7.0, 60.0, 400.0])
-    found = it.frequency_response(it.assemble(full, roads, [f"{name}_velocity" for name in names]), omega)
+    found = it.frequency_response(it.state_space(full, roads, [f"{name}_velocity" for name in names]), omega)
     for response, w in zip(found, omega, strict=True):  # velocities over the roads' velocities
         expected, _ = by_hand(full, w)
         np.testing.assert_allclose(response, expected, atol=1e-11 * np.abs(expected).max(), rtol=1e-9)
     forces = ["sprung_force", "pitch_moment", "roll_moment"]
-    found = it.frequency_response(it.assemble(full, forces, [f"{name}_velocity" for name in names]), omega)
+    found = it.frequency_response(it.state_space(full, forces, [f"{name}_velocity" for name in names]), omega)
     for response, w in zip(found, omega, strict=True):
         expected = 1j * w * by_hand(full, w)[1]
         np.testing.assert_allclose(response, expected, atol=1e-11 * np.abs(expected).max(), rtol=1e-9)

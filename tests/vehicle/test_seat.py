@@ -29,8 +29,8 @@ def test_of_no_mass_it_gives_its_car(car: str) -> None:
         plain = it.evaluate(vehicle, index, it.Norm()).value
         assert it.evaluate(seated, index, it.Norm()).value == pytest.approx(plain, rel=1e-8)
     roads = [road.name for road in vehicle.mechanism().roads]
-    floor = it.h2_norm(it.assemble(vehicle, roads, "sprung_acceleration"))
-    occupant = it.h2_norm(it.assemble(seated, roads, "occupant_acceleration"))
+    floor = it.h2_norm(it.state_space(vehicle, roads, "sprung_acceleration"))
+    occupant = it.h2_norm(it.state_space(seated, roads, "occupant_acceleration"))
     assert occupant == pytest.approx(floor, rel=1e-8)
 
 
@@ -46,7 +46,7 @@ def test_the_occupant_of_a_full_car_meets_the_floor_at_his_place() -> None:
     seated = it.Seat(FULL, mass, CUSHION, {"sprung": 1.0, "pitch": ahead, "roll": left})
     omega = np.array([2.0, 12.0, 40.0])
     names = ["occupant_velocity", "sprung_velocity", "pitch_velocity", "roll_velocity", "seat_force"]
-    found = it.frequency_response(it.assemble(seated, "road_front_left", names), omega)[:, :, 0].T
+    found = it.frequency_response(it.state_space(seated, "road_front_left", names), omega)[:, :, 0].T
     s = 1j * omega
     occupant, sprung, pitch, roll, force = found
     floor = sprung + ahead * pitch + left * roll

@@ -84,9 +84,9 @@ def test_a_free_value_that_does_nothing_is_still_told_of() -> None:
 
 
 def test_a_point_moves_as_its_port() -> None:
-    whole = replace(pair(1)[1], points=(it.Point("driver", {"sprung": 1.0, "pitch": 0.3, "roll": 0.4}),))
+    whole = replace(pair(1)[1], points=(it.TrackedPoint("driver", {"sprung": 1.0, "pitch": 0.3, "roll": 0.4}),))
     names = ["driver_acceleration", "sprung_acceleration", "pitch_acceleration", "roll_acceleration"]
-    driver, heave, pitch, roll = it.frequency_response(it.assemble(whole, "road_front_left", names), [3.0, 30.0])[
+    driver, heave, pitch, roll = it.frequency_response(it.state_space(whole, "road_front_left", names), [3.0, 30.0])[
         ..., 0
     ].T
     np.testing.assert_allclose(driver, heave + 0.3 * pitch + 0.4 * roll, rtol=1e-9)
@@ -94,4 +94,4 @@ def test_a_point_moves_as_its_port() -> None:
     expected = run["sprung_acceleration"] + 0.3 * run["pitch_acceleration"] + 0.4 * run["roll_acceleration"]
     np.testing.assert_allclose(run["driver_acceleration"], expected, atol=1e-9 * np.abs(expected).max())
     with pytest.raises(it.InerterError, match="point 'driver': unknown coordinate 'yaw'"):
-        replace(whole, points=(it.Point("driver", {"yaw": 1.0}),))
+        replace(whole, points=(it.TrackedPoint("driver", {"yaw": 1.0}),))

@@ -15,7 +15,7 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import WorkError
-from inerter.work.pool import KILLS, pooled
+from inerter.work.pool import KILLS, worker_pool
 
 STUDY = study_text(
     'indices = ["J1", "J3"]\noptimise = "norm"\nbudgets = ["b"]',
@@ -109,14 +109,14 @@ def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
 
 def test_an_executor_that_is_given_does_all_and_goes_on() -> None:
     executor = Elsewhere()
-    with pooled(executor=executor) as pool:
+    with worker_pool(executor=executor) as pool:
         pool.begin(int)
         assert sorted(pool.spread(abs, range(-5, 0))) == [1, 2, 3, 4, 5]
-        with pooled(executor=pool) as same:
+        with worker_pool(executor=pool) as same:
             assert same is pool
     assert executor.run == 5
     with ThreadPoolExecutor(1) as threads:
         for _ in range(2):
-            with pooled(executor=threads) as pool:
+            with worker_pool(executor=threads) as pool:
                 assert list(pool.spread(abs, [-1])) == [1]
         assert threads.submit(abs, -2).result() == 2

@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 from inerter.errors import WorkError
 from inerter.work import cluster
 from inerter.work.pieces import WORTH, ChunkResult, Cutter
-from inerter.work.pool import KILLS, Pool, _Start, pooled
+from inerter.work.pool import KILLS, Pool, _Start, worker_pool
 from inerter.work.processes import Processes, is_started
 from inerter.work.running import mapped, running_on
 
@@ -93,7 +93,7 @@ def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
         assert len(there) == 2
         for _ in range(2):
             assert set(pool.spread(eval, [PROCESS] * 20)) <= there
-        with pooled(executor=pool) as same:
+        with worker_pool(executor=pool) as same:
             assert same is pool
         assert active_children()
     assert none_left()

@@ -52,7 +52,7 @@ WORK: dict[str, Callable[[], object]] = {
     "search": lambda: it.optimise(car("b"), COMFORT, it.Norm()),
     "limits": lambda: it.optimise(car("b"), COMFORT, it.Norm(), subject_to=[LOAD]),
     "minimax": lambda: it.optimise(car("b"), it.LoadCarrying(), it.Norm()),
-    "front": lambda: it.pareto(car("b"), [COMFORT, LOAD.of], it.Norm(), points=3),
+    "front": lambda: it.pareto_front(car("b"), [COMFORT, LOAD.of], it.Norm(), points=3),
 }
 
 

@@ -94,7 +94,7 @@ def _method(name: str) -> dict[str, Any]:
     return {
         "name": name,
         "words": words_of(name),
-        "sees": kind.sees.name.lower(),
+        "sees": kind.nonlinearity_support.name.lower(),
         "searches": searches(name),
         "averages": averages(name),
         "settings": _fields(method_settings(name)),

@@ -26,10 +26,10 @@ from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
-from inerter.optimisation.budget import budget as find_budget
+from inerter.optimisation.budget import break_even as find_break_even
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
-from inerter.scatter.tolerance import tolerance
+from inerter.scatter.tolerance import tolerance_analysis
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import budget_method
@@ -191,13 +191,13 @@ def texts_of(study: Study, values: Mapping[str, float]) -> dict[str, str]:
     return {name: f"{value!r} {study.free_units[name]}" for name, value in values.items()}
 
 
-def budget(study: Study, body: Body) -> Answer:
+def break_even(study: Study, body: Body) -> Answer:
     design = one_design(study, body)
     baseline = baseline_of(study, body, [])
     if baseline is None:
         raise DesignError("A budget needs a baseline: a second layout, or `baseline` in the request.")
     method = body.get("method") or budget_method(study)
-    found = find_budget(
+    found = find_break_even(
         design.vehicle,
         baseline.vehicle,
         study.resolve_index(required_value(body, "index"), design.layout),
@@ -226,7 +226,7 @@ def scatter(study: Study, body: Body) -> Answer:
     design, name = one_design(study, body), required_value(body, "index")
     index = study.over_conditions(name)
     method = body.get("method") or DEFAULT
-    found = tolerance(
+    found = tolerance_analysis(
         design.vehicle,
         index,
         study.method(method),
@@ -246,8 +246,8 @@ def scatter(study: Study, body: Body) -> Answer:
         "quantiles": {str(share): found.quantile(share) for share in _SHARES},
         "worst": found.worst,
         "worst_values": found.worst_values,
-        "main": found.main,
-        "total": found.total,
+        "main": found.first_order,
+        "total": found.total_order,
         "histogram": {"edges": edges, "counts": counts},
         "status": found.status.kind.value,
         "message": found.status.message,

@@ -10,7 +10,7 @@ from typing import Any
 from inerter.app.documents import PATH
 from inerter.app.kinds import RESULTS, Tell
 from inerter.errors import RecordError
-from inerter.files.common.folder import Intent, claimed
+from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import IdentificationResult, read, run_identification
@@ -32,7 +32,7 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
     for number, path in enumerate(records):
         tell(number, len(records), f"reading {path.name}")
         readings.append(read(path, request.record))
-    with claimed(Intent(folder / RESULTS, "identify", OWN, tuple(records))) as results:
+    with open_results(WriteMode(folder / RESULTS, "identify", OWN, tuple(records))) as results:
         found = run_identification(readings, request, lambda part: tell(round(1000.0 * part), 1000, "fitting"))
         write_fit(found, results.draft)
         results.publish()

@@ -29,7 +29,7 @@ PANELS = {
         Panel("optimise", "Optimal values", "inerter.app.answers:optimum"),
         Panel("history", "Motion on a road", "inerter.app.answers:motion", quick=False),
         Panel("tolerance", "Index under tolerances", "inerter.app.answers:scatter", quick=False),
-        Panel("budget", "Break-even friction, backlash or compliance", "inerter.app.answers:budget", quick=False),
+        Panel("budget", "Break-even friction, backlash or compliance", "inerter.app.answers:break_even", quick=False),
     )
 }
 

@@ -14,7 +14,7 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
 from inerter.errors import RecordError, StudyError, UnitError
-from inerter.files.common.folder import REPORT, Intent, claimed
+from inerter.files.common.folder import REPORT, WriteMode, open_results
 from inerter.files.common.toml import check_measurements
 from inerter.files.identification.loading import IdentificationRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
@@ -64,10 +64,10 @@ def identify(
             raise RecordError(as_options(error.args)) from None
     folder = output or Path(f"{paths[0].stem}-results")
     inputs = (*paths, *(() if config is None else (config,)))
-    intent = Intent(folder, "identify", OWN, inputs, force=force)
+    intent = WriteMode(folder, "identify", OWN, inputs, force=force)
     kept = [" before there was a fit."]
     try:
-        with interruptible(lambda: kept[-1]), workers(cluster) as executor, claimed(intent) as results:
+        with interruptible(lambda: kept[-1]), workers(cluster) as executor, open_results(intent) as results:
             with fraction(f"fitting {request.name or 'the model'}") as callback:
                 found = run_identification(readings, request, callback, executor)
             write_fit(found, results.draft)

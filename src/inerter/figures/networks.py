@@ -21,8 +21,8 @@ from inerter.figures.symbols import (
     HALF_WIDTH,
     LEADING,
     TO_LABEL,
-    Line,
     Point,
+    SymbolLine,
     blank_figure,
     circle,
     stroke,
@@ -71,9 +71,9 @@ class Schematic:
     right: float
     height: float
     placed: tuple[PlacedElement, ...]
-    lines: tuple[Line, ...] = ()
+    lines: tuple[SymbolLine, ...] = ()
 
-    def translate(self, x: float, y: float) -> tuple[tuple[PlacedElement, ...], tuple[Line, ...]]:
+    def translate(self, x: float, y: float) -> tuple[tuple[PlacedElement, ...], tuple[SymbolLine, ...]]:
         """Elements and lines with the upper end at (x, y)."""
         placed = tuple(PlacedElement(p.element, p.label, p.x + x, p.y + y) for p in self.placed)
         return placed, tuple(translate_line(line, x, y) for line in self.lines)
@@ -146,7 +146,7 @@ def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
     xs = [x - middle for x in xs]
     inside = max(part.height for part in parts)
     top, bottom = -_STUB, -_STUB - inside
-    lines: list[Line] = [((0.0, y), (0.0, y - _STUB)) for y in (0.0, bottom)]
+    lines: list[SymbolLine] = [((0.0, y), (0.0, y - _STUB)) for y in (0.0, bottom)]
     lines += [((xs[0] - _OVERHANG, y), (xs[-1] + _OVERHANG, y)) for y in (top, bottom)]
     at: list[Point] = []
     for x, part in zip(xs, parts, strict=True):
@@ -166,7 +166,7 @@ def _in_a_column(parts: Sequence[Schematic]) -> Schematic:
 
 
 def _join_schematics(
-    parts: Sequence[Schematic], at: Sequence[Point], size: tuple[float, float, float], lines: Iterable[Line] = ()
+    parts: Sequence[Schematic], at: Sequence[Point], size: tuple[float, float, float], lines: Iterable[SymbolLine] = ()
 ) -> Schematic:
     there = [part.translate(*point) for part, point in zip(parts, at, strict=True)]
     placed = tuple(one for elements, _ in there for one in elements)

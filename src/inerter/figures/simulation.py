@@ -18,7 +18,7 @@ from inerter.figures.curves import thin_curve
 from inerter.figures.labels import axis_label, capital, scale
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
-from inerter.networks.elements.roles import Guard
+from inerter.networks.elements.roles import GuardRole
 from inerter.systems.outputs import force_of
 
 Matrix = NDArray[np.float64]
@@ -28,9 +28,9 @@ NAME = "simulation"
 _HEIGHT = 1.35  # of a panel [inch], which its title must fit
 _LONGEST_TITLE = 20
 _MOST_SWINGS, _MOST_BANDS = 160, 60  # in a window that can be read
-_SHADES: dict[Guard, Any] = {
-    Guard.FORCE: {"facecolor": "#DCDCDC", "edgecolor": "none"},
-    Guard.ELONGATION: {"facecolor": "#F8DCB8", "edgecolor": "none"},
+_SHADES: dict[GuardRole, Any] = {
+    GuardRole.FORCE: {"facecolor": "#DCDCDC", "edgecolor": "none"},
+    GuardRole.ELONGATION: {"facecolor": "#F8DCB8", "edgecolor": "none"},
 }
 _TYRES = "tyre load"
 _LIFTED: Any = {"facecolor": "#E9A3A3", "edgecolor": "#B03030", "linewidth": 0.6}
@@ -208,8 +208,8 @@ def _shade(result: SimulationResult, elements: Sequence[Nonlinear], window: Wind
 
     Where there are both, the friction is hatched, so that one shows through the other.
     """
-    over_gaps = any(n.switch.guard is Guard.ELONGATION for n in result.nonlinear)
-    shades = {**_SHADES, Guard.FORCE: _OVER_GAPS} if over_gaps else _SHADES
+    over_gaps = any(n.switch.guard is GuardRole.ELONGATION for n in result.nonlinear)
+    shades = {**_SHADES, GuardRole.FORCE: _OVER_GAPS} if over_gaps else _SHADES
     for element in elements:
         guard = element.switch.guard
         alike = [other.name for other in elements if other.switch.guard is guard]

@@ -17,15 +17,15 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
-from inerter.networks.elements.drawing import HALF_HEIGHT, HALF_WIDTH, Line, Point, circle
+from inerter.networks.elements.drawing import HALF_HEIGHT, HALF_WIDTH, Point, SymbolLine, circle
 
 __all__ = [
     "HALF_HEIGHT",
     "HALF_WIDTH",
     "LEADING",
     "TO_LABEL",
-    "Line",
     "Point",
+    "SymbolLine",
     "blank_figure",
     "circle",
     "stroke",
@@ -72,7 +72,7 @@ def text_width(text: str) -> float:
     return max((float(TextPath((0.0, 0.0), line, prop=_font()).get_extents().x1) for line in lines), default=0.0)
 
 
-def stroke(lines: Sequence[Line], axes: Axes) -> Axes:
+def stroke(lines: Sequence[SymbolLine], axes: Axes) -> Axes:
     """Draw lines, all of one width."""
     drawn = LineCollection(lines, colors="black", linewidths=_LINE_WIDTH, capstyle="round", joinstyle="round")
     drawn.set_snap(False)  # moves some lines by up to a pixel, and not others
@@ -92,6 +92,6 @@ def _font() -> FontProperties:
     return FontProperties(family="DejaVu Sans", size=_LETTERS, math_fontfamily="dejavusans")
 
 
-def translate_line(line: Line, x: float, y: float) -> Line:
+def translate_line(line: SymbolLine, x: float, y: float) -> SymbolLine:
     """The line with its origin at (x, y)."""
     return tuple((px + x, py + y) for px, py in line)

@@ -52,13 +52,13 @@ class Candidate:
     loss: float
     behind: float  # loss above that of the best candidate
     error: float  # standard error of that difference
-    as_good: bool  # as the best one, by the rule of `choose`
+    as_good: bool  # as the best one, by the rule of `select_model`
     status: Status  # of its fit
 
 
 @dataclass(frozen=True, eq=False)
-class Choice:
-    """The result of `choose`."""
+class ModelSelection:
+    """The result of `select_model`."""
 
     name: str
     fits: dict[str, Fit]
@@ -78,7 +78,7 @@ class Choice:
         return self.fits[self.name]
 
 
-def choose(
+def select_model(
     records: Record | Sequence[Record],
     models: Mapping[str, Network] | Iterable[str] | None = None,
     options: FitOptions = DEFAULTS,
@@ -86,7 +86,7 @@ def choose(
     progress: Callable[[float], None] | None = None,
     executor: Executor | None = None,
     **changes: Unpack[OptionChanges],
-) -> Choice:
+) -> ModelSelection:
     """Fit every candidate, and select the one with the fewest unknowns of those that predict as well as the best.
 
     `models`: devices by name, or names of `MODELS`; by default those of `MODELS` without a viscous damper, then the
@@ -147,7 +147,7 @@ class _Selection:
             raise IdentificationError(f"No candidate can be fitted. {why}")
         self._retry()
 
-    def choice(self) -> Choice:
+    def choice(self) -> ModelSelection:
         """The selected candidate of all that entered."""
         ranked = ranking(self.fits)
         name = _fewest_unknowns(ranked)
@@ -156,7 +156,7 @@ class _Selection:
         stuck = (
             Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _not_converged(ranked, self.fits)
         )
-        return Choice(
+        return ModelSelection(
             name=name,
             fits=self.fits,
             candidates=tuple(replace(c, status=self.fits[c.name].status) for c in ranked),
@@ -186,7 +186,7 @@ class _Selection:
 
 
 def ranking(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
-    """The candidates, the best first, by the criterion of `choose`.
+    """The candidates, the best first, by the criterion of `select_model`.
 
     Raises `IdentificationError` if they have no validation data in common.
     """

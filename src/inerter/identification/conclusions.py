@@ -24,7 +24,7 @@ from inerter.identification.solving import SolvedFit
 from inerter.identification.sticking import is_unobservable
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
 from inerter.records.saturation import saturated_samples
@@ -49,7 +49,11 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
     slopes = space.slopes(optimum.point)
     covariance = _covariance(solution)
     report("where the misfit is", 0, len(comparisons))
-    where = () if solution.misfit.sound else tuple(localisation_of(c, solution.options.seed) for c in comparisons)
+    where = (
+        ()
+        if solution.misfit.is_noise_limited
+        else tuple(localisation_of(c, solution.options.seed) for c in comparisons)
+    )
     likely = explanations(problem, optimum, solution.judge, solution.misfit, where) if explain else []
     findings = (*solution.findings, *_offset_findings(problem, values, comparisons), *_mass_findings(problem))
     findings = (*findings, _scale_finding(solution))
@@ -77,7 +81,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         draft,
         parameters=parameters,
         identifiable=identifiable,
-        doubt=doubt,
+        reliability_warning=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
         suggestions=tuple(planned),
         simulations=sum(e.tally.total for e in problem.experiments),
@@ -91,9 +95,9 @@ def find_doubt(fit: Fit) -> Finding | None:
     if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)
         return Finding(FitFinding.UNPREDICTABLE, "warning", numbers={"changed": changed})
-    if fit.misfit.sound and best is not None:
+    if fit.misfit.is_noise_limited and best is not None:
         return Finding(FitFinding.SUSPECTED, "warning", numbers={"likeliest": best})
-    if not fit.misfit.sound or fit.explained < ENOUGH:
+    if not fit.misfit.is_noise_limited or fit.variance_explained < ENOUGH:
         return _misfit(fit, best)
     if lost > _SATURATED:
         return Finding(FitFinding.SATURATED, "warning", numbers={"share": lost})
@@ -108,8 +112,8 @@ def _likeliest(fit: Fit) -> Explanation | None:
 
 def _misfit(fit: Fit, best: Explanation | None) -> Finding:
     """Finding of a wrong model or sensor."""
-    explained = 100.0 * max(fit.explained, 0.0) if fit.explained < ENOUGH else None
-    as_good = [e for e in fit.explanations[1:] if e.misfit.sound][:_OTHERS]
+    explained = 100.0 * max(fit.variance_explained, 0.0) if fit.variance_explained < ENOUGH else None
+    as_good = [e for e in fit.explanations[1:] if e.misfit.is_noise_limited][:_OTHERS]
     patterns = [pattern for place in fit.localisations for pattern in place.patterns[:1]]
     where = max(patterns, key=lambda pattern: float(pattern.numbers["share"]), default=None)
     numbers = {
@@ -123,7 +127,9 @@ def _offset_findings(
 ) -> Iterator[Finding]:
     """Findings of offsets that may be asymmetric friction instead."""
     kinds = dict(zip(problem.space.names, problem.space.kinds, strict=True))
-    friction = sum(v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is Linear.OPEN)
+    friction = sum(
+        v for name, v in values.items() if (kind := kinds[name]) is not None and kind.linear is LinearRole.OPEN
+    )
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
             yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
@@ -132,7 +138,7 @@ def _offset_findings(
 def _mass_findings(problem: FitProblem) -> Iterator[Finding]:
     """Findings of inertances that include an unknown fixture mass."""
     names = zip(problem.space.names, problem.space.kinds, strict=True)
-    free = [name for name, kind in names if kind is not None and kind.linear is Linear.MASS]
+    free = [name for name, kind in names if kind is not None and kind.linear is LinearRole.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
         yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
 
@@ -223,7 +229,7 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
         gaps = {
             _label_of(b): b.switch.middle
             for b in problem.rig.device.elements()
-            if b.switch is not None and b.switches_by(Guard.ELONGATION)
+            if b.switch is not None and b.switches_by(GuardRole.ELONGATION)
         }
         openings = {
             g: sum(event.element == g and event.after == loose for event in run.events) for g, loose in gaps.items()

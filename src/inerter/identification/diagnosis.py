@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
-from inerter.identification.fit import Explanation, Localisation, Misfit
+from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
@@ -51,7 +51,7 @@ _STEP = 0.02  # of the detectable size of an unknown, for differences
 class Causes:
     """Hypotheses on a misfit. Each process builds them, because their functions cannot be pickled."""
 
-    before: Misfit
+    before: NormalisedResidual
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
 
@@ -60,7 +60,7 @@ class Causes:
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            self.made = known if self.before.sound else [*known, *hypotheses(problem, self.places)]
+            self.made = known if self.before.is_noise_limited else [*known, *hypotheses(problem, self.places)]
         return self.made
 
     def __getstate__(self) -> dict[str, object]:
@@ -80,7 +80,7 @@ class Attempt:
 
 
 def explanations(
-    problem: FitProblem, optimum: BestFit, by: Judge, before: Misfit, places: Sequence[Localisation] = ()
+    problem: FitProblem, optimum: BestFit, by: Judge, before: NormalisedResidual, places: Sequence[Localisation] = ()
 ) -> list[Explanation]:
     """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
@@ -102,7 +102,7 @@ def explanations(
         partial(_fit_fully, causes, by), [(known, a) for a in best], map, counter("likely causes", len(best))
     )
     last.sort(key=lambda attempt: attempt.cost)
-    if last and not before.sound and all(a.explanation.misfit.excess > _FAR for a in last):
+    if last and not before.is_noise_limited and all(a.explanation.misfit.excess > _FAR for a in last):
         restart = partial(_refit_from_stiff_shaft, causes, by)
         again = map_problems(
             restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED)
@@ -253,7 +253,9 @@ def _step(space: Space, i: int, size: float) -> float:
     return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
 
 
-def _explanation(problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: Misfit) -> Explanation:
+def _explanation(
+    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: NormalisedResidual
+) -> Explanation:
     space, point = problem.space, fit.point
     after = by.misfit(problem, point, hypothesis.slow)
     values = space.values_by_name(point)

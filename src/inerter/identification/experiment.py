@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
 from inerter.records.record import Record
 from inerter.records.saturation import saturated_samples
@@ -212,7 +212,7 @@ def parts_for(integration: event_driven.Integration) -> int:
     kinds = integration.system.nonlinear_elements
     reach = np.inf
     for friction in (0, 1):  # sticks, slips; gaps touch
-        states = [friction if e.switches_by(Guard.FORCE) and e.acts else 1 for e in kinds]
+        states = [friction if e.switches_by(GuardRole.FORCE) and e.acts else 1 for e in kinds]
         try:
             integration.mode(np.array(states, dtype=np.int64))
         except InerterError:
@@ -252,7 +252,7 @@ def _truncate(table: InputTable, segments: int) -> InputTable:
 def _consistent_velocities(system: PiecewiseSystem, state: Matrix, velocity: Matrix) -> Matrix:
     """The state with velocities at which springs, dampers and gaps keep their length."""
     E_a, E_w, E_z = system.rates
-    laws = (Linear.STIFFNESS, Linear.DAMPING, Linear.CLOSED)
+    laws = (LinearRole.STIFFNESS, LinearRole.DAMPING, LinearRole.CLOSED)
     soft = [i for i, b in enumerate(system.graph.branches) if b.element.linear in laws]
     rows = np.hstack([E_a, E_w])[soft]
     solved = np.linalg.lstsq(rows, -E_z[soft] @ velocity, rcond=1e-10)[0]

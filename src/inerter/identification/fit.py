@@ -17,6 +17,7 @@ from inerter.networks.elements import Network
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.remedy import in_python
+from inerter.renamed import RenamedAttribute
 
 Matrix = NDArray[np.float64]
 
@@ -40,7 +41,7 @@ class Parameter:
 
 
 @dataclass(frozen=True)
-class Misfit:
+class NormalisedResidual:
     """Normalised residual: r.m.s. whitened residual of a fit over that of sensor noise."""
 
     fitted: float
@@ -58,9 +59,11 @@ class Misfit:
         return float(np.nanmax([self.fitted / self.limits[0], self.checked / self.limits[1]]))
 
     @property
-    def sound(self) -> bool:
+    def is_noise_limited(self) -> bool:
         """Whether sensor noise alone may explain the residual."""
         return self.excess <= 1.0
+
+    sound = RenamedAttribute("is_noise_limited")
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Explanation:
 
     name: Suspect
     explained: float  # share of the squared misfit beyond sensor noise; on the validation data if present there
-    misfit: Misfit  # under the hypothesis
+    misfit: NormalisedResidual  # under the hypothesis
     values: dict[str, float]  # of the unknowns of the hypothesis
     estimates: dict[str, tuple[float, float]]  # of the device's under the hypothesis, and their standard errors
     details: Details = field(default_factory=dict)  # the numbers of its sentence
@@ -114,18 +117,20 @@ class RecordFit:
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.residual[mask] ** 2))) if mask.any() else float("nan")
 
-    def sound(self, check: bool = False) -> float:
+    def noise_level(self, check: bool = False) -> float:
         """R.m.s. residual that sensor noise alone would cause on these samples [N]."""
         mask = self.checked if check else self.fitted
         return float(np.sqrt(np.mean(self.draws[:, mask] ** 2))) if mask.any() else float("nan")
 
-    def explained(self, check: bool = False) -> float:
+    def variance_explained(self, check: bool = False) -> float:
         """Share of the variance of the force that the model explains."""
         mask = self.checked if check else self.fitted
         if not mask.any():
             return float("nan")
         total = float(np.var(self.record.force[mask]))
         return 1.0 - float(np.mean(self.residual[mask] ** 2)) / max(total, 1e-300)
+
+    sound, explained = RenamedAttribute("noise_level"), RenamedAttribute("variance_explained")
 
 
 @dataclass(frozen=True)
@@ -164,11 +169,11 @@ class Fit:
     costs: tuple[float, ...]  # of the different fits to half of the records reached by the best starts, sorted
     simulations: int
     predicted: float  # share of the variance of the force that encoder noise does not change
-    misfit: Misfit
+    misfit: NormalisedResidual
     explanations: tuple[Explanation, ...] = ()  # of the misfit, if there is one; the most likely first
     localisations: tuple[Localisation, ...] = ()  # of the misfit, if there is one, in each record
     status: Status = OK
-    doubt: Finding | None = None  # reason why the estimates are unreliable
+    reliability_warning: Finding | None = None  # reason why the estimates are unreliable
     findings: tuple[Finding, ...] = ()  # notes on the estimates
     suggestions: tuple[Finding, ...] = ()  # recommended experiments
     settings: dict[str, object] = field(default_factory=dict)
@@ -184,10 +189,12 @@ class Fit:
         return tuple(finding.sentence for finding in self.suggestions)
 
     @property
-    def explained(self) -> float:
+    def variance_explained(self) -> float:
         """Share of the variance of all fitted forces that the model explains."""
         left = sum(float(np.sum(c.residual[c.fitted] ** 2)) for c in self.comparisons)
         total = sum(
             float(np.sum((c.record.force[c.fitted] - c.record.force[c.fitted].mean()) ** 2)) for c in self.comparisons
         )
         return 1.0 - left / max(total, 1e-300)
+
+    explained, doubt = RenamedAttribute("variance_explained"), RenamedAttribute("reliability_warning")

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
+from inerter.renamed import RenamedAttribute
 from inerter.units import format_quantity
 
 
@@ -34,7 +34,7 @@ class Identifiability:
     unit: str = ""
     interval: tuple[float, float] = (math.nan, math.nan)  # of the profile likelihood
     least: float = 0.0  # lower bound of the search
-    role: Linear | None = None  # of its element; None for one of the sensors
+    role: LinearRole | None = None  # of its element; None for one of the sensors
     openings: int = 0  # of its gap in the best fit
     held: float | None = None  # [N] the largest force at which a friction did not slip
 
@@ -56,18 +56,14 @@ class Identifiability:
         """Name and verdict in words."""
         return f"{self.name}: {_SENTENCES[self.verdict](self)}"
 
-    @property
-    def told(self) -> bool:
-        """The old name of `identified`."""
-        warnings.warn("`told` is now `identified`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.identified
+    told = RenamedAttribute("identified")
 
 
 _CAUSES = {
-    Linear.OPEN: "Friction is small compared with the other forces; move slowly, so that friction dominates.",
-    Linear.MASS: "The inertial force is too small; accelerate more.",
-    Linear.STIFFNESS: "Its deflection is too small, or it never carries the force; excite near its resonance.",
-    Linear.DAMPING: "Its force is small compared with that of the spring; excite at a higher frequency.",
+    LinearRole.OPEN: "Friction is small compared with the other forces; move slowly, so that friction dominates.",
+    LinearRole.MASS: "The inertial force is too small; accelerate more.",
+    LinearRole.STIFFNESS: "Its deflection is too small, or it never carries the force; excite near its resonance.",
+    LinearRole.DAMPING: "Its force is small compared with that of the spring; excite at a higher frequency.",
 }
 
 
@@ -75,9 +71,9 @@ def _cause(i: Identifiability) -> str:
     if i.role is None:
         return "The records contain too little information on the sensor."
     if i.held is not None:
-        what = "It never slipped" if i.role is Linear.OPEN else "The friction in parallel with it never slipped"
+        what = "It never slipped" if i.role is LinearRole.OPEN else "The friction in parallel with it never slipped"
         return f"{what}, under forces of up to {_format_value(i.held, 'N')}; excite with larger or faster motion."
-    if i.role is not Linear.CLOSED:
+    if i.role is not LinearRole.CLOSED:
         return _CAUSES[i.role]
     if i.openings == 0:
         return "Contact never opens in the best fit; excite with force reversals."

@@ -19,7 +19,7 @@ from inerter.identification.scales import apply_scales
 from inerter.identification.solving import SolvedFit, part, solve
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
@@ -99,7 +99,7 @@ def _validate(records: Record | Sequence[Record], model: Network) -> tuple[list[
 
 def _check_gain(rig: Rig, gain: bool) -> None:
     """Raise `IdentificationError` for a free gain unless the size of at least one element is known."""
-    known = [e for e in rig.device.elements() if e.linear is not Linear.CLOSED and is_number(e.value)]
+    known = [e for e in rig.device.elements() if e.linear is not LinearRole.CLOSED and is_number(e.value)]
     if gain and not known:
         raise IdentificationError(
             "gain: a gain of the load cell is not identifiable if all springs, dampers, inerters and frictions are "

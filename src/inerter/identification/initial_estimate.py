@@ -21,7 +21,7 @@ from scipy.signal import bilinear, lfilter
 from inerter.identification.experiment import Experiment
 from inerter.identification.finding_texts import FitFinding
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.records.filtering import low_pass
 from inerter.records.finding import Finding
 
@@ -34,12 +34,12 @@ _WELL, _POORLY = 0.04, 0.6  # relative half-widths of the search ranges
 
 
 _PLACES = {  # in a chain, of what is beside an inertia or not
-    (Linear.MASS, True): "inerter",
-    (Linear.OPEN, True): "friction",
-    (Linear.DAMPING, True): "drag",
-    (Linear.DAMPING, False): "damper",
-    (Linear.STIFFNESS, False): "spring",
-    (Linear.CLOSED, False): "gap",
+    (LinearRole.MASS, True): "inerter",
+    (LinearRole.OPEN, True): "friction",
+    (LinearRole.DAMPING, True): "drag",
+    (LinearRole.DAMPING, False): "damper",
+    (LinearRole.STIFFNESS, False): "spring",
+    (LinearRole.CLOSED, False): "gap",
 }
 
 
@@ -67,7 +67,7 @@ def chain_of(device: Network) -> Chain | None:
     found: dict[str, Element] = {}
     for part in parts:
         elements = part.parts if isinstance(part, Parallel) else (part,)
-        inertial = any(isinstance(e, Element) and e.linear is Linear.MASS for e in elements)
+        inertial = any(isinstance(e, Element) and e.linear is LinearRole.MASS for e in elements)
         for e in elements:
             place = _PLACES.get((e.linear, inertial)) if isinstance(e, Element) and e.plain else None
             if place is None or place in found:

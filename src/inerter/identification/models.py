@@ -20,7 +20,7 @@ from inerter.networks.elements import (
     check_network,
     free,
 )
-from inerter.networks.elements.roles import Guard
+from inerter.networks.elements.roles import GuardRole
 from inerter.networks.parser import network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.rig import Rig
@@ -90,7 +90,9 @@ def with_mount(model: Network) -> Network:
     True
     """
     return (
-        MOUNT - model if is_rigid(model) and any(e.switches_by(Guard.ELONGATION) for e in model.elements()) else model
+        MOUNT - model
+        if is_rigid(model) and any(e.switches_by(GuardRole.ELONGATION) for e in model.elements())
+        else model
     )
 
 

@@ -1,21 +1,21 @@
-"""Options of a fit, common to `identify` and `choose`."""
+"""Options of a fit, common to `identify` and `select_model`."""
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
 from inerter.checks import is_number
 from inerter.errors import IdentificationError, UnitError
 from inerter.records.uncertain import Uncertain, parse_uncertain
+from inerter.renamed import RenamedAttribute
 
 POINTS = 128  # starts of a search
 
 
 @dataclass(frozen=True)
 class FitOptions:
-    """The options of a fit; each is also a keyword of `identify` and `choose`.
+    """The options of a fit; each is also a keyword of `identify` and `select_model`.
 
     The force may have one `offset` per record, and one common `gain` and `delay` (up to a number of seconds); by
     default a delay is estimated where the bandwidth of a load cell is unknown, because its filter delays slow forces.
@@ -71,10 +71,7 @@ class FitOptions:
             raise IdentificationError(f"unknown option {unknown[0]!r} of a fit; available: {known}.")
         return replace(self, **changes)  # type: ignore[arg-type]
 
-    def changed(self, **changes: object) -> FitOptions:
-        """The old name of `replace`."""
-        warnings.warn("`changed` is now `replace`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.replace(**changes)
+    changed = RenamedAttribute("replace")
 
 
 def _scale(name: str, given: object) -> Uncertain:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.fit import Misfit
+from inerter.identification.fit import NormalisedResidual
 from inerter.identification.intervals import ROBUST
 from inerter.identification.noise import Whitening, yardstick
 from inerter.identification.problem import FitProblem
@@ -37,7 +37,7 @@ class Judge:
     checked: Sequence[Whitening]
     draws: Sequence[Matrix]  # (draws, samples) [N] residuals of each record by sensor noise alone
 
-    def misfit(self, problem: FitProblem, point: Matrix, slow: int | None = None) -> Misfit:
+    def misfit(self, problem: FitProblem, point: Matrix, slow: int | None = None) -> NormalisedResidual:
         """Normalised residual of the device at a point, without a polynomial of degree `slow` over time in each part.
 
         Infinite where it cannot be simulated.
@@ -46,7 +46,7 @@ class Judge:
         centred = []
         for e, force, w in zip(problem.experiments, problem.forces(point), self.fitted, strict=True):
             if force is None:
-                return Misfit(np.inf, np.inf, limits)
+                return NormalisedResidual(np.inf, np.inf, limits)
             centred.append(_without_offset(e.record.force - force, w) if problem.offset else e.record.force - force)
         fitted, checked = (
             math.sqrt(
@@ -54,7 +54,7 @@ class Judge:
             )
             for ws, (usual, _) in zip((self.fitted, self.checked), self._sound, strict=True)
         )
-        return Misfit(fitted, checked, limits)
+        return NormalisedResidual(fitted, checked, limits)
 
     @cached_property
     def _sound(self) -> tuple[tuple[float, float], tuple[float, float]]:

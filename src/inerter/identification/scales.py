@@ -21,18 +21,18 @@ from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
 from inerter.identification.search import improve
 from inerter.networks.elements import Free
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.records.record import Record
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS = 8
 _QUANTILE = float(norm.ppf(0.5 + 0.5 * LEVEL))
 _POWERS = {  # of the force's and of the displacement's scale in the value of an element: true over read
-    Linear.STIFFNESS: (1.0, -1.0),
-    Linear.DAMPING: (1.0, -1.0),
-    Linear.MASS: (1.0, -1.0),
-    Linear.OPEN: (1.0, 0.0),
-    Linear.CLOSED: (0.0, 1.0),
+    LinearRole.STIFFNESS: (1.0, -1.0),
+    LinearRole.DAMPING: (1.0, -1.0),
+    LinearRole.MASS: (1.0, -1.0),
+    LinearRole.OPEN: (1.0, 0.0),
+    LinearRole.CLOSED: (0.0, 1.0),
 }
 
 

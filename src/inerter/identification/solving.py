@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import IdentificationError
 from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import Experiment, experiment_of, transient_samples
-from inerter.identification.fit import Misfit
+from inerter.identification.fit import NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of, guess_of, sign_of
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
@@ -52,7 +52,7 @@ class SolvedFit:
     findings: tuple[Finding, ...]
     predicted: float
     judge: Judge
-    misfit: Misfit
+    misfit: NormalisedResidual
     options: FitOptions
     adhesion: Adhesion
     scales: ScaleEffects | None

@@ -21,7 +21,7 @@ from inerter.identification.identify import identify
 from inerter.identification.models import MODELS
 from inerter.identification.response import linear_response, model_response
 from inerter.networks.elements import Element, Free, Network, free
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
 from inerter.records.record import Record
@@ -90,8 +90,8 @@ class ResponseCheck:
 
 
 @dataclass(frozen=True, eq=False)
-class Staged:
-    """The result of `staged`."""
+class StagedIdentification:
+    """The result of `identify_staged`."""
 
     parameters: dict[str, Parameter]
     identifiable: dict[str, Identifiability]
@@ -115,7 +115,7 @@ class SearchChanges(TypedDict, total=False):
     starts: int
 
 
-def staged(
+def identify_staged(
     friction: Record,
     fit: Record,
     check: Record | None = None,
@@ -126,7 +126,7 @@ def staged(
     progress: Callable[[float], None] | None = None,
     executor: Executor | None = None,
     **search: Unpack[SearchChanges],
-) -> Staged:
+) -> StagedIdentification:
     """The parameters of a ball-screw inerter from three short tests, one after the other.
 
     **Friction.** `friction` is of the device without its flywheel, moved slowly: its force is a square wave, whose
@@ -160,7 +160,7 @@ def staged(
     best = with_values(_with_value(device, _FRICTION, within), values)
     order = [e.label for e in device.elements() if e.label in parameters]
     response = None if check is None else _response(best, check)
-    return Staged(
+    return StagedIdentification(
         parameters={name: parameters[name] for name in order},
         identifiable={name: identifiable[name] for name in order},
         device=best,
@@ -195,7 +195,7 @@ def _with_value(device: Network, label: str, value: float | Free) -> Network:
 def _friction(law: FrictionLaw) -> tuple[Parameter, Identifiability]:
     error = 0.5 * (law.interval[1] - law.interval[0]) / 1.96
     interval = (max(law.interval[0], 0.0), law.interval[1])
-    verdict = Identifiability(_FRICTION, Verdict.IDENTIFIED, "N", interval, role=Linear.OPEN)
+    verdict = Identifiability(_FRICTION, Verdict.IDENTIFIED, "N", interval, role=LinearRole.OPEN)
     return Parameter(_FRICTION, "N", law.level, interval, law.level, error), verdict
 
 
@@ -216,7 +216,7 @@ def _friction_test(device: Network, record: Record, law: FrictionLaw, shaft_iner
 
 def _response(device: Network, record: Record) -> ResponseCheck:
     measured, model = frequency_response(record), model_response(device, record)
-    inertances = [e for e in device.elements() if e.linear is Linear.MASS and e.label == _INERTANCE]
+    inertances = [e for e in device.elements() if e.linear is LinearRole.MASS and e.label == _INERTANCE]
     return ResponseCheck(
         measured=measured,
         model=model,

@@ -25,7 +25,7 @@ from inerter.identification.intervals import (
     steps_of,
 )
 from inerter.identification.problem import FitProblem
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.outputs import force_of
 
 Matrix = NDArray[np.float64]
@@ -97,8 +97,8 @@ def _frictions(problem: FitProblem) -> list[int]:
     return [
         i
         for i, kind in enumerate(problem.space.kinds)
-        if kind is not None and kind.linear is Linear.OPEN and kind.switch is not None
-        if kind.switch.guard is Guard.FORCE
+        if kind is not None and kind.linear is LinearRole.OPEN and kind.switch is not None
+        if kind.switch.guard is GuardRole.FORCE
     ]
 
 

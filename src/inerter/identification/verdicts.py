@@ -11,7 +11,7 @@ from inerter.identification.fit import Parameter, RecordFit
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import CostProfile
 from inerter.identification.parameter_space import Space
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.records.finding import Finding
 
 _WIDE = 3.0  # ends of an interval this far apart, as a ratio, give an order of magnitude only
@@ -61,12 +61,12 @@ def suggestions(
         if held is not None:
             yield Finding(FitFinding.BREAK_AWAY, "info", name, {**motion, "held": held})
             continue
-        if kind.linear is Linear.CLOSED:
+        if kind.linear is LinearRole.CLOSED:
             width = {"width": 2.0 * parameters[name].interval[1]}
             yield Finding(FitFinding.FASTER_REVERSALS, "info", name, {**motion, **width})
-        elif kind.linear is Linear.OPEN:
+        elif kind.linear is LinearRole.OPEN:
             yield Finding(FitFinding.SLOW_COSINE, "info", name, {"travel": max(travel, 1e-3)})
-        elif kind.linear is Linear.MASS:
+        elif kind.linear is LinearRole.MASS:
             yield Finding(FitFinding.LARGER_ACCELERATIONS, "info", name, {"travel": 2.0 * travel})
         else:
             yield Finding(FitFinding.HIGHER_FREQUENCIES, "info", name, motion)

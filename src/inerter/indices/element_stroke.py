@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from inerter.fields import choice
+from inerter.fields import choice_field
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import Question, on_road
+from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.outputs import check_element, stroke_of
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
 @dataclass(frozen=True)
@@ -20,13 +20,13 @@ class ElementStroke:
     """
 
     road: Road | Excitation
-    element: str = field(metadata=choice((), "Name of the element.", example="c"))
+    element: str = field(metadata=choice_field((), "Name of the element.", example="c"))
     symbol = "element-stroke"
     title = "stroke of an element"
     unit = "m"
     response = "stroke of an element per road velocity"
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no such element."""
         check_element(mechanism, self.element, stroke_of)
-        return on_road(self, mechanism, (Weighted(stroke_of(self.element)),), "element")
+        return on_road(self, mechanism, (OutputWeight(stroke_of(self.element)),), "element")

@@ -16,7 +16,7 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road, RoadShape
 from inerter.systems.filters import Filter, as_filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
@@ -47,7 +47,7 @@ class Excitation(Protocol):
         """Mechanism as excited: unchanged, reduced by symmetry, or in coordinates relative to moving ground."""
         ...
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the sources; raises `PerformanceIndexError` if the mechanism has none for it."""
         ...
 
@@ -69,15 +69,15 @@ class RoadVelocity:
         """Mechanism on one track, halved if symmetric, without a coherence; unchanged with one."""
         return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road excites a mechanism at its tyres, and this one has none.")
         if self.road.coherence is not None and any(r.track for r in mechanism.roads):
             return tuple(self._on_tracks(mechanism, self.road.coherence))
-        return tuple(Arrival(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
+        return tuple(InputPath(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
 
-    def _on_tracks(self, mechanism: Mechanism, coherence: Coherence) -> Iterator[Arrival]:
+    def _on_tracks(self, mechanism: Mechanism, coherence: Coherence) -> Iterator[InputPath]:
         speed = self.road.speed
         ratios = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
         parts = {source: None if ratio is None else Filter(*ratio) for source, ratio in ratios.items()}
@@ -91,7 +91,7 @@ class RoadVelocity:
                 if shape is not None:
                     lever = right if road.track == "right" else 1.0
                     excess = coherence.excess(right, speed)
-                    yield Arrival(road.name, source, road.distance / speed, lever, shape, excess=excess)
+                    yield InputPath(road.name, source, road.distance / speed, lever, shape, excess=excess)
 
 
 @dataclass(frozen=True)
@@ -122,9 +122,9 @@ class WhiteForce:
         """Mechanism as given."""
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the force."""
-        return (Arrival(_force(mechanism, self.name), self.name),)
+        return (InputPath(_force(mechanism, self.name), self.name),)
 
 
 @dataclass(frozen=True)
@@ -153,15 +153,15 @@ class GroundAcceleration:
         """Mechanism in coordinates relative to the ground."""
         return mechanism.on_moving_ground()
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the ground acceleration, which acts on all masses."""
         if all(coordinate.angle for coordinate in mechanism.coordinates):
             raise PerformanceIndexError("Ground acceleration acts on masses, and this mechanism has none.")
-        return (Arrival(GROUND_ACCELERATION, "ground"),)
+        return (InputPath(GROUND_ACCELERATION, "ground"),)
 
 
 @dataclass(frozen=True)
-class Shaped:
+class FilteredExcitation:
     """An excitation whose sources pass through a filter before they arrive; its intensity is that before the filter.
 
     `filter` is a `Filter`, or a `LinearSystem` with one input and one output.
@@ -205,7 +205,7 @@ class Shaped:
         """Mechanism as excited by the unfiltered excitation."""
         return self._of.excited_mechanism(mechanism)
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the unfiltered excitation, each with the filter in series after its own."""
         shape = as_filter(self.filter)
         assert shape is not None
@@ -219,7 +219,7 @@ class Shaped:
 
 
 @dataclass(frozen=True)
-class OneInput:
+class SingleInput:
     """Single input, for gains: a force, a road's displacement, or `<road>_velocity`."""
 
     name: str
@@ -231,15 +231,15 @@ class OneInput:
         """Mechanism as given."""
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the input."""
         for road in mechanism.roads:
             if self.name == f"{road.name}_velocity":
-                return (Arrival(road.name, self.name),)
+                return (InputPath(road.name, self.name),)
             if self.name == road.name:
-                return (Arrival(road.name, self.name, displacement=True),)
+                return (InputPath(road.name, self.name, displacement=True),)
         check_inputs(mechanism, [self.name], PerformanceIndexError)
-        return (Arrival(self.name, self.name),)
+        return (InputPath(self.name, self.name),)
 
 
 def as_excitation(given: object, what: str) -> Excitation:
@@ -268,8 +268,8 @@ def shape_of(excitation: Excitation) -> tuple[RoadShape, float] | None:
 def road_of(excitation: Excitation) -> Any:
     """Road behind an excitation, perhaps through filters; the excitation itself if it is not a road."""
     of: Any = excitation
-    while isinstance(of, Shaped | RoadVelocity):
-        of = of.excitation if isinstance(of, Shaped) else of.road
+    while isinstance(of, FilteredExcitation | RoadVelocity):
+        of = of.excitation if isinstance(of, FilteredExcitation) else of.road
     return of
 
 

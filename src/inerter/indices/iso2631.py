@@ -87,7 +87,7 @@ def weighting_filter(name: str) -> Filter:
 
 
 @cache
-def iso2631(name: str) -> LinearSystem:
+def iso2631_weighting(name: str) -> LinearSystem:
     """The frequency weighting "Wk", "Wd", "Wf", "We", "Wc" or "Wj" of ISO 2631-1:1997.
 
     Its input is an acceleration, its output the weighted one.
@@ -95,7 +95,7 @@ def iso2631(name: str) -> LinearSystem:
     Raises `PerformanceIndexError` for another name.
 
     >>> import numpy as np
-    >>> iso2631("Wk")
+    >>> iso2631_weighting("Wk")
     LinearSystem(8 states; inputs acceleration; outputs weighted_acceleration)
     """
     A, B, C, D = _blocks(WEIGHTINGS[check_weighting(name)].sections)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
-from inerter.indices.excitation import OneInput
-from inerter.indices.question import Combination, Question
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.indices.excitation import SingleInput
+from inerter.indices.question import Combination, IndexDefinition
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class LoadCarrying:
         if self.amplitude is not None:
             check_positive(PerformanceIndexError, "The amplitude of the force on the body", self.amplitude, "N")
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism names no force and displacement for it."""
         measures = mechanism.measures
         if measures.load_input is None or measures.load_output is None:
@@ -45,10 +45,10 @@ class LoadCarrying:
                 "The mechanism does not say which force and displacement load carrying is about. "
                 "Set measures.load_input and measures.load_output."
             )
-        return Question(
-            outputs=(Weighted(measures.load_output),),
+        return IndexDefinition(
+            outputs=(OutputWeight(measures.load_output),),
             combination=Combination.PEAK_GAIN,
-            excitation=OneInput(measures.load_input),
+            excitation=SingleInput(measures.load_input),
             unit=self.unit,
             amplitude=self.amplitude,
         )

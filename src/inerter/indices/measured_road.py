@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
-from inerter.indices.excitation import Excitation, Shaped, stand_ins_of
+from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
 from inerter.systems.filters import Filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -65,13 +65,13 @@ class MeasuredRoad:
 
     @property
     def _shaped_road(self) -> Excitation:
-        return Shaped(self.road, self.filter)
+        return FilteredExcitation(self.road, self.filter)
 
     def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by a road."""
         return self._shaped_road.excited_mechanism(mechanism)
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of a road, each with the filter."""
         return self._shaped_road.arrivals(mechanism)
 

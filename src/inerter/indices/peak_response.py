@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 
 from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.fields import formed
-from inerter.indices.excitation import OneInput
-from inerter.indices.question import Combination, Given, Question
+from inerter.fields import typed_field
+from inerter.indices.excitation import SingleInput
+from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import input_unit, unit_of
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
 @dataclass(frozen=True)
@@ -35,17 +35,19 @@ class PeakResponse:
     """
 
     input: str = field(
-        metadata=formed("input", "A force, a road (its displacement) or NAME_velocity of a road.", '"sprung_force"')
+        metadata=typed_field(
+            "input", "A force, a road (its displacement) or NAME_velocity of a road.", '"sprung_force"'
+        )
     )
-    output: str = field(metadata=formed("output", "What responds.", '"sprung_displacement"'))
+    output: str = field(metadata=typed_field("output", "What responds.", '"sprung_displacement"'))
     filter: Given = field(
         default=None,
-        metadata=formed(
+        metadata=typed_field(
             "filter", "On the output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
         ),
     )
     amplitude: float | None = field(
-        default=None, metadata=formed("amplitude", "Of the sinusoidal input, for friction and gaps.", '"1 kN"')
+        default=None, metadata=typed_field("amplitude", "Of the sinusoidal input, for friction and gaps.", '"1 kN"')
     )
     symbol = "peak-response"
     title = "peak response"
@@ -60,11 +62,13 @@ class PeakResponse:
             check_positive(PerformanceIndexError, f"The amplitude of {self.input!r}", self.amplitude, "its unit")
         object.__setattr__(self, "filter", as_filter(self.filter))
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no such input."""
         unit = _over(unit_of(mechanism, [self.output]), input_unit(mechanism, self.input))
-        outputs = (Weighted(self.output),)
-        return Question(outputs, Combination.PEAK_GAIN, OneInput(self.input), unit, self.filter, self.amplitude)
+        outputs = (OutputWeight(self.output),)
+        return IndexDefinition(
+            outputs, Combination.PEAK_GAIN, SingleInput(self.input), unit, self.filter, self.amplitude
+        )
 
 
 def _over(top: str, bottom: str) -> str:

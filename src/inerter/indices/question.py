@@ -1,6 +1,6 @@
 """Indices and their definition for a mechanism: outputs, filters, combination, excitation.
 
-A method reads a `Question` and never asks which index it came from.
+A method reads a `IndexDefinition` and never asks which index it came from.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from inerter.errors import PerformanceIndexError
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter, as_filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]
 Given = Filter | LinearSystem | None
@@ -33,7 +33,7 @@ class Combination(Enum):
 
 
 @dataclass(frozen=True)
-class Question:
+class IndexDefinition:
     """Index definition for one mechanism.
 
     A filter is a `Filter` or a `LinearSystem` with one input and one output.
@@ -42,7 +42,7 @@ class Question:
     excitation; `LinearSystemError` for what is no filter.
     """
 
-    outputs: tuple[Weighted, ...]
+    outputs: tuple[OutputWeight, ...]
     combination: Combination
     excitation: Road | Excitation  # kept as an excitation
     unit: str
@@ -89,7 +89,7 @@ class Question:
             return np.asarray(weights**2 * rms / max(float(self.combine(rms, weights)), 1e-300))
         return weights
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[Arrival, ...]:
+    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the excitation in the order of their delays; `mechanism` is the excited one."""
         return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
 
@@ -117,7 +117,7 @@ class Index(Protocol):
         """Frequency response of the index, in words."""
         ...
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Definition for `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
         ...
 
@@ -156,11 +156,11 @@ class OnRoad(Index, Protocol):
 def on_road(
     index: OnRoad,
     mechanism: Mechanism,
-    outputs: tuple[Weighted, ...],
+    outputs: tuple[OutputWeight, ...],
     where: str,
     filter: Given | tuple[Given, ...] = None,
     combination: Combination = Combination.SUM_OF_RMS,
-) -> Question:
+) -> IndexDefinition:
     """Definition of an index of r.m.s. values on a road; the values are summed by default.
 
     Raises `PerformanceIndexError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
@@ -171,4 +171,4 @@ def on_road(
         raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:
         raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
-    return Question(outputs, combination, index.road, index.unit, filter)
+    return IndexDefinition(outputs, combination, index.road, index.unit, filter)

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
-from inerter.fields import formed
+from inerter.fields import typed_field
 from inerter.indices.excitation import Excitation, as_excitation
-from inerter.indices.question import Combination, Given, Question
+from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.signals.road import Road
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import unit_of
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Weights = Mapping[str, float]
 
@@ -23,7 +23,7 @@ class RandomResponse:
     """R.m.s. values of any outputs under any random excitation, each times its weight, added up.
 
     `outputs` maps names of outputs to weights, `excitation` is a `Road`, a `WhiteForce`, a `GroundAcceleration`, or one
-    of these `Shaped` by a filter. `filter` (a `Filter` or a `LinearSystem`) is on every output.
+    of these `FilteredExcitation` by a filter. `filter` (a `Filter` or a `LinearSystem`) is on every output.
 
     Raises `PerformanceIndexError` for what is none of these, `LinearSystemError` for what is no filter.
 
@@ -37,10 +37,10 @@ class RandomResponse:
     """
 
     outputs: Weights = field(
-        metadata=formed("outputs", "What responds: outputs with their weights.", "{ tyre_load = 1 }")
+        metadata=typed_field("outputs", "What responds: outputs with their weights.", "{ tyre_load = 1 }")
     )
     excitation: Road | Excitation = field(
-        metadata=formed(
+        metadata=typed_field(
             "excitation",
             "What excites the vehicle; the road of the study if left out.",
             '{ ground_acceleration = "0.01 (m/s^2)^2/Hz" }',
@@ -48,7 +48,7 @@ class RandomResponse:
     )
     filter: Given = field(
         default=None,
-        metadata=formed(
+        metadata=typed_field(
             "filter", "On every output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
         ),
     )
@@ -69,14 +69,14 @@ class RandomResponse:
         object.__setattr__(self, "excitation", as_excitation(self.excitation, "A random response"))
         object.__setattr__(self, "filter", as_filter(self.filter))
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the excitation does not fit the mechanism."""
         drive = as_excitation(self.excitation, "A random response")
         if not drive.is_random:
             raise PerformanceIndexError(f"A random response needs a random excitation, got {drive!r}.")
-        outputs = tuple(Weighted(name, weight) for name, weight in self.outputs.items())
+        outputs = tuple(OutputWeight(name, weight) for name, weight in self.outputs.items())
         unit = unit_of(drive.excited_mechanism(mechanism), list(self.outputs))
-        return Question(outputs, Combination.SUM_OF_RMS, drive, unit, self.filter)
+        return IndexDefinition(outputs, Combination.SUM_OF_RMS, drive, unit, self.filter)
 
 
 class FixedWeights(dict[str, float]):

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from inerter.errors import PerformanceIndexError
-from inerter.fields import choice
+from inerter.fields import choice_field
 from inerter.indices.excitation import Excitation
 from inerter.indices.iso2631 import ROTATIONS, check_weighting, weighting_filter
-from inerter.indices.question import Combination, Question, on_road
+from inerter.indices.question import Combination, IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
-from inerter.vehicle.mechanism import Coordinate, Mechanism, Weighted
+from inerter.vehicle.mechanism import Coordinate, Mechanism, OutputWeight
 
 _FELT = ("Wk", "Wd", "Wf")
 _SICKNESS = "Wf"
@@ -34,7 +34,7 @@ class RideComfort:
     road: Road | Excitation
     weighting: str | None = field(
         default=None,
-        metadata=choice(_FELT, "Weighting of ISO 2631-1 on J1; none if left out."),
+        metadata=choice_field(_FELT, "Weighting of ISO 2631-1 on J1; none if left out."),
     )
     symbol = "J1"
     title = "ride comfort"
@@ -48,7 +48,7 @@ class RideComfort:
                 f"theirs with Wk and Wd."
             )
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no comfort output."""
         comfort, where = mechanism.measures.comfort, "measures.comfort"
         if self.weighting is None:
@@ -57,7 +57,7 @@ class RideComfort:
         outputs, filters = tuple(output for output, _ in felt), tuple(passed for _, passed in felt)
         return on_road(self, mechanism, outputs, where, filters, Combination.ROOT_OF_SQUARES)
 
-    def _weighted_output(self, mechanism: Mechanism, output: Weighted) -> tuple[Weighted, Filter] | None:
+    def _weighted_output(self, mechanism: Mechanism, output: OutputWeight) -> tuple[OutputWeight, Filter] | None:
         """Acceleration with its factor in ISO 2631-1 and its weighting filter; None if the standard ignores it."""
         assert self.weighting is not None
         moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)

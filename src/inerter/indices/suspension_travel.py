@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import Question, on_road
+from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.outputs import of_mount
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
 @dataclass(frozen=True)
@@ -25,9 +25,9 @@ class SuspensionTravel:
     unit = "m"
     response = "travel per road velocity"
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no strut."""
         wheels = {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever}
         at_wheels = [strut for strut in mechanism.struts if len(wheels & {*strut.upper, *strut.lower}) == 1]
-        travels = tuple(Weighted(of_mount(strut)[1]) for strut in at_wheels or mechanism.struts)
+        travels = tuple(OutputWeight(of_mount(strut)[1]) for strut in at_wheels or mechanism.struts)
         return on_road(self, mechanism, travels, "struts")

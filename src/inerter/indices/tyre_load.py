@@ -8,7 +8,7 @@ from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.fields import quantity
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import Question, on_road
+from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
 from inerter.vehicle.mechanism import Mechanism
@@ -36,7 +36,7 @@ class TyreLoad:
         if self.high_pass is not None:
             check_positive(PerformanceIndexError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or names no tyre load."""
         passed = None if self.high_pass is None else high_pass(self.high_pass)
         return on_road(self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", passed)

@@ -9,7 +9,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import PerformanceIndexError
-from inerter.indices.iso2631 import iso2631
+from inerter.indices.iso2631 import iso2631_weighting
 from inerter.systems.linear import LinearSystem
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ _EVEN = 1e-6  # of a step, by which steps of time may differ
 
 
 @dataclass(frozen=True, eq=False)
-class WeightedMotion:
+class WeightedAcceleration:
     """A frequency-weighted acceleration and the values that ISO 2631-1:1997 makes of it.
 
     For a rotation read rad for m.
@@ -33,7 +33,7 @@ class WeightedMotion:
     constant: float = 0.0  # [m/s^2] what was taken from the acceleration before, such as gravity
 
 
-def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedMotion:
+def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedAcceleration:
     """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
 
     `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The mean
@@ -46,11 +46,11 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     numbers, and for less than 1 s.
 
     >>> t = np.arange(0.0, 40.0, 1e-3)
-    >>> felt = weighted(t, np.sin(2.0 * np.pi * 8.0 * t), "Wk")
+    >>> felt = frequency_weight(t, np.sin(2.0 * np.pi * 8.0 * t), "Wk")
     >>> round(felt.rms * 2.0**0.5, 2), round(felt.mtvv * 2.0**0.5, 2)  # 1.036 in the standard's table
     (1.04, 1.04)
     """
-    system = iso2631(weighting)
+    system = iso2631_weighting(weighting)
     times, given = _check_samples(time, acceleration)
     mean = float(given.mean())
     is_offset = abs(given[0] - mean) < abs(given[0])  # else taking it away would make the step that it is to spare
@@ -62,7 +62,7 @@ def weighted(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") ->
     since = times - times[0]
     late = since >= _RUNNING * (1.0 - _EVEN)
     running = energy[late] - np.interp(since[late] - _RUNNING, since, energy)
-    return WeightedMotion(
+    return WeightedAcceleration(
         rms=float(np.sqrt(energy[-1] / since[-1])),
         mtvv=float(np.sqrt(running.max() / _RUNNING)),
         vdv=float(np.trapezoid(values**4, dx=step) ** 0.25),

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
 from inerter.indices.excitation import shape_of, stand_ins_of
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.averages import interval_of
 from inerter.methods.equivalent_linear import EquivalentLinearModel, equivalent_linear_model, has_play, with_velocities
 from inerter.methods.error_bounds import with_error_sources
@@ -25,14 +25,14 @@ from inerter.methods.excitation import Excitation, ExcitedInputs, MultisineExcit
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, with_convention_filters
 from inerter.methods.measured_road_errors import road_errors
-from inerter.methods.method import Estimate, Sees
+from inerter.methods.method import Estimate, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
 from inerter.systems.graph import full_graph
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle
@@ -94,11 +94,11 @@ class ApproximateLinear:
     seed: int = 0
     conventions: str = "exact"
     name = "approximate-linear"
-    words = "norms of the gains of the nonlinear design on random inputs, output over input, frequency by frequency"
+    description = "norms of the gains, output over input at each frequency, of the nonlinear design on random inputs"
     brief = "measured gains"
-    sees = Sees.BOTH
+    nonlinearity_support = NonlinearitySupport.BOTH
     needs_amplitude = False
-    searches = True
+    supports_optimisation = True
     promise = PROMISE
 
     def __post_init__(self) -> None:
@@ -155,7 +155,7 @@ class ApproximateLinear:
             result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
         return result
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that start a search."""
         return (*StatisticalLinearisation().kernels(question, search=True), *KERNELS) if search else KERNELS
 
@@ -171,13 +171,13 @@ class ApproximateLinear:
     def _raw(self) -> bool:
         return self.conventions == "paper2008"
 
-    def _estimate_linear(self, mechanism: Mechanism, question: Question) -> Estimate:
+    def _estimate_linear(self, mechanism: Mechanism, question: IndexDefinition) -> Estimate:
         """Estimate of a linear design: its norm, without scatter."""
         problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
         norm = problem.estimate({})
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
-    def _drive(self, mechanism: Mechanism, question: Question) -> ExcitedInputs:
+    def _drive(self, mechanism: Mechanism, question: IndexDefinition) -> ExcitedInputs:
         """Excitation of the inputs: signal, r.m.s. value, and delay of each input."""
         driven = question.drive.excited_mechanism(mechanism)
         arrivals = question.arrivals(driven)
@@ -190,11 +190,13 @@ class ApproximateLinear:
         inputs = [*(r.name for r in driven.roads), *(f.name for f in driven.forces)]
         return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in inputs))
 
-    def _equivalent_linear_model(self, mechanism: Mechanism, question: Question) -> EquivalentLinearModel | None:
+    def _equivalent_linear_model(self, mechanism: Mechanism, question: IndexDefinition) -> EquivalentLinearModel | None:
         """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
         return None if self._raw else equivalent_linear_model(mechanism, question, CONVENTIONS[self.conventions])
 
-    def _estimate_from_runs(self, question: Question, linear: EquivalentLinearModel | None, runs: Runs) -> Estimate:
+    def _estimate_from_runs(
+        self, question: IndexDefinition, linear: EquivalentLinearModel | None, runs: Runs
+    ) -> Estimate:
         notes: tuple[str, ...] = ()
         if question.amplitude is not None:
             notes = ("the amplitude of a sine is ignored: the excitation sets the size",)
@@ -226,7 +228,7 @@ class ApproximateLinear:
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
 
     def _from_gains(
-        self, question: Question, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
+        self, question: IndexDefinition, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
     ) -> Estimate:
         """Estimate of the index from squared gains, with the equivalent linear model as control if there is one."""
         drive = runs.drive
@@ -254,7 +256,12 @@ class ApproximateLinear:
         return error <= asked * estimate.value
 
     def _combine(
-        self, question: Question, known: LinearModel | None, gains: Array, drive: ExcitedInputs, unseen: float = 0.0
+        self,
+        question: IndexDefinition,
+        known: LinearModel | None,
+        gains: Array,
+        drive: ExcitedInputs,
+        unseen: float = 0.0,
     ) -> Estimate:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
@@ -313,7 +320,7 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
     return np.asarray(ratio + (outputs - ratio * inputs) / size)
 
 
-def _factor(question: Question, arrival: Arrival, runs: Runs) -> Array:
+def _factor(question: IndexDefinition, arrival: InputPath, runs: Runs) -> Array:
     """Factors (outputs, frequencies) from squared gains to the squares that the index sums."""
     omega = runs.drive.omega
     one = np.ones(omega.size)
@@ -324,7 +331,7 @@ def _factor(question: Question, arrival: Arrival, runs: Runs) -> Array:
     return squares if by_height else np.asarray(squares / omega**2)
 
 
-def _check_gains(arrivals: Sequence[Arrival]) -> None:
+def _check_gains(arrivals: Sequence[InputPath]) -> None:
     """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
     if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
         raise PerformanceIndexError(

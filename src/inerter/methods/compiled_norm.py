@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.excitation import road_of
-from inerter.indices.question import Combination, Question
+from inerter.indices.question import Combination, IndexDefinition
 from inerter.kernels import excess as excess_kernels
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
@@ -340,7 +340,7 @@ class CompiledQuestion:
         return weight * gains, weight * gradients
 
 
-def kernels_of(question: Question) -> tuple[Any, ...]:
+def kernels_of(question: IndexDefinition) -> tuple[Any, ...]:
     """The compiled code that values of the question and their gradients call."""
     if question.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
@@ -365,7 +365,7 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 
 
 def evaluate_problems(
-    mechanism: Mechanism, questions: Sequence[Question], conventions: Conventions, points: Mapping[str, Array]
+    mechanism: Mechanism, questions: Sequence[IndexDefinition], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
     """Indices (designs, indices), nan where not ok; indices with the same excitation and filter share one solve."""
     problems = [linear_problem(mechanism, question, conventions) for question in questions]
@@ -396,7 +396,7 @@ def evaluate_problems(
     return result
 
 
-def _shared_filter(question: Question) -> Any:
+def _shared_filter(question: IndexDefinition) -> Any:
     """The filter of all outputs; which outputs have which, where they differ."""
     several = set(question.filters)
     return several.pop() if len(several) == 1 else (question.outputs, question.filters)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly_represented
 from inerter.methods.error_bounds import with_error_sources
@@ -23,7 +23,7 @@ from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
 from inerter.systems.descriptor import Descriptor, describe
-from inerter.systems.input_paths import Arrival, apply_excitation, inputs_of
+from inerter.systems.input_paths import InputPath, apply_excitation, inputs_of
 from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism
@@ -44,7 +44,7 @@ class HarmonicBalance:
     The gains at given frequencies are its components, with gradients by central differences.
     """
 
-    question: Question
+    question: IndexDefinition
     descriptor: Descriptor  # inputs: the force, a force beside each friction; outputs: displacement, velocities
     parts: Equivalent
 
@@ -158,7 +158,7 @@ class HarmonicBalance:
         return with_error_sources(result, own, PROMISE + _SEARCH)
 
 
-def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalance:
+def harmonic_balance(mechanism: Mechanism, question: IndexDefinition) -> HarmonicBalance:
     """The balance for a peak gain.
 
     Raises `PerformanceIndexError` if the question does not go from one force to one output or says no amplitude.
@@ -170,7 +170,7 @@ def harmonic_balance(mechanism: Mechanism, question: Question) -> HarmonicBalanc
         )
     parts = equivalent(mechanism)
     arrivals = question.arrivals(parts.mechanism)
-    beside = tuple(Arrival(force_of(name), name) for name in parts.dampers)
+    beside = tuple(InputPath(force_of(name), name) for name in parts.dampers)
     descriptor = describe(
         parts.mechanism,
         inputs_of((*arrivals, *beside)),

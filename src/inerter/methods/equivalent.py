@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind, with_article
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
-from inerter.networks.elements.roles import Linear, Statistical
+from inerter.networks.elements.roles import LinearRole, StatisticalRole
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
-from inerter.systems.input_paths import Arrival, apply_excitation, inputs_of
+from inerter.systems.input_paths import InputPath, apply_excitation, inputs_of
 from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
@@ -102,7 +102,7 @@ def check_damped(mechanism: Mechanism) -> None:
 def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     """Raises `PerformanceIndexError` for the stroke, velocity or force of a friction: a damper has its place."""
     branches = full_graph(mechanism).branches
-    frictions = [branch.label for branch in branches if branch.element.statistical is Statistical.DAMPER]
+    frictions = [branch.label for branch in branches if branch.element.statistical is StatisticalRole.DAMPER]
     told = {called(label) for label in frictions for called in (force_of, velocity_of, stroke_of)}
     for name in names:
         if name in told:
@@ -167,7 +167,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     )
 
 
-def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
+def slipping_freely(mechanism: Mechanism, question: IndexDefinition) -> frozenset[str]:
     """Names of dampers of frictions with direct feedthrough from white noise, as of one in a tyre on a road.
 
     With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
@@ -188,7 +188,7 @@ def slipping_freely(mechanism: Mechanism, question: Question) -> frozenset[str]:
         found |= {parts.dampers[i] for i in reached}
 
 
-def _reachable(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> list[Strut | Tyre]:
+def _reachable(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> list[Strut | Tyre]:
     """Mounts connected to excited roads; forces act on masses, whose velocity has no jumps."""
     roads = {road.name for road in mechanism.roads} & {arrival.input for arrival in arrivals}
     return [m for m in mechanism.mounts() if roads & ({m.road} if isinstance(m, Tyre) else {*m.upper, *m.lower})]
@@ -203,9 +203,9 @@ def _reached_directly(descriptor: Descriptor) -> list[int]:
 def _typical_damping(mechanism: Mechanism) -> float:
     """Root of the largest stiffness times the largest inertia: the impedance at a natural frequency."""
     elements = [element for mount in mechanism.mounts() for element in mount.network.elements()]
-    springs = [e.gain * _size(e.value) for e in elements if e.linear is Linear.STIFFNESS]
+    springs = [e.gain * _size(e.value) for e in elements if e.linear is LinearRole.STIFFNESS]
     inertias = [_size(coordinate.inertia) for coordinate in mechanism.coordinates]
-    dampers = [e.gain * _size(e.value) for e in elements if e.linear is Linear.DAMPING]
+    dampers = [e.gain * _size(e.value) for e in elements if e.linear is LinearRole.DAMPING]
     if springs and inertias:
         return math.sqrt(max(springs) * max(inertias))
     return max(dampers, default=1e3)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slipping_freely
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
@@ -98,7 +98,7 @@ def relative_change(values: Array, references: Array) -> float:
 
 
 def equivalent_linear_model(
-    mechanism: Mechanism, question: Question, conventions: Conventions
+    mechanism: Mechanism, question: IndexDefinition, conventions: Conventions
 ) -> EquivalentLinearModel | None:
     """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.harmonic_response import ForcedResponse, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import (
@@ -24,7 +24,7 @@ from inerter.methods.linear import (
     linear_problem,
     with_convention_filters,
 )
-from inerter.methods.method import Estimate, Sees
+from inerter.methods.method import Estimate, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
@@ -88,14 +88,14 @@ class ExpectedValue:
     jobs: int | None = None
     period: int | None = None
     name = "expected-value"
-    words = (
+    description = (
         "means over simulations of the nonlinear design, with friction, gaps and elasticity, on random roads; for a "
         "peak gain the largest response to a sinusoidal force"
     )
     brief = "simulation"
-    sees = Sees.BOTH
+    nonlinearity_support = NonlinearitySupport.BOTH
     needs_amplitude = True
-    searches = True
+    supports_optimisation = True
     promise = PROMISE
 
     def __post_init__(self) -> None:
@@ -167,7 +167,7 @@ class ExpectedValue:
         changes = change(seeds)
         return changes[:count], changes[count:]
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that locate peaks and optima."""
         quick = StatisticalLinearisation().kernels(question, search=search)
         return (*quick, *KERNELS) if search or question.is_peak else KERNELS
@@ -191,7 +191,7 @@ class ExpectedValue:
         vehicle: Vehicle,
         index: Index,
         system: PiecewiseSystem,
-        question: Question,
+        question: IndexDefinition,
         linear: LinearProblem | None,
         pool: ThreadPoolExecutor,
     ) -> Estimate:
@@ -229,20 +229,20 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
     return omegas if omegas.size and np.all(np.isfinite(omegas)) else None
 
 
-def is_nonlinear(system: PiecewiseSystem, question: Question) -> bool:
+def is_nonlinear(system: PiecewiseSystem, question: IndexDefinition) -> bool:
     """Whether an element switches or, for mean squares, exerts a constant force."""
     lower, upper = system.mechanics.limits.T
     return bool(np.any(lower < upper) or (not question.is_peak and np.any(upper != 0.0)))
 
 
-def _is_held(system: PiecewiseSystem, question: Question, conventions: Conventions) -> bool:
+def _is_held(system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions) -> bool:
     """Whether the conventions change the value of linear designs too, so that it differs from the norm."""
     if conventions.hold is None:
         return False
     return not question.drive.is_random or drive(system, question, conventions).hold is not None
 
 
-def _linear(vehicle: Vehicle, question: Question, conventions: Conventions) -> LinearProblem | None:
+def _linear(vehicle: Vehicle, question: IndexDefinition, conventions: Conventions) -> LinearProblem | None:
     """Linear problem of the design; None if it is ill-posed without friction."""
     try:
         return linear_problem(vehicle.mechanism(), question, conventions)

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import (
     GAUSSIAN,
@@ -32,7 +32,7 @@ from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.notes import Note
 from inerter.systems.outputs import velocity_of
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]
 _STEPS = 160
@@ -207,7 +207,7 @@ class GaussianClosure:
     """
 
     mechanism: Mechanism
-    question: Question
+    question: IndexDefinition
     conventions: Conventions
     patterns: dict[frozenset[str], Pattern | None] = field(default_factory=dict)  # those met so far
 
@@ -377,7 +377,7 @@ class GaussianClosure:
 
 def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozenset[str]) -> Pattern:
     parts = equivalent(closure.mechanism, without, locked)
-    wanted = tuple(Weighted(velocity_of(name)) for name in parts.dampers)
+    wanted = tuple(OutputWeight(velocity_of(name)) for name in parts.dampers)
     outputs = closure.question.outputs
     filters = (*closure.question.filters, *(None for _ in wanted))
     joint_question = replace(closure.question, outputs=(*outputs, *wanted), filter=filters)

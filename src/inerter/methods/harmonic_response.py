@@ -18,7 +18,7 @@ from inerter.signals.harmonics import sine
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import tabulate
 from inerter.systems.filters import Filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ class ForcedResponse:
     """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
 
     system: PiecewiseSystem
-    arrival: Arrival  # a force, or a road's displacement or velocity
+    arrival: InputPath  # a force, or a road's displacement or velocity
     output: str
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through

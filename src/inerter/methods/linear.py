@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
 from inerter.indices.excitation import stand_ins_of
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.error_bounds import ROUNDING, with_error_sources
 from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
@@ -79,7 +79,7 @@ def check_conventions(name: object) -> None:
 class LinearProblem:
     """Linear problem of an index: the descriptor of the mechanism, and the evaluation of its system."""
 
-    question: Question
+    question: IndexDefinition
     unfiltered: Descriptor
     arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
@@ -217,7 +217,7 @@ class LinearProblem:
         return with_error_sources(replace(found, error_sources=(*stand_ins, *more)), own, promise)
 
 
-def linear_problem(mechanism: Mechanism, question: Question, conventions: Conventions) -> LinearProblem:
+def linear_problem(mechanism: Mechanism, question: IndexDefinition, conventions: Conventions) -> LinearProblem:
     """Linear problem for `question`, with its sources and the filters of the conventions.
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
@@ -235,7 +235,7 @@ def linear_problem(mechanism: Mechanism, question: Question, conventions: Conven
     )
 
 
-def check_peak_gain(question: Question) -> None:
+def check_peak_gain(question: IndexDefinition) -> None:
     """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
     if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
         raise PerformanceIndexError(
@@ -243,7 +243,9 @@ def check_peak_gain(question: Question) -> None:
         )
 
 
-def with_convention_filters(conventions: Conventions, mechanism: Mechanism, question: Question) -> Question:
+def with_convention_filters(
+    conventions: Conventions, mechanism: Mechanism, question: IndexDefinition
+) -> IndexDefinition:
     """Index definition with the filters of the conventions added to its filters."""
     if conventions.load_filter is None:
         return question

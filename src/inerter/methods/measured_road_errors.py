@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource
 from inerter.indices.excitation import shape_of
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
 
@@ -20,7 +20,7 @@ _BESIDE = np.concatenate([-np.geomspace(30.0, 0.03, 20), np.geomspace(0.03, 30.0
 
 
 def road_errors(
-    question: Question, system: LinearSystem, pade_order: int | None, norms: Array
+    question: IndexDefinition, system: LinearSystem, pade_order: int | None, norms: Array
 ) -> tuple[ErrorSource, ...]:
     """Errors of an index of r.m.s. values on a road with a measured shape; none on any other.
 
@@ -47,7 +47,7 @@ def road_errors(
     )
 
 
-def _change_of(question: Question, norms: Array) -> Callable[[Array], float]:
+def _change_of(question: IndexDefinition, norms: Array) -> Callable[[Array], float]:
     """Function from relative changes of the mean squares to the relative change of the index."""
     weights = np.array([abs(output.weight) for output in question.outputs])
     value = float(question.combine(norms, weights))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import (
     IndexLike,
@@ -106,12 +106,12 @@ class MethodWithChecks(Protocol):
 class MethodWithKernels(Protocol):
     """A method that calls compiled code."""
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions called by an estimate, or by a search; the slowest to compile first."""
         ...
 
 
-class Sees(Enum):
+class NonlinearitySupport(Enum):
     """Nonlinearities that a method models, in ascending order."""
 
     NEITHER = auto()  # friction is left out, gaps are closed
@@ -134,12 +134,12 @@ class Method(Protocol):
         ...
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Description of the values, to follow "Values are" in a report."""
         ...
 
     @property
-    def sees(self) -> Sees:
+    def nonlinearity_support(self) -> NonlinearitySupport:
         """Nonlinearities that the method models."""
         ...
 
@@ -149,7 +149,7 @@ class Method(Protocol):
         ...
 
     @property
-    def searches(self) -> bool:
+    def supports_optimisation(self) -> bool:
         """Whether optimisers can use its `objective`."""
         ...
 
@@ -256,7 +256,7 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
         _check_names(mechanism, one.question(mechanism))
 
 
-def _check_names(mechanism: Mechanism, question: Question) -> None:
+def _check_names(mechanism: Mechanism, question: IndexDefinition) -> None:
     driven = question.drive.excited_mechanism(mechanism)
     check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
     unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
-from inerter.methods.method import Estimate, Sees
+from inerter.methods.method import Estimate, NonlinearitySupport
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
 
@@ -32,11 +32,11 @@ class Norm:
 
     conventions: str = "exact"
     name = "norm"
-    words = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
+    description = "exact norms of the linear model: an H2 norm for an r.m.s. value, an H-infinity norm for a peak gain"
     brief = "exact norms"
-    sees = Sees.NEITHER
+    nonlinearity_support = NonlinearitySupport.NEITHER
     needs_amplitude = False
-    searches = True
+    supports_optimisation = True
     has_gradients = True
     promise = PROMISE
 
@@ -78,6 +78,6 @@ class Norm:
             )
         return CompiledQuestion(problem)
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
         return kernels_of(question) if search else ()

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.excitation import stand_ins_of
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
@@ -66,7 +66,7 @@ class OnRoads:
 
     system: PiecewiseSystem
     frictions: tuple[str, ...]
-    question: Question
+    question: IndexDefinition
     way: Drive
     linear: EquivalentLinearModel | None
     seed: int
@@ -103,7 +103,7 @@ class Rest:
 
 
 def on_roads(
-    system: PiecewiseSystem, question: Question, conventions: Conventions, seed: int, period: int | None = None
+    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
 ) -> OnRoads:
     """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
     way = drive(system, question, conventions, period)

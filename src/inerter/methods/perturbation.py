@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.kernels.arrays import FRICTION, KIND
 from inerter.methods.realisations import Drive, table
 from inerter.signals.harmonics import multisine
@@ -69,7 +69,7 @@ def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 
-def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> FirstOrder | None:
+def first_order(system: PiecewiseSystem, question: IndexDefinition, way: Drive) -> FirstOrder | None:
     """The first-order effect of every friction.
 
     None if a gap is there, if a part is loose without friction, if what moves is not one road alone, or if a friction
@@ -117,7 +117,7 @@ def first_order(system: PiecewiseSystem, question: Question, way: Drive) -> Firs
     return FirstOrder(way, velocities, effects)
 
 
-def _over_slip(system: PiecewiseSystem, question: Question) -> tuple[Array, Array]:
+def _over_slip(system: PiecewiseSystem, question: IndexDefinition) -> tuple[Array, Array]:
     """The outputs as rows over (state, inputs, 1), and over eta."""
     rows = [output_rows(system, system.outputs[output.output]) for output in question.outputs]
     columns = np.array([np.concatenate([on_x, on_u, [0.0]]) for on_x, on_u, _ in rows])

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.linear import Conventions
 from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
@@ -21,9 +21,9 @@ from inerter.signals.signal import Signal
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.periodic_steady_state import FEW_PERIODS
-from inerter.simulation.trajectory import Repetition
+from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ class Drive:
     """
 
     road: Road  # of each source
-    reached: tuple[tuple[Arrival, ...], ...]  # of each input, roads before forces; none where it is at rest
+    reached: tuple[tuple[InputPath, ...], ...]  # of each input, roads before forces; none where it is at rest
     roads: int  # inputs that are roads
     hold: float | None  # [s] of roads, where they are held
     period: int = PERIOD  # of a realisation [s]
@@ -71,7 +71,7 @@ class Drive:
             for i, arrivals in enumerate(self.reached)
         ]
 
-    def _sum(self, arrivals: Sequence[Arrival], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
+    def _sum(self, arrivals: Sequence[InputPath], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
         """The sum of what arrives; a force is what the velocity of a road is."""
         first = next(iter(signals.values()))
         omega = 2.0 * np.pi * first.frequencies
@@ -79,7 +79,7 @@ class Drive:
         return replace(first, coefficient=np.asarray(total * (1j * omega if velocity else 1.0)), speed=None)
 
 
-def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
+def factor_of(arrival: InputPath, omega: Array) -> NDArray[np.complex128]:
     """Complex gain of an input path at `omega` [rad/s]."""
     passed: Any = 1.0 if arrival.filter is None else arrival.filter.response(omega)
     if arrival.excess is not None:
@@ -87,7 +87,7 @@ def factor_of(arrival: Arrival, omega: Array) -> NDArray[np.complex128]:
     return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))
 
 
-def _one_road(reached: Sequence[Sequence[Arrival]], roads: int) -> bool:
+def _one_road(reached: Sequence[Sequence[InputPath]], roads: int) -> bool:
     """Whether one source is the road of all road inputs, and no force acts."""
     on_roads = [arrival for one in reached[:roads] for arrival in one]
     alone = all(len(one) == 1 for one in reached[:roads]) and not any(reached[roads:])
@@ -100,11 +100,13 @@ class RoadRun:
 
     power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
     status: Status
-    steady: Repetition
+    steady: PeriodicState
     jumps: Array  # what samples may miss of the r.m.s. values, relative to them
 
 
-def drive(system: PiecewiseSystem, question: Question, conventions: Conventions, period: int | None = None) -> Drive:
+def drive(
+    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, period: int | None = None
+) -> Drive:
     """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.

@@ -9,7 +9,7 @@ from typing import Any
 from inerter.fields import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
-from inerter.methods.method import Method, Sees
+from inerter.methods.method import Method, NonlinearitySupport
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.rows import Rows
@@ -17,20 +17,29 @@ from inerter.rows import Rows
 METHODS: Rows[type[Method]] = Rows(
     "method",
     "name",
-    ("words", "sees", "needs_amplitude", "searches", "estimate", "estimate_many", "objective"),
+    (
+        "description",
+        "nonlinearity_support",
+        "needs_amplitude",
+        "supports_optimisation",
+        "estimate",
+        "estimate_many",
+        "objective",
+    ),
     (Norm, StatisticalLinearisation, ExpectedValue, ApproximateLinear),
+    {"words": "description", "sees": "nonlinearity_support", "searches": "supports_optimisation"},
 )
 DEFAULT = Norm.name  # judges the designs of a study that names no method
 
 
 def is_blind(name: str) -> bool:
     """Whether the method models neither friction nor gaps."""
-    return _kind(name).sees is Sees.NEITHER
+    return _kind(name).nonlinearity_support is NonlinearitySupport.NEITHER
 
 
 def refuses_gaps(name: str) -> bool:
     """Whether the method does not support gaps."""
-    return _kind(name).sees is Sees.FRICTION
+    return _kind(name).nonlinearity_support is NonlinearitySupport.FRICTION
 
 
 def needs_amplitude(name: str) -> bool:
@@ -40,12 +49,12 @@ def needs_amplitude(name: str) -> bool:
 
 def searches(name: str) -> bool:
     """Whether the method supports optimisation."""
-    return bool(_kind(name).searches)
+    return bool(_kind(name).supports_optimisation)
 
 
 def words_of(name: str) -> str:
     """Description of the method's values, to follow "Values are"."""
-    return str(_kind(name).words)
+    return str(_kind(name).description)
 
 
 def brief_words_of(name: str) -> str:
@@ -53,9 +62,9 @@ def brief_words_of(name: str) -> str:
     return str(getattr(_kind(name), "brief", name))
 
 
-def nonlinearities_of(name: str) -> Sees:
+def nonlinearities_of(name: str) -> NonlinearitySupport:
     """Nonlinearities that the method models."""
-    return Sees(_kind(name).sees)
+    return NonlinearitySupport(_kind(name).nonlinearity_support)
 
 
 def averages(name: str) -> bool:
@@ -72,8 +81,8 @@ def without_roads(name: str, *, has_play: bool) -> str:
 
 def decisive_method_clause(name: str, message: str) -> str:
     """Clause on the method that can decide an uncertain result, to follow the message of its status."""
-    others = [other for other in METHODS if nonlinearities_of(other) is Sees.BOTH]
-    if nonlinearities_of(name) is Sees.BOTH or not others or any(other in message for other in others):
+    others = [other for other in METHODS if nonlinearities_of(other) is NonlinearitySupport.BOTH]
+    if nonlinearities_of(name) is NonlinearitySupport.BOTH or not others or any(other in message for other in others):
         return ""
     return f"; {others[0]} simulates it, and can decide"
 

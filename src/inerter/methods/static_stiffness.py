@@ -13,7 +13,7 @@ from inerter.indices.question import Index
 from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
 from inerter.networks.elements import Element, Free, Network, Parallel
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import linearise
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
@@ -113,7 +113,7 @@ class _Stiffness:
 def _stiffness(network: Network, columns: Mapping[str, Array], eye: Array, names: Sequence[str]) -> tuple[Array, Array]:
     """Stiffness (n,) and gradient (names, n)."""
     if isinstance(network, Element):
-        if network.linear is not Linear.STIFFNESS:
+        if network.linear is not LinearRole.STIFFNESS:
             return np.zeros(1), np.zeros((len(names), 1))
         if isinstance(network.value, Free):
             place = names.index(str(network.value.name))

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import Index, Question
+from inerter.indices.question import Index, IndexDefinition
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
 from inerter.methods.equivalent import PROMISE, check_damped, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.method import Estimate, Sees
+from inerter.methods.method import Estimate, NonlinearitySupport
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
@@ -47,15 +47,15 @@ class StatisticalLinearisation:
 
     conventions: str = "exact"
     name = "statistical-linearisation"
-    words = (
+    description = (
         "norms of a linear model in which an equivalent damper replaces each friction, for the motion that results; "
         "for a "
         "peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
-    sees = Sees.FRICTION
+    nonlinearity_support = NonlinearitySupport.FRICTION
     needs_amplitude = True
-    searches = True
+    supports_optimisation = True
     has_gradients = True
     promise = PROMISE
 
@@ -83,7 +83,7 @@ class StatisticalLinearisation:
         """Raises what `estimate` would raise for the design's elements and the index's outputs, whatever the values."""
         self._closure(vehicle, index)
 
-    def kernels(self, question: Question, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of the method; a search of a design without friction uses those of `Norm`."""
         if question.is_peak:
             return (*(kernels_of(question) if search else ()), harmonic.gains)

@@ -13,7 +13,7 @@ from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
-from inerter.simulation.trajectory import Repetition
+from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
@@ -29,11 +29,11 @@ class Squares(NamedTuple):
 
     power: Array
     status: Status
-    steady: Repetition
+    steady: PeriodicState
     jumps: Array
 
 
-def steady_state_error(found: Sequence[Repetition], peaks: float) -> ErrorSource:
+def steady_state_error(found: Sequence[PeriodicState], peaks: float) -> ErrorSource:
     """Error source of a periodic steady state not fully reached; `peaks` scales it from r.m.s. values."""
     return ErrorSource("periodic steady state", 3.0 * peaks * max((one.remaining_change for one in found), default=0.0))
 
@@ -77,7 +77,7 @@ def steady_squares(
     return Squares(power, trajectory.status, steady, jumps)
 
 
-def _nan_squares(count: int, status: Status, steady: Repetition) -> Squares:
+def _nan_squares(count: int, status: Status, steady: PeriodicState) -> Squares:
     nothing = np.full(count, np.nan)
     return Squares(nothing, status, steady, nothing)
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.filters import Filter
-from inerter.systems.input_paths import Arrival
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.symmetry import alike_half, opposed_half
 
 
-def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mechanism, tuple[Arrival, ...]] | None:
+def on_one_side(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> tuple[Mechanism, tuple[InputPath, ...]] | None:
     """Half model with the motion of the whole, and its input paths; None if there is none.
 
     The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
@@ -30,18 +30,18 @@ def on_one_side(mechanism: Mechanism, arrivals: Sequence[Arrival]) -> tuple[Mech
     if len(half.coordinates) == len(mechanism.coordinates):
         return None
     arriving = tuple(at[road.name] for road in half.roads)
-    springs = all(e.linear is Linear.STIFFNESS for tyre in half.tyres for e in tyre.network.elements())
+    springs = all(e.linear is LinearRole.STIFFNESS for tyre in half.tyres for e in tyre.network.elements())
     return half, tuple(map(_by_displacement, arriving)) if springs and not alike else arriving
 
 
-def _sign(one: Arrival, other: Arrival) -> float:
+def _sign(one: InputPath, other: InputPath) -> float:
     """Sign of the ratio of two input paths, 1 or -1; 0 if they are not proportional."""
     if replace(one, input=other.input, lever=other.lever) != other or abs(one.lever) != abs(other.lever):
         return 0.0
     return 1.0 if one.lever == other.lever else -1.0
 
 
-def _by_displacement(arrival: Arrival) -> Arrival:
+def _by_displacement(arrival: InputPath) -> InputPath:
     """Input path by the displacement of the road where it stays bounded, so that no drifting state remains."""
     shape = arrival.filter
     if arrival.displacement or shape is None or len(shape.numerator) < 2 or shape.numerator[-1] != 0.0:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
 from inerter.networks.elements import Element, Free, Network, Parallel, Series, Tied
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
@@ -123,7 +123,7 @@ def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None
                 )
 
 
-_LEFT_OUT = (Linear.OPEN, Linear.CLOSED)
+_LEFT_OUT = (LinearRole.OPEN, LinearRole.CLOSED)
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ def linearise(network: Network) -> LinearisedNetwork:
     kept, rigid = _linear(network)
     after = Counter(id(element) for element in kept.elements()) if kept is not None else Counter()
     dropped = Counter(id(element) for element in before) - after
-    left_out, closed = (tuple(e for e in before if e.linear is role) for role in (Linear.OPEN, Linear.CLOSED))
+    left_out, closed = (tuple(e for e in before if e.linear is role) for role in (LinearRole.OPEN, LinearRole.CLOSED))
     others = {id(e): e for e in before if e.linear not in _LEFT_OUT}
     idle = tuple(element.label for key, element in others.items() if dropped[key])
     return LinearisedNetwork(kept, rigid, left_out, closed, idle)
@@ -171,7 +171,7 @@ def linearise(network: Network) -> LinearisedNetwork:
 def _linear(network: Network) -> tuple[Network | None, bool]:
     if isinstance(network, Element):
         left_out = network.linear in _LEFT_OUT
-        return None if left_out else network, network.linear is Linear.CLOSED
+        return None if left_out else network, network.linear is LinearRole.CLOSED
     assert isinstance(network, Parallel | Series)
     parts = [_linear(part) for part in network.parts]
     rigid = [r for kept, r in parts if kept is None]

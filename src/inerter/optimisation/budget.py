@@ -15,7 +15,7 @@ from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
-from inerter.methods.method import AveragingMethod, Method, Sees, check_request, evaluate
+from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
@@ -49,7 +49,7 @@ class BudgetRange:
 
 
 @dataclass(frozen=True)
-class Budget:
+class BreakEven:
     """The values of a parameter for which a design has a lower index than a baseline.
 
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
@@ -70,7 +70,7 @@ class Budget:
     evaluations: int
 
 
-def budget(
+def break_even(
     design: Vehicle,
     baseline: Vehicle,
     index: IndexLike,
@@ -79,7 +79,7 @@ def budget(
     method: Method,
     bounds: tuple[float, float] | None = None,
     executor: Executor | None = None,
-) -> Budget:
+) -> BreakEven:
     """The values of `parameter` for which `design` has a lower `index` than `baseline`.
 
     `parameter` names elements of the struts, or of tyres, by their label, or is "friction" or "gap" for all of them.
@@ -101,7 +101,7 @@ def budget(
     ...     for strut in (k | c - (b | it.Friction(10.0)), k | it.Damper(4981))
     ... )
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-    >>> found = it.budget(design, baseline, comfort, parameter="friction", method=it.StatisticalLinearisation())
+    >>> found = it.break_even(design, baseline, comfort, parameter="friction", method=it.StatisticalLinearisation())
     >>> f"{found.value:.0f} {found.unit}"
     '506 N'
     """
@@ -121,10 +121,10 @@ def _budget(
     method: Method,
     chosen: list[Element],
     between: tuple[float, float],
-) -> Budget:
+) -> BreakEven:
     lower, upper = between
     known: dict[float, Comparison] = {}
-    exact = method.sees is Sees.NEITHER
+    exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
     fixed = _as_many_roads(design, index, method)
     same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
 
@@ -147,7 +147,7 @@ def _budget(
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
     asked = [known[at].status for at in grid if end is None or lies_on_the_way(at, end, grid[1] - grid[0])]
-    return Budget(
+    return BreakEven(
         parameter=parameter,
         unit=chosen[0].unit,
         value=np.nan if end is None else end.value,

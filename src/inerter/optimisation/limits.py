@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
-from inerter.indices.question import Combination, Index, OfIndex, Question
+from inerter.indices.question import Combination, Index, IndexDefinition, OfIndex
 from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
@@ -90,7 +90,7 @@ class OneOutput(OfIndex):
         """Title of the index with the output."""
         return f"{self.index.title} ({self.output})"
 
-    def question(self, mechanism: Mechanism) -> Question:
+    def question(self, mechanism: Mechanism) -> IndexDefinition:
         """The definition of the index with that output only."""
         whole = self.index.question(mechanism)
         i = [weighted.output for weighted in whole.outputs].index(self.output)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
-from inerter.methods.method import Estimate, Method, Sees, check_request
+from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
@@ -26,6 +26,7 @@ from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smoot
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
 from inerter.optimisation.threads import one_blas_thread
+from inerter.renamed import RenamedAttribute
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.kept import resumed
 from inerter.work.progress import report, within
@@ -46,18 +47,18 @@ _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on 
 class Optimum:
     """The best design found, with its convergence, active bounds and constraints.
 
-    `agreed` of `starts` local searches ended within 1e-6 of the best value, 1e-4 for a method that simulates (for a
-    peak gain: or approached the very place where one did); `ranges` gives for each parameter the least and the largest
-    value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to "lower" or "upper"
-    where its bound is active.
+    `n_converged` of `n_starts` local searches ended within 1e-6 of the best value, 1e-4 for a method that simulates
+    (for a peak gain: or approached the very place where one did); `ranges` gives for each parameter the least and the
+    largest value among them, which differ where the optimum is flat. `active_bounds` maps a parameter to "lower" or
+    "upper" where its bound is active.
 
     `limits` has each constrained quantity with its value, activity and sensitivity; `active_limits` and `sensitivities`
     summarise them. Where no design is feasible, the status is "infeasible" and the design that with the smallest
     violation.
 
-    `over_linear`, for methods other than `Norm`: comparison of the optimum with the best linear design, by the same
-    method on the same roads (a negative difference is an improvement); None where linear analysis does not determine
-    all values.
+    `gain_over_linear`, for methods other than `Norm`: comparison of the optimum with the best linear design, by the
+    same method on the same roads (a negative difference is an improvement); None where linear analysis does not
+    determine all values.
     """
 
     estimate: Estimate
@@ -65,12 +66,14 @@ class Optimum:
     design: Vehicle
     active_bounds: dict[str, str]
     ranges: dict[str, tuple[float, float]]
-    starts: int
-    agreed: int
+    n_starts: int
+    n_converged: int
     evaluations: int
     seed: int
-    over_linear: Comparison | None = None
+    gain_over_linear: Comparison | None = None
     limits: tuple[ConstraintResult, ...] = ()
+    over_linear, agreed = RenamedAttribute("gain_over_linear"), RenamedAttribute("n_converged")
+    starts = RenamedAttribute("n_starts")
 
     @property
     def active_limits(self) -> tuple[str, ...]:
@@ -156,7 +159,7 @@ def _best(
     quick = isinstance(objective, Differentiable) and is_smooth(problem.bounds)
     agreement = AGREEMENT if quick else COSTLY_AGREEMENT
     linear = None
-    if method.sees is not Sees.NEITHER:
+    if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
         with within("best linear design", 0.0, 0.5 * _QUICK):
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     if quick:
@@ -200,11 +203,11 @@ def _best(
         design=design,
         active_bounds=_active_bounds(free, parameters),
         ranges={name: (min(c), max(c)) for name, c in zip(free, np.array(same).T.tolist(), strict=True)},
-        starts=len(found),
-        agreed=len(same) if found else 0,
+        n_starts=len(found),
+        n_converged=len(same) if found else 0,
         evaluations=evaluations,
         seed=seed,
-        over_linear=over_linear,
+        gain_over_linear=over_linear,
         limits=held,
     )
 

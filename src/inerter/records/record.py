@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.remedy import Action, Remedy
+from inerter.renamed import RenamedAttribute
 
 Matrix = NDArray[np.float64]
 CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}
@@ -128,10 +128,7 @@ class Record:
             changes["further"] = {n: np.interp(changes["time"], self.time, v) for n, v in self.further.items()}
         return replace(self, notes=(*self.notes, *sentences), **changes)
 
-    def noted(self, *sentences: str, **changes: Any) -> Record:
-        """The old name of `with_notes`."""
-        warnings.warn("`noted` is now `with_notes`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.with_notes(*sentences, **changes)
+    noted = RenamedAttribute("with_notes")
 
     def samples(self, chosen: slice, *sentences: str) -> Record:
         """The record with some of its samples."""

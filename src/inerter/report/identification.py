@@ -135,7 +135,7 @@ def _answers(found: IdentificationResult) -> Iterator[str]:
             yield f"{name} {value}: {interval}." if interval else f"{name} {value}."
         else:
             yield f"{name} = {value}, with 95 % confidence {interval}."
-    parts = [c.explained(bool(c.checked.any())) for c in found.fit.comparisons]
+    parts = [c.variance_explained(bool(c.checked.any())) for c in found.fit.comparisons]
     where = "of the force that was kept for the check" if found.fit.comparisons[0].checked.any() else "of the force"
     yield f"The model explains {' and '.join(share(part) for part in parts)} {where}."
 
@@ -170,8 +170,8 @@ def _goodness(found: IdentificationResult) -> Iterator[tuple[str, ...]]:
         for part, mask in (("fitted", c.fitted), ("check", c.checked)):
             if mask.any():
                 check = part == "check"
-                left = format_handy(c.rms(check), "N"), format_handy(c.sound(check), "N")
-                numbers = (str(int(mask.sum())), share(c.explained(check)), *left)
+                left = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
+                numbers = (str(int(mask.sum())), share(c.variance_explained(check)), *left)
                 yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
 
 

@@ -26,8 +26,8 @@ def identification_data(found: IdentificationResult) -> dict[str, Any]:
         "model": found.name,
         "layout": format_expression(found.model, [e.label for e in found.model.elements()]),
         "status": str(fit.status),
-        "doubt": None if fit.doubt is None else str(fit.doubt.kind),
-        "explained": fit.explained,
+        "doubt": None if fit.reliability_warning is None else str(fit.reliability_warning.kind),
+        "explained": fit.variance_explained,
         "parameters": {
             name: {
                 "value": p.value,
@@ -114,14 +114,14 @@ def _record(reading: Reading, comparison: RecordFit) -> dict[str, Any]:
         "fitted": {
             "samples": int(comparison.fitted.sum()),
             "rms": comparison.rms(),
-            "sound": comparison.sound(),
-            "explained": comparison.explained(),
+            "sound": comparison.noise_level(),
+            "explained": comparison.variance_explained(),
         },
         "checked": {
             "samples": int(comparison.checked.sum()),
             "rms": comparison.rms(True),
-            "sound": comparison.sound(True),
-            "explained": comparison.explained(True),
+            "sound": comparison.noise_level(True),
+            "explained": comparison.variance_explained(True),
         },
         "whiteness": comparison.whiteness,
         "openings": dict(comparison.openings),

@@ -68,7 +68,7 @@ def unreliable(found: IdentificationResult) -> str:
     if status.ok:
         return ""
     warned = [r.used.source for r in found.readings if any(f.severity == "warning" for f in r.findings)]
-    doubt = found.fit.doubt
+    doubt = found.fit.reliability_warning
     if not warned or doubt is None or doubt.numbers.get("likeliest") is not None:
         return status.message
     return f"{status.message}. Begin with the warning about {' and '.join(warned)} below, which may name the cause"
@@ -82,7 +82,7 @@ def likely_causes(found: IdentificationResult) -> Iterator[tuple[str, str, str, 
         values = ", ".join(
             f"{name} {format_handy(value, units[name], 4)} +- {format_handy(error, units[name], 2)}"
             for name, (value, error) in e.estimates.items()
-            if name in units and e.misfit.sound
+            if name in units and e.misfit.is_noise_limited
         )
         yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.name.remedy(e.details))
 
@@ -181,8 +181,9 @@ def _goodness(found: IdentificationResult) -> Iterator[str]:
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
         for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
-            left = f"{format_handy(c.rms(check), 'N')} r.m.s. left, by the sensors {format_handy(c.sound(check), 'N')}"
-            yield f"    {part}  {share(c.explained(check))} explained, {left}"
+            residual, noise = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
+            left = f"{residual} r.m.s. left, by the sensors {noise}"
+            yield f"    {part}  {share(c.variance_explained(check))} explained, {left}"
         yield from wrap(whiteness(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
     yield from wrap(misfit(found), WIDTH, initial_indent="  ", subsequent_indent="  ")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError
+from inerter.renamed import RenamedAttribute
 from inerter.signals.arguments import positive
 from inerter.signals.signal import SampledSignal, Signal
 
@@ -113,10 +113,7 @@ class Profile:
             (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
         )
 
-    def driven(self, speed: float, track: str = "") -> SampledSignal:
-        """The old name of `to_signal`."""
-        warnings.warn("`driven` is now `to_signal`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.to_signal(speed, track)
+    driven = RenamedAttribute("to_signal")
 
     def signals(self, speed: float) -> SampledSignal | dict[str, SampledSignal]:
         """Signals for `simulate(..., road=...)`: one signal, or one for the left and one for the right track.

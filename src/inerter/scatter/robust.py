@@ -1,4 +1,4 @@
-"""`robust`: robust optimisation of a quantile of an index under tolerances; and that quantile as an index."""
+"""`optimise_robust`: robust optimisation of a quantile of an index under tolerances; and that quantile as an index."""
 
 from __future__ import annotations
 
@@ -205,7 +205,7 @@ def _gradient(objective: Differentiable, point: Array) -> Array:
     return np.asarray(gradients[int(np.argmax(values))])
 
 
-def robust(
+def optimise_robust(
     vehicle: Vehicle,
     index: IndexLike,
     method: Method,
@@ -219,19 +219,19 @@ def robust(
 ) -> Optimum:
     """Robust optimisation: minimise a quantile (default: 95 %) of an index under tolerances.
 
-    `spread` is that of `tolerance`, of element values only, uniformly distributed: free values vary about their chosen
-    value, fixed ones about their own, and tied ones, by their labels, about their dependent value. All designs of the
-    search use one sample; the value of the optimum, with its interval, is that quantile over an independent sample,
-    four times as large. Otherwise as `optimise`, with two starts for each free value. For further options use
-    `Quantile`.
+    `spread` is that of `tolerance_analysis`, of element values only, uniformly distributed: free values vary about
+    their chosen value, fixed ones about their own, and tied ones, by their labels, about their dependent value. All
+    designs of the search use one sample; the value of the optimum, with its interval, is that quantile over an
+    independent sample, four times as large. Otherwise as `optimise`, with two starts for each free value. For further
+    options use `Quantile`.
 
-    Raises the errors of `optimise` and `tolerance`.
+    Raises the errors of `optimise` and `tolerance_analysis`.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-    >>> found = it.robust(car, comfort, it.Norm(), spread={"c": 0.3, "b": 0.3}, samples=32)
+    >>> found = it.optimise_robust(car, comfort, it.Norm(), spread={"c": 0.3, "b": 0.3}, samples=32)
     >>> round(found.value, 1)
     2.5
     """

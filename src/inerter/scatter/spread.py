@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
-from inerter.methods.method import Method, Sees
+from inerter.methods.method import Method, NonlinearitySupport
 from inerter.networks.elements import Element, Free, Tied
 from inerter.vehicle.replace_values import (
     elements_by_label,
@@ -128,7 +128,7 @@ def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: C
 
     `idle` names values without effect: with friction neglected, elements without force have none.
     """
-    if method.sees is not Sees.NEITHER:
+    if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
         return OK
     elements = [element for strut in vehicle.mechanism().struts for element in strut.network.elements()]
     switching = {element.label for element in elements if element.acts}

@@ -1,4 +1,4 @@
-"""`tolerance`: distribution of an index under tolerances, and its Sobol' sensitivity indices."""
+"""`tolerance_analysis`: distribution of an index under tolerances, and its Sobol' sensitivity indices."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
+from inerter.renamed import RenamedAttribute
 from inerter.scatter.spread import Scatter, elements_scatter, nominal, scatter_left_out, scatter_of, with_free_scatter
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
@@ -35,10 +36,9 @@ _TRIED_ALONE = 16  # designs tested where each is a separate mechanism
 class Tolerance:
     """Distribution of an index under tolerances of a design.
 
-    `main` are the first-order and `total` the total-order Sobol' indices of each value (estimates without error bound,
-    which may slightly exceed the range 0 to 1). `worst` is the largest value found, at the `worst_values`, in the
-    sample and at the corners of the tolerances. All are nan, with a status, where the index has no value for some of
-    the sample.
+    `first_order` and `total_order` are the Sobol' indices of each value (estimates without error bound, which may
+    slightly exceed the range 0 to 1). `worst` is the largest value found, at the `worst_values`, in the sample and at
+    the corners of the tolerances. All are nan, with a status, where the index has no value for some of the sample.
     """
 
     nominal: Estimate
@@ -46,12 +46,13 @@ class Tolerance:
     standard_deviation: float
     worst: float
     worst_values: dict[str, float]
-    main: dict[str, float]
-    total: dict[str, float]
+    first_order: dict[str, float]
+    total_order: dict[str, float]
     values: Array = field(repr=False)  # of the index over the sample
     scatter: Scatter
     seed: int
     status: Status
+    main, total = RenamedAttribute("first_order"), RenamedAttribute("total_order")
 
     @property
     def unit(self) -> str:
@@ -79,7 +80,7 @@ class Tolerance:
         return Estimate(value, self.unit, self.status, error, interval, self.values.size)
 
 
-def tolerance(
+def tolerance_analysis(
     design: Vehicle,
     index: IndexLike,
     method: Method,
@@ -107,8 +108,8 @@ def tolerance(
     >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-    >>> found = it.tolerance(car, comfort, it.Norm(), spread={"c": 0.1, "b": 0.05, "k": 0.05}, samples=256)
-    >>> round(found.mean, 3), round(found.quantile(0.95), 3), max(found.total, key=found.total.get)
+    >>> found = it.tolerance_analysis(car, comfort, it.Norm(), spread={"c": 0.1, "b": 0.05, "k": 0.05}, samples=256)
+    >>> round(found.mean, 3), round(found.quantile(0.95), 3), max(found.total_order, key=found.total_order.get)
     (2.431, 2.471, 'k')
     """
     scatter = scatter_of(spread, distribution)
@@ -172,7 +173,7 @@ def _analyse(
     same = np.all(mixed_values == both[:samples], axis=1)
     idle = [name for name, is_same in zip(names, same.tolist(), strict=True) if is_same]
     status = worst_of((status, scatter_left_out(design, method, scatter, idle)))
-    main, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
+    first, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
     top = int(np.argmax(extreme)) if known else 0
     own = nominal(design, scatter)
     return Tolerance(
@@ -181,8 +182,8 @@ def _analyse(
         standard_deviation=float(both.std(ddof=1)),
         worst=float(extreme[top]) if known else np.nan,
         worst_values={n: own[n] * f if known else np.nan for n, f in zip(names, factors[top].tolist(), strict=True)},
-        main=dict(zip(names, main.tolist(), strict=True)),
-        total=dict(zip(names, total.tolist(), strict=True)),
+        first_order=dict(zip(names, first.tolist(), strict=True)),
+        total_order=dict(zip(names, total.tolist(), strict=True)),
         values=both,
         scatter=scatter,
         seed=seed,

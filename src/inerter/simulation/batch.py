@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
 from inerter.kernels.prepare import prepare_on
+from inerter.renamed import renamed_keywords
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.initial_state import ending_of, initial_state
@@ -71,19 +72,20 @@ class Batch:
         return xarray.Dataset({**data, "events": (dims, self.events), "status": (dims, status)})
 
 
+@renamed_keywords(settled="discard")
 def simulate_many(
     vehicles: Sequence[Vehicle],
     *,
     outputs: Sequence[str],
     duration: float,
     step: float = 2e-4,
-    settled: float = 0.0,
+    discard: float = 0.0,
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
     **driven: Unpack[BatchInputs],
 ) -> Batch:
-    """Simulate every vehicle on every signal, and keep the mean squares of `outputs` from `settled` [s] on.
+    """Simulate every vehicle on every signal, and keep the mean squares of `outputs` after the first `discard` [s].
 
     What drives them are the keywords of `simulate`, here sequences of signals, which are gone through together: the
     j-th run of a vehicle takes the j-th of each. `jobs` threads (all cores by default) share the work, or an
@@ -96,18 +98,18 @@ def simulate_many(
     names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
         raise SimulationError(f"The number of threads must be a positive integer, got jobs = {jobs!r}.")
-    if not is_number(settled):
-        raise SimulationError(f"The time from which values count must be a number of seconds, got {settled!r}.")
+    if not is_number(discard):
+        raise SimulationError(f"discard: the discarded time must be a number of seconds; got {discard!r}.")
     check_keywords("simulate_many", driven)
     speed, initial = driven.get("speed"), initial_of(driven)
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
-    knots, skipped = whole_steps(duration, step), round(settled / step)
+    knots, skipped = whole_steps(duration, step), round(discard / step)
     if not 0 <= skipped < knots:
-        raise SimulationError(f"The part that does not count, {settled:g} s, must be shorter than {duration:g} s.")
+        raise SimulationError(f"discard: {discard:g} s must be shorter than the duration, {duration:g} s.")
     if executor is not None:
-        same = {"outputs": names, "duration": duration, "step": step, "settled": settled, "initial": initial}
+        same = {"outputs": names, "duration": duration, "step": step, "discard": discard, "initial": initial}
         with running_on(executor) as there:
             prepare_on(there, event_driven.KERNELS)
             return _run_on_executor(cars, groups, count, {**same, "speed": speed}, progress)

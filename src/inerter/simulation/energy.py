@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.trajectory import Energy
@@ -25,8 +25,8 @@ def energy_of(integration: Integration) -> Energy:
         inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
         stored=_stored_energy(system, table, integration.state, knot)
         - _stored_energy(system, table, integration.begun, 0),
-        dampers={b.label: float(w) for b, w in branches if b.element.linear is Linear.DAMPING},
-        friction={b.label: float(w) for b, w in branches if b.element.switches_by(Guard.FORCE)},
+        dampers={b.label: float(w) for b, w in branches if b.element.linear is LinearRole.DAMPING},
+        friction={b.label: float(w) for b, w in branches if b.element.switches_by(GuardRole.FORCE)},
     )
 
 
@@ -37,5 +37,5 @@ def _stored_energy(system: PiecewiseSystem, table: InputTable, state: Matrix, kn
     speeds = system.kinetic @ state[:na] + system.kinetic_road @ rate
     lengths = system.elongations[0] @ state[na:] + system.elongations[1] @ z
     elements = [b.element for b in system.graph.branches]
-    k = np.array([e.coefficient if e.linear is Linear.STIFFNESS else 0.0 for e in elements])
+    k = np.array([e.coefficient if e.linear is LinearRole.STIFFNESS else 0.0 for e in elements])
     return float(0.5 * system.inertia @ speeds**2 + 0.5 * k @ lengths**2)

@@ -37,10 +37,10 @@ from inerter.kernels.events import evaluate, integrate
 from inerter.kernels.integrate import lines_of, march_of
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.threads import check_wanted
-from inerter.simulation.trajectory import Ending
+from inerter.simulation.trajectory import FinalState
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
@@ -107,7 +107,7 @@ class Integration:
         modes.reach[m] = discretise(sizes, first, self.used, modes.maps[m], modes.steps[m], step)
         return True
 
-    def go_on_from(self, ending: Ending) -> None:
+    def go_on_from(self, ending: FinalState) -> None:
         """Begin in the mode in which another integration of the same mechanism ended."""
         states = np.array(ending.mode, dtype=np.int64)
         self.mode(states)
@@ -135,11 +135,11 @@ class Integration:
         return np.array(self.motion.state)
 
     @property
-    def ending(self) -> Ending:
+    def ending(self) -> FinalState:
         """Final contact state and scales, from which a further simulation continues."""
         mode = self.modes.state[self.motion.place["mode"][0]]
         scale = np.maximum(self.motion.scale, np.abs(self.state))
-        return Ending(self.system.mechanism, tuple(mode.tolist()), scale)
+        return FinalState(self.system.mechanism, tuple(mode.tolist()), scale)
 
     @property
     def eta(self) -> slice:
@@ -183,7 +183,10 @@ class Integration:
         rate, motion = float(np.abs(poles[fastest])), motions[:, fastest]
         massless = maps[self.eta, :n][na : na + self.system.motions[1].shape[1]] @ motion
         speeds = np.abs(self.system.rates[0] @ motion[:na] + self.system.rates[1] @ massless)
-        taken = {Linear.DAMPING: 1.0, Linear.STIFFNESS: 1.0 / rate}  # by a damper c v^2, by a spring k (v / rate) v
+        taken = {
+            LinearRole.DAMPING: 1.0,
+            LinearRole.STIFFNESS: 1.0 / rate,
+        }  # by a damper c v^2, by a spring k (v / rate) v
         powers = np.array(
             [
                 taken.get(b.element.linear, 0.0) * b.element.coefficient * v**2
@@ -237,7 +240,7 @@ def start(
     keep: bool = True,
     account: bool = False,
     settled: int = 0,
-    after: Ending | None = None,
+    after: FinalState | None = None,
 ) -> Integration:
     """An integration at its beginning.
 
@@ -252,7 +255,7 @@ def start(
     mechanics = _mechanics(system, rows, len(outputs))
     sizes, used = mechanics.sizes, _used_knot_numbers(system, table, bool(rows))
     jumps = table.value.shape[1] if table.jumps else 0
-    sharp = any(element.switches_by(Guard.ELONGATION) for element in system.nonlinear_elements)
+    sharp = any(element.switches_by(GuardRole.ELONGATION) for element in system.nonlinear_elements)
     shape = (sizes.states, used.size, sizes.elements, sizes.squares, jumps, sharp)
     columns, followed, swaying = lines_of(*shape)
     record = _record(sizes, state, table.samples if keep else 0)
@@ -282,7 +285,7 @@ def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]
     """The constants, with rows of outputs, of which the first are squared."""
     n, k = system.order, len(system.nonlinear)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
-    dampers = sum(b.element.linear is Linear.DAMPING for b in system.graph.branches)
+    dampers = sum(b.element.linear is LinearRole.DAMPING for b in system.graph.branches)
     constants, width, eta = system.mechanics, n + system.inputs + na + nw + k, n + k
     entry, output = eta + na + nw + k, eta + na + nw + k + nw + k
     return Mechanics(

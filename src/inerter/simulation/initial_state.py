@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
 from inerter.simulation.statics import equilibrium
-from inerter.simulation.trajectory import Ending, Trajectory
+from inerter.simulation.trajectory import FinalState, Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -46,10 +46,10 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
     return np.asarray(given)
 
 
-def ending_of(initial: Initial) -> Ending | None:
+def ending_of(initial: Initial) -> FinalState | None:
     """Final contact state of the event-driven run from which this one continues; None if there is none."""
     ending = initial._ending if isinstance(initial, Trajectory) else None
-    return ending if isinstance(ending, Ending) else None
+    return ending if isinstance(ending, FinalState) else None
 
 
 def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:

@@ -12,7 +12,7 @@ from inerter.kernels.events import evaluate
 from inerter.simulation.energy import energy_of
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.trajectory import Event, Repetition, Trajectory
+from inerter.simulation.trajectory import Event, PeriodicState, Trajectory
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
@@ -20,7 +20,7 @@ Matrix = NDArray[np.float64]
 _ROUNDING = 1e-14  # of a sum, relative to its terms
 
 
-def trajectory_of(integration: Integration, steady: Repetition | None, label: str) -> Trajectory:
+def trajectory_of(integration: Integration, steady: PeriodicState | None, label: str) -> Trajectory:
     system, table, reached = integration.system, integration.table, integration.table.samples
     if not integration.status.ok:
         reached = int(np.sum(table.slot[: integration.segment + 1] >= 0))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import Branch, Graph
 from inerter.vehicle.mechanism import Mechanism
 
@@ -131,7 +131,7 @@ def parts_of(mechanism: Mechanism, graph: Graph) -> Parts:
     E, R = _stack(graph.branches, n, len(mechanism.roads))
     k, c, b = (
         np.array([branch.element.coefficient if branch.element.linear is law else 0.0 for branch in graph.branches])
-        for law in (Linear.STIFFNESS, Linear.DAMPING, Linear.MASS)
+        for law in (LinearRole.STIFFNESS, LinearRole.DAMPING, LinearRole.MASS)
     )
     return Parts(graph.branches, E, R, ports, k, c, b, masses, _reactions(graph.branches))
 
@@ -148,7 +148,7 @@ def _reactions(branches: tuple[Branch, ...]) -> tuple[Reaction, ...]:
         if branch.element.switch is None:
             continue
         lower, upper = branch.element.checked_limits()
-        even, gap = -lower == upper, branch.element.switches_by(Guard.ELONGATION)
+        even, gap = -lower == upper, branch.element.switches_by(GuardRole.ELONGATION)
         beside = [j for j, other in enumerate(found) if even and other.even and _sense(branch, other)]
         if gap or not even:
             found.append(Reaction(gap, lower, upper, branch.nodes, branch.roads, {i: 1.0}))

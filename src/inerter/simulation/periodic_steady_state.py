@@ -14,7 +14,7 @@ from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.trajectory import Repetition
+from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -79,7 +79,9 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     return run, mismatch
 
 
-def settle(system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool) -> tuple[Integration, Repetition]:
+def settle(
+    system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool
+) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
     again = repeating(table)
     quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
@@ -97,7 +99,7 @@ def mean_squares(
     state: Matrix,
     most: int = FEW_PERIODS,
     repeats: float = _ENOUGH,
-) -> tuple[Matrix, Integration, Repetition]:
+) -> tuple[Matrix, Integration, PeriodicState]:
     """Mean squares of outputs over one period, once the state repeats, the integration, and how well it repeats.
 
     It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
@@ -112,7 +114,7 @@ def mean_squares(
 
 def _repeat_period(
     integration: Integration, again: InputTable, repeats: float, most: int
-) -> tuple[Integration, Repetition]:
+) -> tuple[Integration, PeriodicState]:
     """Repeat the period until the relative change of state is below `repeats`; sums are those of the last period."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
@@ -126,10 +128,10 @@ def _repeat_period(
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)
-    return integration, Repetition(float(again.time[-1] - again.time[0]), periods, mismatch)
+    return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch)
 
 
-def _steady_state_warning(found: Repetition) -> Status:
+def _steady_state_warning(found: PeriodicState) -> Status:
     message = (
         f"periodic steady state not reached after {found.periods} periods: relative change of state per period "
         f"{found.mismatch:.1e}"

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.coordinates import dependencies, null_space
 from inerter.systems.lever_arms import independent_rows
 from inerter.systems.piecewise import PiecewiseSystem
@@ -77,8 +77,8 @@ class _Parts:
 
 def _parts(system: PiecewiseSystem, road: Matrix, force: Matrix) -> _Parts:
     branches = system.graph.branches
-    springs = [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
-    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
+    springs = [i for i, b in enumerate(branches) if b.element.linear is LinearRole.STIFFNESS]
+    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(GuardRole.ELONGATION)]
     rows = np.array([b.nodes for b in branches]).reshape(len(branches), len(system.graph.nodes))
     compliance, ends = np.zeros(len(branches)), np.zeros((len(branches), 2))
     for i in springs:
@@ -100,7 +100,7 @@ def _parts(system: PiecewiseSystem, road: Matrix, force: Matrix) -> _Parts:
 def own_forces(system: PiecewiseSystem) -> Matrix:
     """The forces of all branches that act also at rest [N]: of a friction that cannot be without one, the smallest."""
     elements = [b.element for b in system.graph.branches]
-    return np.array([np.clip(0.0, *e.limits) if e.switches_by(Guard.FORCE) else 0.0 for e in elements])
+    return np.array([np.clip(0.0, *e.limits) if e.switches_by(GuardRole.FORCE) else 0.0 for e in elements])
 
 
 def _end(parts: _Parts, gap: int, side: int) -> float:

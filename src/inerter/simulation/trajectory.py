@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError, SimulationError, Status
+from inerter.renamed import RenamedAttribute
 from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads
@@ -46,14 +47,16 @@ class Energy:
     friction: Mapping[str, float]
 
     @property
-    def put_in(self) -> float:
+    def input_work(self) -> float:
         """Work of all inputs [J]."""
         return sum(self.inputs.values())
+
+    put_in = RenamedAttribute("input_work")
 
     @property
     def residual(self) -> float:
         """Residual of the energy balance [J]."""
-        return self.put_in - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
+        return self.input_work - self.stored - sum(self.dampers.values()) - sum(self.friction.values())
 
     @property
     def relative_residual(self) -> float:
@@ -64,7 +67,7 @@ class Energy:
 
 
 @dataclass(frozen=True)
-class Repetition:
+class PeriodicState:
     """Convergence of a periodic response: period, number of periods, and remaining change per period."""
 
     period: float  # [s]
@@ -83,7 +86,7 @@ class Repetition:
 
 
 @dataclass(frozen=True, eq=False)
-class Ending:
+class FinalState:
     """Contact state and scales with which, besides the state, another simulation of the mechanism continues exactly."""
 
     mechanism: Mechanism
@@ -103,7 +106,7 @@ class Trajectory:
     outputs: Mapping[str, Output]
     states: Mapping[str, str]  # state of every nonlinear element at the start
     energy: Energy | None = None  # if it was asked for
-    repetition: Repetition | None = None  # of a periodic steady state
+    repetition: PeriodicState | None = None  # of a periodic steady state
     final_state: Matrix = field(default_factory=lambda: np.zeros(0))  # to go on from: simulate(..., initial=...)
     end: float = 0.0  # [s] when that is
     label: str = ""  # of the signals

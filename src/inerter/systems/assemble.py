@@ -1,4 +1,4 @@
-"""`assemble`: from a vehicle without free values to its linear system."""
+"""`state_space`: from a vehicle without free values to its linear system."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from inerter.systems.linear import LinearSystem, check_names
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 
-def assemble(
+def state_space(
     vehicle: Vehicle, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
 ) -> LinearSystem:
     """State matrices of a vehicle, with road velocities [m/s] and external forces [N] as inputs.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.networks.elements import Element, Free
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
 from inerter.systems.incidence import incidence_rows, inertias, of_law, ports
@@ -148,11 +148,11 @@ class Frame:
     def across(self, branch: Branch) -> RowBlocks:
         """Rows of the quantity that an element's value multiplies: its acceleration, velocity or elongation."""
         match branch.element.linear:
-            case Linear.MASS:
+            case LinearRole.MASS:
                 return self.acceleration(branch.nodes)
-            case Linear.DAMPING:
+            case LinearRole.DAMPING:
                 return self.velocity(branch.nodes, branch.roads)
-            case Linear.STIFFNESS:
+            case LinearRole.STIFFNESS:
                 alone = np.zeros(len(self.springs))
                 alone[self.spring_number[id(branch)]] = 1.0
                 return self.elongation(alone)
@@ -169,7 +169,7 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
 
     Raises `MechanismError` for an inerter on the road itself, and for a node that is held by nothing.
     """
-    for branch in of_law(graph, Linear.MASS):
+    for branch in of_law(graph, LinearRole.MASS):
         if np.any(branch.roads):
             raise MechanismError(
                 f"{branch.element.key.capitalize()} {branch.label!r} is mounted on the road itself: its force "
@@ -178,13 +178,13 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
             )
     columns = [i for i, road in enumerate(mechanism.roads) if road.name in inputs]
     forces = _forces(mechanism, graph, inputs[len(columns) :])
-    springs = of_law(graph, Linear.STIFFNESS)
+    springs = of_law(graph, LinearRole.STIFFNESS)
     spring_rows, spring_roads = incidence_rows(springs, graph)
     spring_roads = np.array([b.roads[columns] for b in springs]).reshape(len(springs), len(columns))
     found = find_coordinates(
         graph.nodes,
         inertia=inertias(mechanism, graph)[0],
-        damping=incidence_rows(of_law(graph, Linear.DAMPING), graph)[0],
+        damping=incidence_rows(of_law(graph, LinearRole.DAMPING), graph)[0],
         springs=spring_rows,
         spring_roads=spring_roads,
         forces=forces,

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, LinearSystemError
 from inerter.networks.elements import Free
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import Frame, Long, split
 from inerter.systems.coordinates import combination
 from inerter.systems.filters import Filter
@@ -173,7 +173,7 @@ def describe(
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
     graph = linear_graph(mechanism)
-    springs, _ = incidence_rows(of_law(graph, Linear.STIFFNESS), graph)
+    springs, _ = incidence_rows(of_law(graph, LinearRole.STIFFNESS), graph)
     span = BranchRows.of(graph, [])
     rows = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     return all(combination(span, springs, row) is not None for row in rows)

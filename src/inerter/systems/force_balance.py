@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import Branch
 from inerter.vehicle.mechanism import GROUND_ACCELERATION
@@ -60,11 +60,11 @@ def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
         on = np.zeros(frame.unknowns)
         on[at.a1], on[at.u1], on[at.y], on[at.z] = frame.split.rate(branch.nodes)
         yield branch.element, on, frame.across(branch)
-        if branch.element.linear is Linear.MASS:
+        if branch.element.linear is LinearRole.MASS:
             momentum = np.zeros(frame.unknowns)
             momentum[at.u0] = on[at.u1]
             yield branch.element, momentum, frame.velocity(branch.nodes)
-        if branch.element.linear is Linear.STIFFNESS and at.settles:
+        if branch.element.linear is LinearRole.STIFFNESS and at.settles:
             change = np.zeros(frame.unknowns)
             change[at.z1] = on[at.z]
             yield branch.element, change, frame.velocity(branch.nodes, branch.roads)

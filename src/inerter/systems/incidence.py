@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.graph import Branch, Graph
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
 
 
-def of_law(graph: Graph, law: Linear) -> list[Branch]:
+def of_law(graph: Graph, law: LinearRole) -> list[Branch]:
     """The branches whose element is so much to linear analysis."""
     return [branch for branch in graph.branches if branch.element.linear is law]
 
@@ -28,14 +28,14 @@ def incidence_rows(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Ma
 
 def inertias(mechanism: Mechanism, graph: Graph) -> tuple[Matrix, Matrix]:
     """Rows of what has inertia, coordinates first, then inerters, over nodes and over roads."""
-    nodes, roads = incidence_rows(of_law(graph, Linear.MASS), graph)
+    nodes, roads = incidence_rows(of_law(graph, LinearRole.MASS), graph)
     masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     return np.vstack([masses, nodes]), np.vstack([np.zeros((len(masses), roads.shape[1])), roads])
 
 
 def inertia_values(mechanism: Mechanism, graph: Graph) -> Matrix:
     """The values of `inertias`, none of which is free."""
-    inerters = (branch.element.coefficient for branch in of_law(graph, Linear.MASS))
+    inerters = (branch.element.coefficient for branch in of_law(graph, LinearRole.MASS))
     return np.array([*(coordinate.element.coefficient for coordinate in mechanism.coordinates), *inerters])
 
 

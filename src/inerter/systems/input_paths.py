@@ -27,7 +27,7 @@ Chain = tuple[int, Filter]  # the number of a column, and a filter behind it
 
 
 @dataclass(frozen=True)
-class Arrival:
+class InputPath:
     """Input path from a source to an input: `lever` times the source, `delay` seconds late, through `filter`.
 
     An input that is a road gets its velocity, or with `displacement` its displacement. Where the filter only stands in
@@ -58,17 +58,17 @@ class Arrival:
         return ([0, *top] if self.displacement else top), bottom
 
 
-def inputs_of(arrivals: Sequence[Arrival]) -> tuple[str, ...]:
+def inputs_of(arrivals: Sequence[InputPath]) -> tuple[str, ...]:
     """The inputs that are reached, each once."""
     return tuple(dict.fromkeys(arrival.input for arrival in arrivals))
 
 
-def excesses_of(arrivals: Sequence[Arrival]) -> dict[str, Excess]:
+def excesses_of(arrivals: Sequence[InputPath]) -> dict[str, Excess]:
     """Relative excess of the true density over that of the filter, by source; only where the filter is approximate."""
     return {arrival.source: arrival.excess for arrival in arrivals if arrival.excess is not None}
 
 
-def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:
+def columns_of(arrivals: Sequence[InputPath]) -> list[Column]:
     """Sources at times of arrival, those of one source in the order of time; one for each input if all are plain."""
     if _plain(arrivals):
         return [(arrival.input, arrival.source, arrival.delay) for arrival in arrivals]
@@ -76,7 +76,7 @@ def columns_of(arrivals: Sequence[Arrival]) -> list[Column]:
     return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
 
 
-def apply_excitation(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Descriptor:
+def apply_excitation(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
     Raises `LinearSystemError` for the displacement of a road whose velocity acts on a damper directly.
@@ -124,7 +124,7 @@ def apply_excitation(descriptor: Descriptor, arrivals: Sequence[Arrival]) -> Des
     )
 
 
-def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: Mapping[str, Sum]) -> Descriptor:
+def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, InputPath]], sums: Mapping[str, Sum]) -> Descriptor:
     """The descriptor whose inputs are columns times numbers."""
     levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
     for column, arrival in reached:
@@ -141,7 +141,7 @@ def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, Arrival]], sums: M
     return replace(d, F=F, Y_u=Y_u, X_u=X_u, inputs=tuple(sums), sizes=sizes, sums=sums)
 
 
-def _plain(arrivals: Sequence[Arrival]) -> bool:
+def _plain(arrivals: Sequence[InputPath]) -> bool:
     return all(arrival.plain for arrival in arrivals) and len(inputs_of(arrivals)) == len(arrivals)
 
 
@@ -149,7 +149,7 @@ def _plain(arrivals: Sequence[Arrival]) -> bool:
 class _FilterChains:
     """Arrivals with the numbers of their columns and inputs, the chains of filters, and where their states are."""
 
-    reached: list[tuple[int, int, Arrival]]
+    reached: list[tuple[int, int, InputPath]]
     chains: list[Chain]
     places: list[slice]
     columns: int

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
 from inerter.networks.elements import Element, Network, Parallel, Series
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import incidence_rows, inertia_values, inertias, ports
@@ -28,7 +28,7 @@ from inerter.vehicle.mechanism import Mechanism, Strut
 
 Matrix = NDArray[np.float64]
 _UNCERTAIN = 1e-12  # of a travel that rounding takes, from which on other positions are chosen
-_NUMBER = {Guard.FORCE: FRICTION, Guard.ELONGATION: GAP}  # that the kernels have for it
+_NUMBER = {GuardRole.FORCE: FRICTION, GuardRole.ELONGATION: GAP}  # that the kernels have for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
     places = _places(mechanism, graph)
     together = _together(branches)
     special = [next(iter(group)) for group in together]
-    laws = (Linear.DAMPING, Linear.STIFFNESS)
+    laws = (LinearRole.DAMPING, LinearRole.STIFFNESS)
     dampers, springs = ([i for i, b in enumerate(branches) if b.element.linear is law] for law in laws)
     positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
     switches = [(branches[i].element.switch, places.own[i]) for i in special]
@@ -163,7 +163,7 @@ def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
 
 def _relative_orientation(first: Branch, other: Branch) -> int:
     """1 or -1 if two even frictions that hold are between the same ends, in the same order or the other one; else 0."""
-    if not all(b.element.switches_by(Guard.FORCE) and b.element.acts and b.element.even for b in (first, other)):
+    if not all(b.element.switches_by(GuardRole.FORCE) and b.element.acts and b.element.even for b in (first, other)):
         return 0
     row, beside = (np.concatenate([b.nodes, b.roads]) for b in (first, other))
     return next((turn for turn in (1, -1) if np.allclose(turn * row, beside, rtol=RANK_TOLERANCE, atol=0.0)), 0)
@@ -200,8 +200,8 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     """
     branches = graph.branches
     nodes, roads = incidence_rows(branches, graph)
-    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(Guard.ELONGATION)]
-    placed = gaps + [i for i, b in enumerate(branches) if b.element.linear is Linear.STIFFNESS]
+    gaps = [i for i, b in enumerate(branches) if b.element.switches_by(GuardRole.ELONGATION)]
+    placed = gaps + [i for i, b in enumerate(branches) if b.element.linear is LinearRole.STIFFNESS]
     coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     choices = np.vstack([nodes[placed], coordinates])
     choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
@@ -248,7 +248,7 @@ def _velocities(graph: Graph, inertia: _Inertia, pushed: Matrix, roads: int) -> 
     Whether there is one, so that R and V depend on values, is told last.
     """
     count = len(graph.nodes)
-    others = [b for b in graph.branches if b.element.linear is not Linear.MASS]
+    others = [b for b in graph.branches if b.element.linear is not LinearRole.MASS]
     holding = [b for b in others if b.element.switch is None or b.element.always_holds]
     loose = null_space(np.vstack([inertia.nodes, incidence_rows(holding, graph)[0]]))
     if loose.shape[1]:
@@ -282,7 +282,7 @@ def _check_locks(found: Kinematics) -> None:
     special = [found.graph.branches[next(iter(group))] for group in found.nonlinear]
     labels = [branch.label for branch in special]
     H_a, H_w, H_z = np.split(found.moving[ng : ng + k], [na, na + nw], axis=1)
-    gaps = [i for i, branch in enumerate(special) if branch.element.switches_by(Guard.ELONGATION)]
+    gaps = [i for i, branch in enumerate(special) if branch.element.switches_by(GuardRole.ELONGATION)]
     for together in null_space(H_w[gaps].T).T:
         named = [i for i, share in zip(gaps, together, strict=True) if abs(share) > 1e-9]
         across = together @ np.hstack([H_a, H_z])[gaps]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError
+from inerter.renamed import RenamedAttribute
 from inerter.systems.polynomials import TransferFunctions
 
 Matrix = NDArray[np.float64]
@@ -113,7 +114,7 @@ class LinearSystem:
         """The matrices before they were rounded; None where they were given, or changed by hand."""
         return None if self.origin is None else self.origin.of(self)
 
-    def select(
+    def subsystem(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
     ) -> LinearSystem:
         """Subsystem with only the named inputs and outputs, in that order; None keeps all.
@@ -133,9 +134,11 @@ class LinearSystem:
             sources=tuple(self.sources[j] for j in columns),
         )
 
-    def delayed(self, source: str, delays: Sequence[float]) -> LinearSystem:
+    def with_delays(self, source: str, delays: Sequence[float]) -> LinearSystem:
         """System with all inputs driven by one `source`, each with its delay [s]."""
         return replace(self, sources=(source,) * len(self.inputs), delays=np.asarray(delays, dtype=float))
+
+    select, delayed = RenamedAttribute("subsystem"), RenamedAttribute("with_delays")
 
     def __repr__(self) -> str:
         return (
@@ -147,7 +150,7 @@ class LinearSystem:
 def check_system(system: object) -> None:
     """Raises `LinearSystemError` unless `system` is a `LinearSystem`."""
     if not isinstance(system, LinearSystem):
-        raise LinearSystemError(f"Expected a LinearSystem, such as assemble(vehicle), got {system!r}.")
+        raise LinearSystemError(f"Expected a LinearSystem, such as state_space(vehicle), got {system!r}.")
 
 
 def check_names(what: str, names: object) -> tuple[str, ...]:

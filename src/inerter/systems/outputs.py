@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError, PerformanceIndexError
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import Branch, Graph, Mount, full_graph
-from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Point, Strut, Tyre
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, TrackedPoint, Tyre
 
 Matrix = NDArray[np.float64]
 _LISTED = 24  # names in a message
@@ -113,7 +113,7 @@ def _of_inputs(mechanism: Mechanism) -> list[Output]:
     return found
 
 
-def _motions(mechanism: Mechanism, coordinate: Coordinate | Point) -> tuple[str, ...]:
+def _motions(mechanism: Mechanism, coordinate: Coordinate | TrackedPoint) -> tuple[str, ...]:
     """Motions of a coordinate available as outputs; on moving ground only the acceleration of a mass."""
     if mechanism.ground_moves and not coordinate.angle:
         return tuple(what for what in _MOTIONS if what not in _OVER_GROUND)
@@ -132,9 +132,9 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
-def _moving(mechanism: Mechanism, graph: Graph) -> list[tuple[Coordinate | Point, Matrix]]:
+def _moving(mechanism: Mechanism, graph: Graph) -> list[tuple[Coordinate | TrackedPoint, Matrix]]:
     """Coordinates and points, as rows over the nodes."""
-    found: list[tuple[Coordinate | Point, Matrix]] = []
+    found: list[tuple[Coordinate | TrackedPoint, Matrix]] = []
     found += zip(mechanism.coordinates, np.eye(len(graph.nodes)), strict=False)
     of = {coordinate.name: row for coordinate, row in found}
     for point in mechanism.points:
@@ -196,7 +196,7 @@ def _positioned_nodes(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
     joining = [
         b.nodes != 0.0
         for b in graph.branches
-        if b.element.linear is Linear.STIFFNESS or b.element.switches_by(Guard.ELONGATION)
+        if b.element.linear is LinearRole.STIFFNESS or b.element.switches_by(GuardRole.ELONGATION)
     ]
     while not known.all():
         alone = [row & ~known for row in joining if np.count_nonzero(row & ~known) == 1]

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import RowBlocks
 from inerter.systems.coordinates import clean, pseudo_inverse
 from inerter.systems.graph import Graph, switching
@@ -157,7 +157,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     inertia = inertia_values(mechanism, graph)
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
     _check_inertia(kinetic, inertia)
-    resistance = _sum_over_law(graph, Linear.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
+    resistance = _sum_over_law(graph, LinearRole.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
@@ -204,7 +204,7 @@ def _mechanics(
     left[:na, :na] = kinetic.T @ momentum[:, :na]
     right = [
         -resistance[:, :na],
-        -_sum_over_law(known.graph, Linear.STIFFNESS, moving, np.hstack(known.places.elongations)),
+        -_sum_over_law(known.graph, LinearRole.STIFFNESS, moving, np.hstack(known.places.elongations)),
         -resistance[:, na + nw :],
         -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
         (known.ports @ np.hstack([R, N])).T,
@@ -231,7 +231,7 @@ def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
     return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
 
 
-def _sum_over_law(graph: Graph, law: Linear, left: Matrix, right: Matrix) -> Matrix:
+def _sum_over_law(graph: Graph, law: LinearRole, left: Matrix, right: Matrix) -> Matrix:
     """Sum over the elements of one law of left row x coefficient x right row."""
     values = np.array([b.element.coefficient if b.element.linear is law else 0.0 for b in graph.branches])
     return np.ascontiguousarray(left.T @ (values[:, None] * right))
@@ -284,11 +284,11 @@ class _Frame:
         element, rates = self.system.graph.branches[i].element, [rows[i] for rows in self.system.rates]
         value = element.coefficient
         match element.linear:
-            case Linear.STIFFNESS:
+            case LinearRole.STIFFNESS:
                 return self.displacement(*(value * rows[i] for rows in self.system.elongations))
-            case Linear.DAMPING:
+            case LinearRole.DAMPING:
                 return self._moving((value * rates[0], value * rates[1], value * rates[2]))
-            case Linear.MASS:
+            case LinearRole.MASS:
                 return self._accelerating(value * rates[0], value * rates[2])
         eta, x, u = self.blank()
         eta[eta.size - len(self.system.nonlinear) :] = [group.get(i, 0.0) for group in self.system.nonlinear]

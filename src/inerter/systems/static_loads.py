@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.networks.elements import Free
-from inerter.networks.elements.roles import Guard, Linear
+from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import full_graph
 from inerter.units import STANDARD_GRAVITY
 from inerter.vehicle.mechanism import Mechanism, RoadInput
@@ -64,7 +64,9 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     tyres = tuple(replace(t, road=c.name) for t, c in zip(mechanism.tyres, contacts, strict=True))
     graph = full_graph(replace(mechanism, tyres=tyres, roads=(*mechanism.roads, *contacts)))
     carrying = [
-        b for b in graph.branches if b.element.linear is Linear.STIFFNESS or b.element.switches_by(Guard.ELONGATION)
+        b
+        for b in graph.branches
+        if b.element.linear is LinearRole.STIFFNESS or b.element.switches_by(GuardRole.ELONGATION)
     ]
     rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
     ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)

@@ -19,7 +19,7 @@ from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Free, Tied
-from inerter.optimisation.budget import Budget, budget
+from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.findings import best_layouts
 from inerter.table import Cell, Row, Table, Writer
 from inerter.units import shown
@@ -51,7 +51,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             study.design(layout).with_values(designs[Case(layout, self.index)].parameters)
             for layout in (self.layout, str(study.baseline))
         )
-        found = budget(
+        found = break_even(
             design,
             baseline,
             study.over_conditions(self.index),
@@ -68,7 +68,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         """Answer without numbers, with status `failed`."""
         return self._answer(study, None, StatusKind.FAILED.value, message)
 
-    def _answer(self, study: Study, found: Budget | None, status: str, message: str) -> BudgetAnswer:
+    def _answer(self, study: Study, found: BreakEven | None, status: str, message: str) -> BudgetAnswer:
         element, known = study.elements[self.parameter], found is not None and bool(np.isfinite(found.value))
         return BudgetAnswer(
             layout=self.layout,
@@ -227,7 +227,7 @@ def _by_element(budgets: Sequence[BudgetAnswer]) -> dict[str, list[BudgetAnswer]
 
 def _caption(name: str, found: BudgetAnswer, study: Study) -> str:
     by = f"by {brief_words_of(found.method)}"
-    return f"Budget of {name}: for which {name} each layout is better than {study.baseline}, {by}"
+    return f"Break-even value of {name}: for which {name} each layout is better than {study.baseline}, {by}"
 
 
 def _sentence(found: BudgetAnswer, write: Writer) -> str:

@@ -28,8 +28,8 @@ from inerter.files.study.ways import ways
 from inerter.methods.registry import decisive_method_clause
 from inerter.report.question import key_in_words
 from inerter.table import Cell, Row, Table, Writer
-from inerter.trade_off.front import Front
-from inerter.trade_off.pareto import pareto
+from inerter.trade_off.front import ParetoFront
+from inerter.trade_off.pareto import pareto_front
 from inerter.units import headed
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
         method = study.method(str(study.optimise), threads)
         design = study.design(self.layout)
         vehicle = design if study.conditions else design.mechanism()
-        found = pareto(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
+        found = pareto_front(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
         return _answer(self.layout, found, str(study.optimise))
 
     def failure_answer(self, study: Study, message: str) -> FrontAnswer:
@@ -230,7 +230,7 @@ class Fronts(Task[FrontAnswer]):
             yield f"{doubt}{trade_off_title(data)}, at the knee: {'; '.join(found)}."
 
 
-def _answer(layout: str, found: Front, method: str) -> FrontAnswer:
+def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
     if not len(found.values):
         return _without(layout, found.status.kind.value, found.status.message)
     return FrontAnswer(

@@ -16,7 +16,7 @@ from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import decisive_method_clause
-from inerter.scatter.tolerance import tolerance
+from inerter.scatter.tolerance import tolerance_analysis
 from inerter.table import Cell, Row, Table, Writer
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
     def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
         """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
-        found = tolerance(
+        found = tolerance_analysis(
             study.design(self.layout).with_values(designs[Case(self.layout, self.index)].parameters),
             study.over_conditions(self.index),
             study.method(method, threads),
@@ -57,7 +57,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             method=method,
             unit=study.unit(self.index),
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
-            effects={name: [found.main[name], found.total[name]] for name in found.main},
+            effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             status=found.status.kind.value,
             message=found.status.message
             + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Front:
+class ParetoFront:
     """The Pareto front of two or three indices, in ascending order of the first.
 
     `values` (points, criteria) are the indices of the designs, `parameters` their free values, `statuses` those of the

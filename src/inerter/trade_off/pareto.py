@@ -1,4 +1,4 @@
-"""`pareto`: the Pareto front of two or three indices, each point by multi-start search with exact gradients.
+"""`pareto_front`: the Pareto front of two or three indices, each point by multi-start search with exact gradients.
 
 The criteria are normalised by their values at the single optima. A point of the front minimises t such that criterion i
 exceeds a_i by at most t, where a is on the line (or triangle) through the single optima.
@@ -32,7 +32,7 @@ from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_li
 from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
-from inerter.trade_off.front import Front
+from inerter.trade_off.front import ParetoFront
 from inerter.trade_off.points import FrontPoint, dominates, gap_key, gaps, non_dominated, sparse, thin_out
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
@@ -47,7 +47,7 @@ _STARTS = 3  # from the sample for each point
 _RESTARTS = 4  # with improved ends
 
 
-def pareto(
+def pareto_front(
     vehicle: Vehicle,
     indices: Sequence[IndexLike],
     method: Method,
@@ -56,7 +56,7 @@ def pareto(
     subject_to: Sequence[Limit] = (),
     seed: int = 0,
     executor: Executor | None = None,
-) -> Front:
+) -> ParetoFront:
     """The Pareto front of two or three indices: non-dominated designs.
 
     The ends are the single optima. Between them `points` are spread evenly in the criteria, normalised by the ends;
@@ -71,7 +71,7 @@ def pareto(
     >>> strut = it.Spring(120e3) | it.Damper(it.free(100, 1e5, "c")) - it.Inerter(it.free(1, 2000, "b"))
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
     >>> road = it.Road(roughness=5e-7, speed=25)
-    >>> front = it.pareto(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=5)
+    >>> front = it.pareto_front(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=5)
     >>> front.values.round(3)[[0, -1]]
     array([[  2.428, 503.131],
            [  2.437, 501.205]])
@@ -356,18 +356,18 @@ def _hints(
         try:
             if not isinstance(objective_of(vehicle, indices[0], quick), Differentiable):
                 continue
-            front = pareto(vehicle, indices, quick, points=3 * len(indices), subject_to=limits, seed=seed)
+            front = pareto_front(vehicle, indices, quick, points=3 * len(indices), subject_to=limits, seed=seed)
         except InerterError:
             continue
         return [np.array(list(values.values())) for values in front.parameters]
     return []
 
 
-def _empty(indices: tuple[IndexLike, ...], seed: int, status: Status) -> Front:
-    return Front(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
+def _empty(indices: tuple[IndexLike, ...], seed: int, status: Status) -> ParetoFront:
+    return ParetoFront(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
 
 
-def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]]], seed: int) -> Front:
+def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]]], seed: int) -> ParetoFront:
     several, jumps = found
     names = tuple(trade.vehicle.free_values())
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)
@@ -384,4 +384,4 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     keys = [one.point.tobytes() for one in several]
     pairs = tuple((i, i + 1) for i in range(len(keys) - 1) if (keys[i], keys[i + 1]) in jumps)
     values = np.array([[estimate.value for estimate in row] for row in estimates])
-    return Front(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status)
+    return ParetoFront(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status)

@@ -9,7 +9,7 @@ from typing import ClassVar
 from inerter.fields import mount as mounted
 from inerter.fields import quantity
 from inerter.networks.elements import Damper, Free, Network, Spring
-from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Measures, Mechanism, Strut
+from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Mechanism, PerformanceOutputs, Strut
 from inerter.vehicle.vehicle import VehicleModel
 
 
@@ -53,5 +53,5 @@ class Absorber(VehicleModel):
             coordinates=(Coordinate("primary", self.primary_mass), Coordinate("absorber", self.mass)),
             struts=tuple(struts),
             forces=(Force("primary_force", primary),),
-            measures=Measures(load_input="primary_force", load_output="primary_displacement"),
+            measures=PerformanceOutputs(load_input="primary_force", load_output="primary_displacement"),
         )

@@ -8,7 +8,17 @@ from typing import ClassVar
 
 from inerter.fields import mount, quantity
 from inerter.networks.elements import Free, Network, Spring
-from inerter.vehicle.mechanism import Coordinate, Force, Measures, Mechanism, Port, RoadInput, Strut, Tyre, Weighted
+from inerter.vehicle.mechanism import (
+    Coordinate,
+    Force,
+    Mechanism,
+    OutputWeight,
+    PerformanceOutputs,
+    Port,
+    RoadInput,
+    Strut,
+    Tyre,
+)
 from inerter.vehicle.vehicle import VehicleModel
 
 _SIDES = {"left": 0.5, "right": -0.5}  # lateral positions, in tracks
@@ -101,13 +111,13 @@ class FullCar(VehicleModel):
                 Force("pitch_moment", {"pitch": 1.0}),
                 Force("roll_moment", {"roll": 1.0}),
             ),
-            measures=Measures(
+            measures=PerformanceOutputs(
                 comfort=(
-                    Weighted("sprung_acceleration"),
-                    Weighted("pitch_acceleration", 0.5 * (self.distance_front + self.distance_rear)),
-                    Weighted("roll_acceleration", half_track),
+                    OutputWeight("sprung_acceleration"),
+                    OutputWeight("pitch_acceleration", 0.5 * (self.distance_front + self.distance_rear)),
+                    OutputWeight("roll_acceleration", half_track),
                 ),
-                tyre_load=tuple(Weighted(f"tyre_{w}_load") for w in _WHEELS),
+                tyre_load=tuple(OutputWeight(f"tyre_{w}_load") for w in _WHEELS),
                 load_input="sprung_force",
                 load_output="sprung_displacement",
             ),

@@ -11,12 +11,12 @@ from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
-    Measures,
     Mechanism,
+    OutputWeight,
+    PerformanceOutputs,
     RoadInput,
     Strut,
     Tyre,
-    Weighted,
 )
 from inerter.vehicle.vehicle import VehicleModel
 
@@ -86,9 +86,9 @@ class HalfCar(VehicleModel):
             ),
             roads=(RoadInput("road_front"), RoadInput("road_rear", distance=front + rear)),
             forces=(Force("sprung_force", {"sprung": 1.0}), Force("pitch_moment", {"pitch": 1.0})),
-            measures=Measures(
-                comfort=(Weighted("sprung_acceleration"), Weighted("pitch_acceleration", 0.5 * (front + rear))),
-                tyre_load=(Weighted("tyre_front_load"), Weighted("tyre_rear_load")),
+            measures=PerformanceOutputs(
+                comfort=(OutputWeight("sprung_acceleration"), OutputWeight("pitch_acceleration", 0.5 * (front + rear))),
+                tyre_load=(OutputWeight("tyre_front_load"), OutputWeight("tyre_rear_load")),
                 load_input="sprung_force",
                 load_output="sprung_displacement",
             ),

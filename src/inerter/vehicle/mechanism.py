@@ -86,7 +86,7 @@ class Force:
 
 
 @dataclass(frozen=True)
-class Point:
+class TrackedPoint:
     """A tracked point that moves with a port, with its own outputs; an angle if `angle` is true."""
 
     name: str
@@ -95,7 +95,7 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Weighted:
+class OutputWeight:
     """An output of the mechanism with a weight that converts it to the unit of an index."""
 
     output: str
@@ -103,11 +103,11 @@ class Weighted:
 
 
 @dataclass(frozen=True)
-class Measures:
+class PerformanceOutputs:
     """Performance outputs of each index; empty where the mechanism has none."""
 
-    comfort: tuple[Weighted, ...] = ()  # body accelerations [m/s^2 after weighting]
-    tyre_load: tuple[Weighted, ...] = ()  # dynamic tyre forces [N]
+    comfort: tuple[OutputWeight, ...] = ()  # body accelerations [m/s^2 after weighting]
+    tyre_load: tuple[OutputWeight, ...] = ()  # dynamic tyre forces [N]
     load_input: str | None = None  # the external force of the load-carrying index
     load_output: str | None = None  # the displacement under that force
 
@@ -129,8 +129,8 @@ class Mechanism:
     tyres: tuple[Tyre, ...] = ()
     roads: tuple[RoadInput, ...] = ()
     forces: tuple[Force, ...] = ()
-    measures: Measures = field(default_factory=Measures)
-    points: tuple[Point, ...] = ()
+    measures: PerformanceOutputs = field(default_factory=PerformanceOutputs)
+    points: tuple[TrackedPoint, ...] = ()
     mirror: tuple[tuple[str, str], ...] = ()  # mirrored pairs of coordinates, or antisymmetric ones: see `half_of`
     still: tuple[Strut, ...] = ()  # struts at rest, which are left out: their outputs are zero
     ground_moves: bool = False  # coordinates are relative to the ground then: see `on_moving_ground`
@@ -228,7 +228,7 @@ _KINDS: dict[str, type] = {
     "tyres": Tyre,
     "roads": RoadInput,
     "forces": Force,
-    "points": Point,
+    "points": TrackedPoint,
 }
 
 
@@ -265,18 +265,18 @@ def check_quantity(what: str, value: object, unit: str) -> None:
 
 
 def _check_measures(measures: object) -> None:
-    if not isinstance(measures, Measures):
-        raise MechanismError(f"The measures of a mechanism must be Measures(...), got {measures!r}.")
+    if not isinstance(measures, PerformanceOutputs):
+        raise MechanismError(f"The measures of a mechanism must be PerformanceOutputs(...), got {measures!r}.")
     if not isinstance(measures.comfort, tuple) or not isinstance(measures.tyre_load, tuple):
         raise MechanismError(f"The outputs of measures must be tuples of Weighted(...), got {measures!r}.")
     for output in (*measures.comfort, *measures.tyre_load):
-        if not isinstance(output, Weighted) or not isinstance(output.output, str) or not is_number(output.weight):
+        if not isinstance(output, OutputWeight) or not isinstance(output.output, str) or not is_number(output.weight):
             raise MechanismError(f"A measure must be Weighted(output name, number), got {output!r}.")
 
 
 def _check_names(mechanism: Mechanism) -> None:
     seen: set[str] = set()
-    parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force | Point, ...] = (
+    parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force | TrackedPoint, ...] = (
         *mechanism.coordinates,
         *mechanism.struts,
         *mechanism.tyres,

@@ -11,12 +11,12 @@ from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
-    Measures,
     Mechanism,
+    OutputWeight,
+    PerformanceOutputs,
     RoadInput,
     Strut,
     Tyre,
-    Weighted,
 )
 from inerter.vehicle.vehicle import VehicleModel
 
@@ -52,9 +52,9 @@ class QuarterCar(VehicleModel):
             tyres=(Tyre("tyre", Spring(self.tyre_stiffness), port={"unsprung": 1.0}, road="road"),),
             roads=(RoadInput("road"),),
             forces=(Force("sprung_force", {"sprung": 1.0}),),
-            measures=Measures(
-                comfort=(Weighted("sprung_acceleration"),),
-                tyre_load=(Weighted("tyre_load"),),
+            measures=PerformanceOutputs(
+                comfort=(OutputWeight("sprung_acceleration"),),
+                tyre_load=(OutputWeight("tyre_load"),),
                 load_input="sprung_force",
                 load_output="sprung_displacement",
             ),

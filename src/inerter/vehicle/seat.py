@@ -8,7 +8,7 @@ from typing import ClassVar
 from inerter.fields import mount, quantity
 from inerter.networks.elements import Network, check_network
 from inerter.networks.transform import name_free_values
-from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Weighted
+from inerter.vehicle.mechanism import Coordinate, Mechanism, OutputWeight, Port, Strut
 from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle, name_free_quantities
 
 
@@ -49,5 +49,5 @@ class Seat(Stage):
             below,
             coordinates=(*below.coordinates, Coordinate(self.coordinate, self.mass)),
             struts=(*below.struts, Strut(self.strut, self.network, upper=upper, lower=self.place)),
-            measures=replace(below.measures, comfort=(Weighted(f"{self.coordinate}_acceleration"),)),
+            measures=replace(below.measures, comfort=(OutputWeight(f"{self.coordinate}_acceleration"),)),
         )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from inerter.networks.elements import Free
-from inerter.vehicle.mechanism import Coordinate, Mechanism, Point, Port, Strut, Tyre
+from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, TrackedPoint, Tyre
 
 
 def half_of(mechanism: Mechanism) -> Mechanism:
@@ -23,8 +23,8 @@ def alike_half(mechanism: Mechanism) -> Mechanism:
     """The symmetric half of a symmetric mechanism: an equivalent mechanism of fewer coordinates; else the mechanism.
 
     Of two mirrored coordinates the first has the mass of both, and antisymmetric ones are at rest. All mounts are kept,
-    mirrored ones in parallel, except those at rest; a removed coordinate becomes a `Point` of its name. The symmetry is
-    verified: masses and mounts must be equal in the mirror image.
+    mirrored ones in parallel, except those at rest; a removed coordinate becomes a `TrackedPoint` of its name. The
+    symmetry is verified: masses and mounts must be equal in the mirror image.
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism
@@ -66,7 +66,7 @@ def _fold(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
     coordinates = (
         replace(c, inertia=2.0 * c.element.coefficient) if c.name in doubled else c for c in mechanism.coordinates
     )
-    gone = (Point(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
+    gone = (TrackedPoint(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
     return replace(
         mechanism,
         coordinates=tuple(c for c in coordinates if c.name not in follows),

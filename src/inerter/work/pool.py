@@ -241,7 +241,7 @@ def _persistent(work: Callable[[Item], Result], lost: Callable[[Item], Result] |
 
 
 @contextmanager
-def pooled(jobs: int = 1, executor: Executor | Pool | None = None) -> Iterator[Pool]:
+def worker_pool(jobs: int = 1, executor: Executor | Pool | None = None) -> Iterator[Pool]:
     """The given pool, or a new one of `jobs` processes or of the executor, which ends with this context."""
     if isinstance(executor, Pool):
         yield executor

@@ -16,7 +16,7 @@ from typing import Generic
 
 from inerter.errors import WorkError
 from inerter.work.pieces import THREADS, Item, Result
-from inerter.work.pool import Pool, pooled
+from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 
 _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
@@ -29,7 +29,7 @@ def running_on(executor: Executor | Pool | None) -> Iterator[Pool | None]:
         with logging_steps():
             yield pool_here()
         return
-    with logging_steps(), pooled(executor=executor) as pool:
+    with logging_steps(), worker_pool(executor=executor) as pool:
         before = _POOL.set(pool)
         try:
             yield pool

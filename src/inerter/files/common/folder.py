@@ -25,7 +25,7 @@ _SHOWN = 3  # names in a message
 
 
 @dataclass(frozen=True)
-class Intent:
+class WriteMode:
     """Planned use of a result folder by a command; `resume` is None for work that cannot be resumed.
 
     `names` are what it will write there, folders with "/" at the end; `inputs` are the files that it reads.
@@ -50,7 +50,7 @@ class Results:
     folder: Path
     place: Path
     draft: Path
-    intent: Intent
+    intent: WriteMode
     top: Results | None = field(default=None, repr=False)
 
     @property
@@ -80,7 +80,7 @@ class Results:
 
 
 @contextmanager
-def claimed(intent: Intent) -> Iterator[Results]:
+def open_results(intent: WriteMode) -> Iterator[Results]:
     """The folder for the results of a command; what is in `Results.draft` when the block ends well is published.
 
     With `force`, what the folder holds stays as it is until all of the new results are there.
@@ -97,7 +97,7 @@ def claimed(intent: Intent) -> Iterator[Results]:
         yield from _results(intent)
 
 
-def _results(intent: Intent) -> Iterator[Results]:
+def _results(intent: WriteMode) -> Iterator[Results]:
     folder, new = intent.folder, intent.folder / _NEW
     if intent.force:
         shutil.rmtree(new, ignore_errors=True)
@@ -156,7 +156,7 @@ def check_single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) 
         raise StudyError(f"{path}: exists. Replace it with --force, or choose another name with -o.")
 
 
-def _check(intent: Intent) -> None:
+def _check(intent: WriteMode) -> None:
     """Raises `StudyError` for an intent that cannot be met; reads only."""
     folder = intent.folder
     if intent.resume and intent.force:
@@ -178,7 +178,7 @@ def _check(intent: Intent) -> None:
         raise StudyError(f"{folder}: cannot be read ({error.strerror}). Choose another folder with -o.") from None
 
 
-def _check_files(intent: Intent, known: Listing) -> None:
+def _check_files(intent: WriteMode, known: Listing) -> None:
     folder, own = intent.folder, known.by(intent.by)
     there = [name for name in dict.fromkeys((*own, *intent.names)) if os.path.lexists(folder / name)]
     if intent.resume:  # its lines are looked at one by one
@@ -202,7 +202,7 @@ def _is_folder(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
     return (folder / name).is_dir() and not is_linked(folder, name)
 
 
-def _not_ours(intent: Intent, commands: Iterable[str]) -> str:
+def _not_ours(intent: WriteMode, commands: Iterable[str]) -> str:
     folder = intent.folder
     if commands:
         return f"{folder}: holds the results of inerter {_name_list(sorted(commands))}. Choose another folder with -o."
@@ -362,7 +362,7 @@ def _clean(folder: Path) -> None:
 
 
 @contextmanager
-def _full_disk_reported(intent: Intent | None, path: Path | None = None) -> Iterator[None]:
+def _full_disk_reported(intent: WriteMode | None, path: Path | None = None) -> Iterator[None]:
     """A full disk is reported in a sentence, with what is kept."""
     try:
         yield

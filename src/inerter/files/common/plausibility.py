@@ -8,7 +8,7 @@ from typing import Any
 from inerter.fields import Field, fields_of
 from inerter.files.common.vehicle_tables import SEAT
 from inerter.networks.elements import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.signals.road import ROAD_CLASSES, Road
 from inerter.units import format_number, format_quantity
 from inerter.vehicle.registry import VEHICLES
@@ -18,9 +18,9 @@ _ROUGHEST = "FGH"  # classes beyond public roads: ISO 8608:2016 has found up to 
 _SMOOTHEST = 1e-6  # [m^3] Gd(n0) of a sixteenth of the mean of class A
 _SPEEDS = (0.5, 150.0)  # [m/s] of vehicles with wheels
 _ELEMENTS = {  # sizes of springs, dampers and inerters of vehicles with tyres [SI]
-    Linear.STIFFNESS: (100.0, 1e9),
-    Linear.DAMPING: (1.0, 1e7),
-    Linear.MASS: (1e-3, 1e6),
+    LinearRole.STIFFNESS: (100.0, 1e9),
+    LinearRole.DAMPING: (1.0, 1e7),
+    LinearRole.MASS: (1e-3, 1e6),
 }
 
 

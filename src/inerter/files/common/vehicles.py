@@ -20,13 +20,13 @@ from inerter.units import format_quantity, shown
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
-    Measures,
     Mechanism,
+    OutputWeight,
+    PerformanceOutputs,
     Port,
     RoadInput,
     Strut,
     Tyre,
-    Weighted,
 )
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.seat import Seat
@@ -181,9 +181,9 @@ class _OwnMechanism:
             tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
             tuple(RoadInput(name, **road) for name, road in values["roads"].items()),
             tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
-            Measures(
-                tuple(Weighted(output, float(weight)) for output, weight in given["comfort"].items()),
-                tuple(Weighted(output, float(weight)) for output, weight in loads.items()),
+            PerformanceOutputs(
+                tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
+                tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
                 given["load_input"],
                 given["load_output"],
             ),

@@ -13,7 +13,7 @@ import numpy as np
 from inerter.errors import InerterError, RecordError
 from inerter.files.identification.loading import CUSTOM, IdentificationRequest
 from inerter.files.identification.sections import RecordRequest
-from inerter.identification.choice import Candidate, choose
+from inerter.identification.choice import Candidate, select_model
 from inerter.identification.fit import Fit, RecordFit
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
@@ -153,7 +153,7 @@ def _select_model(
 ) -> IdentificationResult:
     models = request.models()
     given = {name: models[name] for name in VISCOUS} if request.elements else None
-    choice = choose([r.used for r in readings], given, FitOptions(**settings), progress=progress)
+    choice = select_model([r.used for r in readings], given, FitOptions(**settings), progress=progress)
     named, fit = Rig(models[choice.name]).device, choice.fits[choice.name]
     return IdentificationResult(
         *(title, choice.name, named, _with_best(named, fit), tuple(readings), fit, settings),

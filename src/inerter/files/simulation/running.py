@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.files.common.folder import FIGURES, Intent, claimed
+from inerter.files.common.folder import FIGURES, WriteMode, open_results
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.networks.elements import Element
-from inerter.networks.elements.roles import Linear, Switch
+from inerter.networks.elements.roles import LinearRole, SwitchRole
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph, switching
 from inerter.systems.outputs import of_mount
@@ -33,7 +33,7 @@ class Nonlinear:
 
     name: str
     kind: str
-    switch: Switch
+    switch: SwitchRole
     strut: str
     events: int
     shares: dict[str, float]
@@ -119,7 +119,7 @@ class SimulationResult:
     def inerters(self, strut: str) -> tuple[str, ...]:
         """Inerters of a strut, by output name."""
         return tuple(
-            n for mount, n, element in self._elements_by_mount() if mount == strut and element.linear is Linear.MASS
+            n for mount, n, element in self._elements_by_mount() if mount == strut and element.linear is LinearRole.MASS
         )
 
     def _elements_by_mount(self) -> Iterator[tuple[str, str, Element]]:
@@ -144,9 +144,9 @@ def run_simulation(
     With `force`, old results stay until the new ones are whole. Numbers in files are in SI units. `finish` may add
     files to the results, in the folder that it is given.
 
-    Raises `StudyError` as `claimed` does, and if the request cannot be simulated.
+    Raises `StudyError` as `open_results` does, and if the request cannot be simulated.
     """
-    with claimed(Intent(folder, "simulate", NAMES, request.inputs, force=force)) as results:
+    with open_results(WriteMode(folder, "simulate", NAMES, request.inputs, force=force)) as results:
         try:
             result = SimulationResult(request, request.run(progress))
         except InerterError as error:

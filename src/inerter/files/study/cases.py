@@ -208,7 +208,14 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         with within("search", 0.0, _SEARCHED):
             found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
         vehicle = vehicle.with_values(found.parameters)
-        fields = {name: getattr(found, name) for name in fields}
+        fields = {
+            "parameters": found.parameters,
+            "active_bounds": found.active_bounds,
+            "ranges": found.ranges,
+            "starts": found.n_starts,
+            "agreed": found.n_converged,
+            "evaluations": found.evaluations,
+        }
         fields["limits"] = [list(one) for one in limit_results(study, free, found.limits)]
 
     def estimate(method: str, index: str) -> Estimate:
@@ -222,7 +229,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
                 raise
             return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 
-    over = found.over_linear if found else None
+    over = found.gain_over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     worst = worst_of((*(e.status for e in own.values()), *((found.status,) if found else ())))

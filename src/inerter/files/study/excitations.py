@@ -12,7 +12,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
 from inerter.files.study.filters import FILTER, in_s
-from inerter.indices.excitation import Excitation, GroundAcceleration, Shaped, WhiteForce
+from inerter.indices.excitation import Excitation, FilteredExcitation, GroundAcceleration, WhiteForce
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
 from inerter.units import parse_one_of, shown
@@ -119,7 +119,7 @@ class StatedExcitation:
             plain = GroundAcceleration(self.ground_acceleration)
         elif self.force is not None and self.intensity is not None:
             plain = WhiteForce(self.force, self.intensity.value)
-        return plain if self.shaping is None or plain is None else Shaped(plain, self.shaping)
+        return plain if self.shaping is None or plain is None else FilteredExcitation(plain, self.shaping)
 
     def report_rows(self) -> Iterator[tuple[str, str]]:
         """Rows of a report on the excitation, in addition to its numbers."""

@@ -9,7 +9,7 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.excitations import NameReference, SizeReference
 from inerter.files.study.study import Study
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_bounded, input_names, input_unit, main_outputs, outputs, velocity_of
 from inerter.units import are_alike, shown
@@ -33,7 +33,7 @@ def name_problems(study: Study) -> Iterator[Problem]:
             yield from _of_size(("indices", name, *keys), size, *asked[0])
 
 
-def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, Question]]:
+def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, IndexDefinition]]:
     """Mechanism and index definition for each layout; empty if one cannot be built, which is reported elsewhere."""
     try:
         mechanisms = [study.design(layout).mechanism() for layout in study.layouts]
@@ -42,7 +42,9 @@ def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, Question
         return []
 
 
-def _of_name(place: Sequence[str], named: NameReference, mechanism: Mechanism, question: Question) -> Problem | None:
+def _of_name(
+    place: Sequence[str], named: NameReference, mechanism: Mechanism, question: IndexDefinition
+) -> Problem | None:
     """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
     driven = question.drive.excited_mechanism(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
@@ -65,7 +67,9 @@ def _of_name(place: Sequence[str], named: NameReference, mechanism: Mechanism, q
     return at(place, got=shown(named.name), fault=fault, expected=others, hint=close)
 
 
-def _of_size(place: Sequence[str], size: SizeReference, mechanism: Mechanism, question: Question) -> Iterator[Problem]:
+def _of_size(
+    place: Sequence[str], size: SizeReference, mechanism: Mechanism, question: IndexDefinition
+) -> Iterator[Problem]:
     """Problem of a size whose unit does not match that of its input."""
     (arrival, *_) = _inputs(mechanism, question) or ("",)
     unit = input_unit(mechanism, arrival)
@@ -74,7 +78,7 @@ def _of_size(place: Sequence[str], size: SizeReference, mechanism: Mechanism, qu
         yield at(place, got=f"a size in {size.unit}", fault=fault, expected=f"one in {size.expected(unit)}")
 
 
-def _inputs(mechanism: Mechanism, question: Question) -> list[str]:
+def _inputs(mechanism: Mechanism, question: IndexDefinition) -> list[str]:
     """Sources of the input paths of the index; empty if an input is unknown, which is reported elsewhere."""
     try:
         return [arrival.source for arrival in question.arrivals(mechanism)]

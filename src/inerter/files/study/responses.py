@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
-from inerter.indices.question import Question
+from inerter.indices.question import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
 from inerter.systems.outputs import input_unit, unit_of
 from inerter.units import format_quantity
-from inerter.vehicle.mechanism import Mechanism, Weighted
+from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,7 @@ def _per(unit: str, per: str) -> str:
     return f"{top or 1}/{bottom}" if per else unit
 
 
-def _source_unit(mechanism: Mechanism, question: Question) -> str:
+def _source_unit(mechanism: Mechanism, question: IndexDefinition) -> str:
     """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
     if question.drive.unit or not question.drive.is_random:
         return question.drive.unit
@@ -85,7 +85,7 @@ def _words(study: Study, index: str) -> str:
     return f"gain from {source}" if source else study.index(index).response
 
 
-def _output_label(output: Weighted, own: str, unit: str) -> str:
+def _output_label(output: OutputWeight, own: str, unit: str) -> str:
     """Label of an output of unit `own` in an index of that `unit`: times a weight, or over a reference quantity."""
     if output.weight == 1.0:
         return output.output

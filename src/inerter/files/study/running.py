@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.errors import StatusKind, WorkError
-from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
+from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome, lost_case, portable, run_case
 from inerter.files.study.checking import check_study, kernels
@@ -40,7 +40,7 @@ from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
-from inerter.work.pool import Pool, pooled
+from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps, within
 from inerter.writing import write_netcdf, write_text
 
@@ -117,7 +117,7 @@ def run_study(
     full, or an executor has ended, or its processes have another version.
     """
     check_study(study)
-    with _into(study, folder, resume, force) as results, pooled(jobs, executor) as pool:
+    with _into(study, folder, resume, force) as results, worker_pool(jobs, executor) as pool:
         gathered, done, computed = _compute_outcomes(study, results, pool, progress, compiling)
         answers = tuple(done[part] for part in parts_of(study))
         data = gathered.dataset()
@@ -167,7 +167,7 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
     if isinstance(folder, Results):
         yield folder
         return
-    with claimed(Intent(Path(folder), "run", result_names(), study.inputs, resume, force)) as results:
+    with open_results(WriteMode(Path(folder), "run", result_names(), study.inputs, resume, force)) as results:
         yield results
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
@@ -30,6 +29,7 @@ from inerter.methods.method import Method
 from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
+from inerter.renamed import RenamedAttribute
 from inerter.scatter.robust import Quantile
 from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
@@ -188,10 +188,7 @@ class Study(Settings):
         """
         return study_codec().dump(sections_of(self))
 
-    def resolved(self) -> dict[str, Any]:
-        """The old name of `to_tables`."""
-        warnings.warn("`resolved` is now `to_tables`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.to_tables()
+    resolved = RenamedAttribute("to_tables")
 
 
 def elements_used(study: Study) -> dict[str, list[str]]:

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections import Counter
 
 from inerter.files.study.study import Study, elements_used
-from inerter.methods.method import Sees
+from inerter.methods.method import NonlinearitySupport
 from inerter.methods.registry import brief_words_of, nonlinearities_of
-from inerter.networks.elements.roles import Guard
+from inerter.networks.elements.roles import GuardRole
 from inerter.systems.graph import switching_parts
 
-_SEEN = {Sees.NEITHER: (), Sees.FRICTION: (Guard.FORCE,), Sees.BOTH: tuple(Guard)}
+_SEEN = {
+    NonlinearitySupport.NEITHER: (),
+    NonlinearitySupport.FRICTION: (GuardRole.FORCE,),
+    NonlinearitySupport.BOTH: tuple(GuardRole),
+}
 
 
 def ways(study: Study) -> dict[str, str]:
@@ -24,15 +28,15 @@ def ways(study: Study) -> dict[str, str]:
     return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
 
 
-def _losses(study: Study) -> dict[str, Guard]:
+def _losses(study: Study) -> dict[str, GuardRole]:
     """Nonlinear effects of the layouts that linear analysis neglects, with the kind of guard of each: force first."""
     used = [study.elements[name] for name in elements_used(study) if name in study.elements]
     parts = [part for element in used for part in switching_parts(element)]
     found = {part.effect or part.key: part.switch.guard for part in parts if part.switch is not None}
-    return dict(sorted(found.items(), key=lambda one: list(Guard).index(one[1])))
+    return dict(sorted(found.items(), key=lambda one: list(GuardRole).index(one[1])))
 
 
-def _describe_guards(there: dict[str, Guard], seen: tuple[Guard, ...]) -> str:
+def _describe_guards(there: dict[str, GuardRole], seen: tuple[GuardRole, ...]) -> str:
     with_, without = ([word for word, by in there.items() if (by in seen) == wanted] for wanted in (True, False))
     words = [f"with {' and '.join(with_)}"] * bool(with_) + [f"without {' or '.join(without)}"] * bool(without)
     return ", ".join(words)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import Line
+from inerter.networks.elements.drawing import SymbolLine
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.elements.values import Value
 
 
@@ -23,8 +23,8 @@ class Damper(Element):
     unit: ClassVar[str] = "N s/m"
     sentence: ClassVar[str] = "Force over the rate of elongation."
     example: ClassVar[str] = "3000 N s/m"
-    linear: ClassVar[Linear] = Linear.DAMPING
-    drawing: ClassVar[tuple[Line, ...]] = (  # a piston in a cup
+    linear: ClassVar[LinearRole] = LinearRole.DAMPING
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a piston in a cup
         ((0.0, 20.0), (0.0, 1.0)),
         ((-5.5, 1.0), (5.5, 1.0)),
         ((-8.0, 8.0), (-8.0, -8.0), (8.0, -8.0), (8.0, 8.0)),

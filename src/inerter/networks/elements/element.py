@@ -11,8 +11,8 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, NetworkError
 from inerter.fields import Field
 from inerter.networks.elements.algebra import Complex, Network
-from inerter.networks.elements.drawing import BOX, Line
-from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.drawing import BOX, SymbolLine
+from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.elements.values import Free, Tied, Value, check_name
 
 
@@ -20,8 +20,8 @@ class Element(Network):
     """Base of an element: one value with a unit, an optional name, and its roles.
 
     A kind of element is a frozen dataclass whose fields are its value, its further numbers (`more`), and `name`, in
-    this order; its class attributes are its roles. A kind whose law is not in `Linear`, or whose modes are not those of
-    a `Switch`, overrides `as_linear` or `as_piecewise`.
+    this order; its class attributes are its roles. A kind whose law is not in `LinearRole`, or whose modes are not
+    those of a `SwitchRole`, overrides `as_linear` or `as_piecewise`.
     """
 
     # to the parser
@@ -33,15 +33,15 @@ class Element(Network):
     example: ClassVar[str]  # of a value with its unit
     more: ClassVar[tuple[Field, ...]] = ()  # further numbers, all positive
     # to analysis
-    linear: ClassVar[Linear]
-    switch: ClassVar[Switch | None] = None
-    statistical: ClassVar[Statistical] = Statistical.ITSELF
+    linear: ClassVar[LinearRole]
+    switch: ClassVar[SwitchRole | None] = None
+    statistical: ClassVar[StatisticalRole] = StatisticalRole.ITSELF
     effect: ClassVar[str] = ""  # effect neglected in linear analysis, such as "play"; default: the kind
     # to design
     may_vanish: ClassVar[bool] = False  # whether zero is allowed, as for a friction or a gap without effect
     tried: ClassVar[tuple[float, float] | None] = None  # search range of a break-even value if the value is zero
     # to the drawing
-    drawing: ClassVar[tuple[Line, ...]] = BOX
+    drawing: ClassVar[tuple[SymbolLine, ...]] = BOX
     name: str | None
 
     def __post_init__(self) -> None:
@@ -136,7 +136,7 @@ class Element(Network):
     @property
     def is_damped(self) -> bool:
         """Whether statistical linearisation replaces it by a damper: dry friction equal in both directions."""
-        return self.acts and self.even and self.statistical is Statistical.DAMPER
+        return self.acts and self.even and self.statistical is StatisticalRole.DAMPER
 
     @property
     def acts(self) -> bool:
@@ -157,7 +157,7 @@ class Element(Network):
     @property
     def always_holds(self) -> bool:
         """Whether a switching element holds against small forces: friction with a force, a closed gap."""
-        if self.switches_by(Guard.FORCE):
+        if self.switches_by(GuardRole.FORCE):
             lower, upper = self.limits
             return lower < 0.0 < upper
         return not self.acts
@@ -169,7 +169,7 @@ class Element(Network):
             return self.coefficient > 0.0, True  # as a friction or a gap of any size does
         return self.acts, self.always_holds
 
-    def switches_by(self, guard: Guard) -> bool:
+    def switches_by(self, guard: GuardRole) -> bool:
         """Whether it switches under this guard."""
         return self.switch is not None and self.switch.guard is guard
 
@@ -216,13 +216,13 @@ class Element(Network):
             return view.fraction(s)
         zero, one = np.full_like(s, 0.0), np.full_like(s, 1.0)
         match self.linear:
-            case Linear.STIFFNESS:
+            case LinearRole.STIFFNESS:
                 return np.full_like(s, self.coefficient), s
-            case Linear.DAMPING:
+            case LinearRole.DAMPING:
                 return np.full_like(s, self.coefficient), one
-            case Linear.MASS:
+            case LinearRole.MASS:
                 return np.full_like(s, self.coefficient) * s, one
-            case Linear.OPEN:
+            case LinearRole.OPEN:
                 return zero, one
-            case Linear.CLOSED:
+            case LinearRole.CLOSED:
                 return one, zero

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import Line
+from inerter.networks.elements.drawing import SymbolLine
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Guard, Linear, Statistical, Switch
+from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.elements.values import Value
 
 
@@ -23,14 +23,14 @@ class Friction(Element):
     unit: ClassVar[str] = "N"
     sentence: ClassVar[str] = "Sliding friction force, equal to the break-away force."
     example: ClassVar[str] = "10 N"
-    linear: ClassVar[Linear] = Linear.OPEN
-    switch: ClassVar[Switch] = Switch(
-        Guard.FORCE, "slip down", "stick", "slip up", at_middle="sticks", spent=("slip down", "stuck", "slip up")
+    linear: ClassVar[LinearRole] = LinearRole.OPEN
+    switch: ClassVar[SwitchRole] = SwitchRole(
+        GuardRole.FORCE, "slip down", "stick", "slip up", at_middle="sticks", spent=("slip down", "stuck", "slip up")
     )
-    statistical: ClassVar[Statistical] = Statistical.DAMPER
+    statistical: ClassVar[StatisticalRole] = StatisticalRole.DAMPER
     may_vanish: ClassVar[bool] = True
     tried: ClassVar[tuple[float, float]] = (0.1, 1e4)
-    drawing: ClassVar[tuple[Line, ...]] = (  # a block that slides along a hatched wall
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a block that slides along a hatched wall
         ((0.0, 20.0), (0.0, 7.0)),
         ((-4.0, 7.0), (-4.0, -7.0), (4.0, -7.0), (4.0, 7.0), (-4.0, 7.0)),
         ((4.0, 13.0), (4.0, -13.0), (0.0, -13.0), (0.0, -20.0)),

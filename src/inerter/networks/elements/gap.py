@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import Line
+from inerter.networks.elements.drawing import SymbolLine
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Guard, Linear, Switch
+from inerter.networks.elements.roles import GuardRole, LinearRole, SwitchRole
 from inerter.networks.elements.values import Value
 
 
@@ -23,14 +23,14 @@ class Gap(Element):
     unit: ClassVar[str] = "m"
     sentence: ClassVar[str] = "Free travel to either side of the middle (half of the backlash)."
     example: ClassVar[str] = "0.1 mm"
-    linear: ClassVar[Linear] = Linear.CLOSED
-    switch: ClassVar[Switch] = Switch(
-        Guard.ELONGATION, "lower contact", "open", "upper contact", spent=("lower end", "in the gap", "upper end")
+    linear: ClassVar[LinearRole] = LinearRole.CLOSED
+    switch: ClassVar[SwitchRole] = SwitchRole(
+        GuardRole.ELONGATION, "lower contact", "open", "upper contact", spent=("lower end", "in the gap", "upper end")
     )
     effect: ClassVar[str] = "play"
     may_vanish: ClassVar[bool] = True
     tried: ClassVar[tuple[float, float]] = (1e-6, 1e-2)
-    drawing: ClassVar[tuple[Line, ...]] = (  # a pin between two jaws
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a pin between two jaws
         ((0.0, 20.0), (0.0, 9.0)),
         ((4.0, 9.0), (-8.0, 9.0), (-8.0, -7.0), (4.0, -7.0)),
         ((-4.0, 1.0), (8.0, 1.0), (8.0, -12.0), (0.0, -12.0), (0.0, -20.0)),

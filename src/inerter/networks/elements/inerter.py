@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import Line, circle
+from inerter.networks.elements.drawing import SymbolLine, circle
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.elements.values import Value
 
 
@@ -23,8 +23,8 @@ class Inerter(Element):
     unit: ClassVar[str] = "kg"
     sentence: ClassVar[str] = "Force over the relative acceleration of its ends."
     example: ClassVar[str] = "300 kg"
-    linear: ClassVar[Linear] = Linear.MASS
-    drawing: ClassVar[tuple[Line, ...]] = (  # a rod that turns a flywheel in a box
+    linear: ClassVar[LinearRole] = LinearRole.MASS
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a rod that turns a flywheel in a box
         ((-8.0, 9.0), (-8.0, -9.0), (8.0, -9.0), (8.0, 9.0), (-8.0, 9.0)),
         circle(0.0, 0.0, 5.0),
         circle(0.0, 0.0, 0.4),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 
-class Linear(Enum):
+class LinearRole(Enum):
     """Role of an element in linear analysis; the values of stiffness, damping and mass are their powers of s."""
 
     STIFFNESS = 0
@@ -25,14 +25,14 @@ class Linear(Enum):
         return self.value
 
 
-class Guard(Enum):
+class GuardRole(Enum):
     """Quantity that guards the states of a switching element."""
 
     FORCE = "force"  # constant length in state 0 while the force is between its limits; else sliding at one of them
     ELONGATION = "elongation"  # no force in state 0 between its limits; else contact at one of them
 
 
-class Statistical(Enum):
+class StatisticalRole(Enum):
     """Replacement in statistical linearisation, which rejects switching elements without an equivalent damper."""
 
     ITSELF = "itself"
@@ -40,13 +40,13 @@ class Statistical(Enum):
 
 
 @dataclass(frozen=True)
-class Switch:
+class SwitchRole:
     """Contact states of an element of the piecewise system: their guard, and their names for -1, 0 and 1.
 
     Reports of the share of time in each state use the same names, or those in `spent`.
     """
 
-    guard: Guard
+    guard: GuardRole
     lower: str
     middle: str
     upper: str

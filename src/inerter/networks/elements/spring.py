@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import Line, zigzag
+from inerter.networks.elements.drawing import SymbolLine, zigzag
 from inerter.networks.elements.element import Element
-from inerter.networks.elements.roles import Linear
+from inerter.networks.elements.roles import LinearRole
 from inerter.networks.elements.values import Value
 
 
@@ -23,5 +23,5 @@ class Spring(Element):
     unit: ClassVar[str] = "N/m"
     sentence: ClassVar[str] = "Force over elongation."
     example: ClassVar[str] = "120 kN/m"
-    linear: ClassVar[Linear] = Linear.STIFFNESS
-    drawing: ClassVar[tuple[Line, ...]] = (zigzag(),)
+    linear: ClassVar[LinearRole] = LinearRole.STIFFNESS
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (zigzag(),)

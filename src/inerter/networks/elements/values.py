@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.checks import is_number
 from inerter.errors import NetworkError
+from inerter.renamed import RenamedAttribute
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -96,10 +96,7 @@ class Tied:
         found = Tied(known)
         return found if found.names else float(found.slopes({})[0])
 
-    def fixed(self, values: Mapping[str, float]) -> Tied | float:
-        """The old name of `substitute`."""
-        warnings.warn("`fixed` is now `substitute`; the old name goes with the next version.", DeprecationWarning, 2)
-        return self.substitute(values)
+    fixed = RenamedAttribute("substitute")
 
     def slopes(self, values: Mapping[str, ArrayLike]) -> tuple[NDArray[np.float64], dict[str, NDArray[np.float64]]]:
         """The value, and its derivatives by name; infinite or nan where it divides by zero."""

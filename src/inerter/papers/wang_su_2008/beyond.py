@@ -5,7 +5,7 @@ from __future__ import annotations
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method
 from inerter.methods.norm import Norm
-from inerter.optimisation.budget import budget
+from inerter.optimisation.budget import break_even
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.rows import RUNS
 from inerter.papers.wang_su_2008.source import index_of, linear_rows, study
@@ -36,7 +36,7 @@ def compute_optimum(name: str) -> dict[str, object]:
     index, layout = name.split()
     source = study("friction1")
     found = optimise(source.design(layout), index_of(index, source), _ROADS, seed=source.seed, starts=_STARTS)
-    over = found.over_linear
+    over = found.gain_over_linear
     assert over is not None
     return {
         "value": found.value,
@@ -64,7 +64,7 @@ def compute_budget(name: str) -> dict[str, object]:
     """The most friction or backlash, or the softest shaft, with which a printed design still beats the printed S1."""
     index, layout, what = name.split(maxsplit=2)
     kind, element, bounds, method, _ = _BUDGETS[what]
-    found = budget(
+    found = break_even(
         _printed(index, layout, kind),
         _printed(index, "S1", ""),
         index_of(index, study("friction1")),

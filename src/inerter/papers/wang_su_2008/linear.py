@@ -79,4 +79,4 @@ def _found(row: PrintedRow, result: StudyResult) -> FoundDesign:
     values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
     parameters = {name: value for name, value in values if np.isfinite(value)}
     unit = str(best.index_unit.item())
-    return FoundDesign(row, unit, float(best.value), parameters, int(best.agreed), int(best.starts))
+    return FoundDesign(row, unit, float(best.value), parameters, int(best.n_converged), int(best.n_starts))

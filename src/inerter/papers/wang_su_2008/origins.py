@@ -12,7 +12,7 @@ from inerter.papers.wang_su_2008.linear import LinearTables
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import OTHER_PEAK, RUNS, SimulatedRow
 from inerter.papers.wang_su_2008.source import linear_rows
-from inerter.systems.assemble import assemble
+from inerter.systems.assemble import state_space
 
 
 @dataclass(frozen=True)
@@ -183,7 +183,7 @@ def _root_of_the_road() -> Reason:
     assert isinstance(question.drive, RoadVelocity)
     road = question.drive.road
     omega = 2.0 * np.pi * np.arange(1.0, 10_001.0) / 10.0
-    system = assemble(row.design(), "road", question.outputs[0].output)
+    system = state_space(row.design(), "road", question.outputs[0].output)
     gain = np.abs(frequency_response(system, omega)[:, 0, 0])
     height = np.sqrt(8.0 * np.pi * road.roughness * road.speed * omega[0])
     as_printed, as_meant = (

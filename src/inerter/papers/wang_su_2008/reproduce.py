@@ -12,7 +12,7 @@ from typing import Any
 import xarray as xr
 
 from inerter.errors import StudyError
-from inerter.files.common.folder import FIGURES, REPORT, Intent, Results, claimed
+from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study.running import StudyResult, result_names, run_study
 from inerter.kernels.prepare import prepare
 from inerter.optimisation.threads import one_blas_thread
@@ -26,7 +26,7 @@ from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.simulation.event_driven import KERNELS
 from inerter.work.journal import Journal
-from inerter.work.pool import Pool, pooled
+from inerter.work.pool import Pool, worker_pool
 
 JOURNAL = "tasks.jsonl"
 _CLAIMS = ("linear", "table1", "table2", "table3", "figure13", "figure14")  # what all claims need
@@ -135,8 +135,8 @@ def reproduce(
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
-    intent = Intent(folder, "reproduce", _result_names(), resume=resume, force=force)
-    with claimed(intent) as results, pooled(jobs, executor) as pool:
+    intent = WriteMode(folder, "reproduce", _result_names(), resume=resume, force=force)
+    with open_results(intent) as results, worker_pool(jobs, executor) as pool:
         if needed and wanted > {"linear"} and not resume and not pool.on_each_node(_warm_up):
             pool.begin(_warm_up)
         studies = {

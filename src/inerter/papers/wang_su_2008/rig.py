@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identification.staged_protocol import staged
+from inerter.identification.staged_protocol import identify_staged
 from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Damper, Friction, Inerter, Network, Spring
 from inerter.records.result import Response
@@ -73,7 +73,7 @@ def compute(name: str) -> dict[str, Any]:
     slow = VirtualRig(bare, seed=0).run(cosine(1e-3, 0.1), duration=20.0)
     fast = VirtualRig(whole, seed=1).run(cosine(1e-3, 3.0), duration=5.0)
     wide = VirtualRig(whole, seed=2).run(flat_multisine(0, 1e-4, 0.5, 20.0), duration=16.0)
-    found = staged(slow, fast, wide, shaft_inertance=SHAFT, starts=_STARTS)
+    found = identify_staged(slow, fast, wide, shaft_inertance=SHAFT, starts=_STARTS)
     assert found.response is not None
     part = found.fit.comparisons[0]
     return {

@@ -23,7 +23,7 @@ class Flywheel(it.Element):
     sentence: ClassVar[str] = "Moment of inertia of the flywheel, with the screw."
     example: ClassVar[str] = "0.001 kg m^2"
     more: ClassVar[tuple[it.Field, ...]] = (it.Field("pitch", "m", "Travel of the nut in one turn."),)
-    linear: ClassVar[it.Linear] = it.Linear.MASS
+    linear: ClassVar[it.LinearRole] = it.LinearRole.MASS
 
     @property
     def gain(self) -> float:
@@ -53,8 +53,8 @@ class BallScrew(it.Element):
         it.Field("shaft_stiffness", "N/m", "Of the shaft, along its axis."),
         it.Field("shaft_damping", "N s/m", "Of the shaft, along its axis."),
     )
-    linear: ClassVar[it.Linear] = it.Linear.MASS
-    drawing: ClassVar[tuple[it.Line, ...]] = (  # a screw that goes through a wheel
+    linear: ClassVar[it.LinearRole] = it.LinearRole.MASS
+    drawing: ClassVar[tuple[it.SymbolLine, ...]] = (  # a screw that goes through a wheel
         ((0.0, 20.0), (0.0, 12.0)),
         *(((-3.0, y), (3.0, y + 2.0)) for y in (4.0, 7.0, 10.0)),
         ((-3.0, 4.0), (-3.0, 12.0), (3.0, 12.0), (3.0, 4.0)),

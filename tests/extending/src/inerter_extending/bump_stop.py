@@ -21,8 +21,8 @@ class Stop(it.Element):
     unit: ClassVar[str] = "m"
     sentence: ClassVar[str] = "Travel in compression before it is met."
     example: ClassVar[str] = "40 mm"
-    linear: ClassVar[it.Linear] = it.Linear.OPEN
-    switch: ClassVar[it.Switch] = it.Switch(it.Guard.ELONGATION, "contact", "open", "never")
+    linear: ClassVar[it.LinearRole] = it.LinearRole.OPEN
+    switch: ClassVar[it.SwitchRole] = it.SwitchRole(it.GuardRole.ELONGATION, "contact", "open", "never")
 
     @property
     def limits(self) -> tuple[float, float]:
@@ -44,7 +44,7 @@ class BumpStop(it.Element):
     sentence: ClassVar[str] = "Stiffness of the buffer."
     example: ClassVar[str] = "200 kN/m"
     more: ClassVar[tuple[it.Field, ...]] = (it.Field("clearance", "m", Stop.sentence),)
-    linear: ClassVar[it.Linear] = it.Linear.OPEN
+    linear: ClassVar[it.LinearRole] = it.LinearRole.OPEN
 
     def as_piecewise(self) -> it.Network:
         return Stop(self.clearance, f"{self.label}_stop") - it.Spring(self.stiffness, f"{self.label}_spring")

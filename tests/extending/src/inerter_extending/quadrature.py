@@ -24,10 +24,10 @@ class Quadrature:
     points: int = 600
     middle: float = field(default=20.0, metadata=it.quantity("rad/s", "Half of the frequencies lie below it.", "3 Hz"))
     name = "quadrature"
-    words = "integrals of the squared gains of the linear model over all frequencies"
-    sees = it.Sees.NEITHER
+    description = "integrals of the squared gains of the linear model over all frequencies"
+    nonlinearity_support = it.NonlinearitySupport.NEITHER
     needs_amplitude = False
-    searches = False  # it gives no gradients
+    supports_optimisation = False  # it gives no gradients
 
     def estimate(self, vehicle: Any, index: Any) -> it.Estimate:
         mechanism = vehicle.mechanism()
@@ -37,7 +37,7 @@ class Quadrature:
         names = [weighted.output for weighted in question.outputs]
         mechanism = question.drive.excited_mechanism(mechanism)
         arrivals = question.arrivals(mechanism)
-        system = it.assemble(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
+        system = it.state_space(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
         omega, weights = _nodes(self.points, self.middle)
         s = 1j * omega
         resolvent = np.linalg.solve(s[:, None, None] * np.eye(system.order) - system.A, system.B + 0j)

@@ -38,9 +38,9 @@ class SeatedCar(it.VehicleModel):
             tyres=(it.Tyre("tyre", it.Spring(self.tyre_stiffness), port={"unsprung": 1.0}, road="road"),),
             roads=(it.RoadInput("road"),),
             forces=(it.Force("sprung_force", {"sprung": 1.0}),),
-            measures=it.Measures(
-                comfort=(it.Weighted("seated_acceleration"),),
-                tyre_load=(it.Weighted("tyre_load"),),
+            measures=it.PerformanceOutputs(
+                comfort=(it.OutputWeight("seated_acceleration"),),
+                tyre_load=(it.OutputWeight("tyre_load"),),
                 load_input="sprung_force",
                 load_output="sprung_displacement",
             ),

@@ -18,6 +18,6 @@ class SuspensionTravel:
     unit = "m"
     response = "travel per road velocity"
 
-    def question(self, mechanism: it.Mechanism) -> it.Question:
-        travels = tuple(it.Weighted(f"{strut.name}_travel") for strut in mechanism.struts)
+    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+        travels = tuple(it.OutputWeight(f"{strut.name}_travel") for strut in mechanism.struts)
         return it.on_road(self, mechanism, travels, "struts")

@@ -40,8 +40,8 @@ def recompute(
     force: bool = False,
     progress: Callable[[str, int, int], None] = lambda what, done, total: None,
 ) -> Found:
-    intent = it.Intent(folder, "reproduce", ("table.csv", "report.html"), resume=resume, force=force)
-    with it.claimed(intent) as results, it.pooled(jobs, executor) as pool:
+    intent = it.WriteMode(folder, "reproduce", ("table.csv", "report.html"), resume=resume, force=force)
+    with it.open_results(intent) as results, it.worker_pool(jobs, executor) as pool:
         table: dict[float, float] = {}
         for damping, value in pool.spread(work, list(PRINTED)):
             table[damping] = value

@@ -31,7 +31,7 @@ from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import study
 from inerter.report.page import PageFigure, environment, inline
-from inerter.work.pool import Pool, pooled
+from inerter.work.pool import Pool, worker_pool
 from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
@@ -63,7 +63,7 @@ def write_reproduction(found: Reproduction, folder: Path, executor: Executor | P
     for name, rows in tables(found).items():
         if rows:
             write_text(folder / f"{name}.csv", csv_text(rows))
-    with pooled(executor=executor) as pool, pool.of_this_machine() as near:  # drawings are files here
+    with worker_pool(executor=executor) as pool, pool.of_this_machine() as near:  # drawings are files here
         list(near.spread(call, _figures(found, folder / FIGURES)))
     write_text(folder / REPORT, _page(found, folder))
 

@@ -21,11 +21,11 @@ from strategies import random_half_car, random_network, random_quarter_car
 
 import inerter as it
 from inerter.indices.question import Index
-from inerter.methods import excitation, forced, on_roads, realisations
+from inerter.methods import excitation, harmonic_response, out_of_band, realisations
 from inerter.methods.steady_squares import steady_squares
 from inerter.networks.elements import Friction, Network
 from inerter.networks.transform import map_elements
-from inerter.simulation import steady
+from inerter.simulation import periodic_steady_state
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -315,14 +315,14 @@ def finer(steps: int = 4) -> Iterator[None]:
     longer = partial(steady_squares, repeats=1e-10)
     with (
         patch.object(realisations, "STEP", realisations.STEP / steps),
-        patch.object(on_roads, "STEP", on_roads.STEP / steps),
+        patch.object(out_of_band, "STEP", out_of_band.STEP / steps),
         patch.object(realisations, "steady_squares", longer),
         patch.object(excitation, "_COARSEST", excitation._COARSEST / steps),
-        patch.object(forced, "_POINTS", forced._POINTS * steps),
-        patch.object(forced, "_LONGEST", forced._LONGEST / steps),
-        patch.object(forced, "_REPEATS", 1e-9),
-        patch.object(forced, "_NEAR", 1e-6),
-        patch.object(steady, "_ENOUGH", 1e-10),
+        patch.object(harmonic_response, "_POINTS", harmonic_response._POINTS * steps),
+        patch.object(harmonic_response, "_LONGEST", harmonic_response._LONGEST / steps),
+        patch.object(harmonic_response, "_REPEATS", 1e-9),
+        patch.object(harmonic_response, "_NEAR", 1e-6),
+        patch.object(periodic_steady_state, "_ENOUGH", 1e-10),
     ):
         for one in kept:
             one.cache_clear()

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from inerter import kernels
-from inerter.kernels.declare import Kernel
+from inerter.kernels.decorators import Kernel
 from inerter.kernels.prepare import prepare
 
 collect_ignore_glob = ["conftest.py", "*/conftest.py"]  # as modules with doctests: two cannot have one name

@@ -10,7 +10,7 @@ from filtered import random_filter
 import inerter as it
 from inerter.indices.excitation import as_excitation
 from inerter.signals.road import Road
-from inerter.systems.arrivals import InputPath
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -29,7 +29,7 @@ class TwoSources:
     def size(self) -> float:
         return self.road.velocity_intensity
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         return mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
@@ -62,7 +62,7 @@ def random_outputs(rng: np.random.Generator, mechanism: Mechanism, excitation: o
     names = [f"{mount.name}_force" for mount in mechanism.struts] + [f"{tyre.name}_load" for tyre in mechanism.tyres]
     names += [f"{c.name}_acceleration" for c in mechanism.coordinates]
     masses = [c.name for c in mechanism.coordinates if not c.angle]
-    if as_excitation(excitation, "A test").driven(mechanism).ground_moves:
+    if as_excitation(excitation, "A test").excited_mechanism(mechanism).ground_moves:
         names += [f"{name}_relative_{what}" for name in masses for what in ("displacement", "velocity")]
     elif isinstance(excitation, it.WhiteForce):
         names += [f"{name}_velocity" for name in masses]

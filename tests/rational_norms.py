@@ -233,7 +233,7 @@ def index_value(mechanism: Mechanism, index) -> float | str | None:
     """An index with the exact conventions; INFINITE; or None where a pole is multiple."""
     question = index.question(mechanism)
     on_road = isinstance(question.drive, RoadVelocity)  # the whole mechanism, never half of it
-    driven = mechanism if on_road else question.drive.driven(mechanism)
+    driven = mechanism if on_road else question.drive.excited_mechanism(mechanism)
     arrivals, exact = question.arrivals(driven), RationalMechanism(driven)
     if not question.drive.is_random:
         (arrival,) = arrivals

@@ -149,8 +149,8 @@ WRONG = {
         lambda: state_space(mechanism(tyres=(Tyre("t", k - Inerter(1.0, "b1"), {"a": 1.0}, "r"),))),
         "'b1' is mounted on the road itself",
     ),
-    "unknown output": (lambda: state_space(car(), outputs="comfort"), "no output named 'comfort'"),
-    "unknown input": (lambda: state_space(car(), inputs="wind"), "no input named 'wind'"),
+    "unknown output": (lambda: state_space(car(), outputs="comfort"), "Unknown output 'comfort'"),
+    "unknown input": (lambda: state_space(car(), inputs="wind"), "Unknown input 'wind'"),
     "assembling free values": (lambda: state_space(open_car()), "c, b is still free"),
     # values
     "fixing what is not free": (lambda: open_car().with_values({"d": 1.0}), "unknown free value 'd'"),
@@ -185,13 +185,13 @@ WRONG = {
     "a class as method": (lambda: evaluate(car(), J1, Norm), "Expected a method"),
     "a name as method": (lambda: evaluate(car(), J1, "norm"), "Expected a method such as Norm()"),
     "a number as vehicle": (lambda: evaluate(5, J1, Norm()), "Expected a vehicle"),
-    "unknown conventions": (lambda: Norm("paper2009"), "known: exact, paper2008"),
+    "unknown conventions": (lambda: Norm("paper2009"), "available: exact, paper2008"),
     "no comfort defined": (
         lambda: evaluate(mechanism(measures=PerformanceOutputs()), J1, Norm()),
         "Set measures.comfort",
     ),
     "no load carrying defined": (lambda: evaluate(mechanism(), J5, Norm()), "measures.load_input"),
-    "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "stands on none"),
+    "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "has no tyre"),
     # systems
     "matrices that do not fit": (
         lambda: LinearSystem([[1.0, 2.0]], [[1.0]], [[1.0]], [[0.0]]),
@@ -204,7 +204,7 @@ WRONG = {
         "1 inputs, which need as many different names",
     ),
     "negative delay": (lambda: system().with_delays("road", [-1.0]), "zero or more seconds"),
-    "selecting a stranger": (lambda: system().subsystem(outputs="x"), "no output named 'x'"),
+    "selecting a stranger": (lambda: system().subsystem(outputs="x"), "Unknown output 'x'"),
     "no such approximant": (
         lambda: h2_norm(state_space(half()).with_delays("road", [0.0, 0.1, 0.0, 0.0]), 0),
         "order 1 to 10",

@@ -23,7 +23,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
 from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
-from inerter.methods.registry import averages, what_is_seen, with_gradients, words_of
+from inerter.methods.registry import averages, nonlinearities_of, with_gradients, words_of
 from inerter.report.question import vehicle_rows
 from inerter.rows import Rows, made_of_rows
 from inerter.units import parse_quantity
@@ -391,7 +391,7 @@ def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
         with pytest.warns(DeprecationWarning, match="is now") as said:
             it.METHODS.add(Older)
         assert "`Older.sees` is now `nonlinearity_support`" in str(said[1].message)
-        assert (words_of("older"), what_is_seen("older")) == ("older guesses", it.NonlinearitySupport.BOTH)
+        assert (words_of("older"), nonlinearities_of("older")) == ("older guesses", it.NonlinearitySupport.BOTH)
     finally:
         it.METHODS.remove(Older)
 

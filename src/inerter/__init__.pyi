@@ -50,8 +50,8 @@ from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel as SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad as TyreLoad
-from inerter.indices.weighted import WeightedAcceleration as WeightedAcceleration
-from inerter.indices.weighted import frequency_weight as frequency_weight
+from inerter.indices.weighted_acceleration import WeightedAcceleration as WeightedAcceleration
+from inerter.indices.weighted_acceleration import frequency_weight as frequency_weight
 from inerter.methods.approximate_linear import ApproximateLinear as ApproximateLinear
 from inerter.methods.compare import Comparison as Comparison
 from inerter.methods.compare import compare as compare
@@ -128,14 +128,14 @@ from inerter.signals.transients import chirp as chirp
 from inerter.signals.transients import step as step
 from inerter.simulation.batch import Batch as Batch
 from inerter.simulation.batch import simulate_many as simulate_many
-from inerter.simulation.histories import simulate_to_files as simulate_to_files
+from inerter.simulation.batch_to_files import simulate_to_files as simulate_to_files
 from inerter.simulation.peaks import LiftOff as LiftOff
 from inerter.simulation.peaks import Peak as Peak
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
-from inerter.systems.arrivals import InputPath as InputPath
 from inerter.systems.assemble import state_space as state_space
 from inerter.systems.filters import Filter as Filter
+from inerter.systems.input_paths import InputPath as InputPath
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
 from inerter.trade_off.front import ParetoFront as ParetoFront

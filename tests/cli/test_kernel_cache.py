@@ -13,7 +13,7 @@ import pytest
 from campaigns import sampled
 
 KERNEL = """
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 
 
 @kernel("twice", "float64(float64)")
@@ -107,7 +107,7 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
         path.write_bytes(path.read_bytes()[: (0, 10, path.stat().st_size // 2)[number % 3]])
     number, said = compile_with(cache, temporary)
     assert number == "42.0\n"
-    assert "are not as they were written; they are compiled anew" in said
+    assert "are damaged; they are compiled again" in said
     assert compile_with(cache, temporary) == ("42.0\n", "")
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
 
@@ -115,7 +115,7 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(8))
 def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: Path, seed: int) -> None:
-    """Three bits of machine code, or one of the constant in it: compiled anew with a word, and never another number."""
+    """Three bits of machine code, or one of the constant in it: compiled again, never another number."""
     cache, rng = tmp_path / "cache", random.Random(seed)
     compile_with(cache, temporary)
     path = rng.choice(sorted(cache.rglob("*.nb?")))
@@ -125,12 +125,12 @@ def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: 
     path.write_bytes(content)
     number, said = compile_with(cache, temporary)
     assert number == "42.0\n"
-    assert "are not as they were written; they are compiled anew" in said
+    assert "are damaged; they are compiled again" in said
     assert compile_with(cache, temporary) == ("42.0\n", "")
 
 
 SEVERAL = """
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 
 
 @kernel("twice", "float64(float64)")

@@ -249,5 +249,5 @@ def test_a_wheel_on_neither_track():
     road = it.Road(5e-7, 22.0, coherence=it.Coherence.first_order(0.2))
     with pytest.raises(PerformanceIndexError, match="'middle' is on neither of them"):
         it.evaluate(third, it.RideComfort(road), it.Norm())
-    with pytest.raises(SimulationError, match="There is no input named 'left'"):
+    with pytest.raises(SimulationError, match="Unknown input 'left'"):
         it.simulate(third, road=it.two_tracks(road, 0), duration=1.0)

@@ -110,12 +110,12 @@ def test_gravity_in_a_record_is_no_step() -> None:
 
 BAD_SIGNALS = {
     "text": (("a", "b"), "two lists of numbers"),
-    "unlike": (([0.0, 1.0, 2.0], [1.0]), "as many finite numbers"),
-    "nan": (([0.0, 1.0], [1.0, math.nan]), "as many finite numbers"),
-    "uneven": (([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "even steps"),
-    "backwards": (([2.0, 1.0, 0.0], [1.0, 1.0, 1.0]), "even steps"),
-    "short": (([0.0, 0.1], [1.0, 1.0]), "lasts 1 s at least"),
-    "weighting": (([0.0, 1.0], [1.0, 1.0], "Wx"), "no weighting 'Wx'"),
+    "unlike": (([0.0, 1.0, 2.0], [1.0]), "equally long lists of finite numbers"),
+    "nan": (([0.0, 1.0], [1.0, math.nan]), "equally long lists of finite numbers"),
+    "uneven": (([0.0, 1.0, 3.0], [1.0, 1.0, 1.0]), "equally spaced"),
+    "backwards": (([2.0, 1.0, 0.0], [1.0, 1.0, 1.0]), "equally spaced"),
+    "short": (([0.0, 0.1], [1.0, 1.0]), "last at least 1 s"),
+    "weighting": (([0.0, 1.0], [1.0, 1.0], "Wx"), "Unknown weighting 'Wx'"),
 }
 
 
@@ -243,7 +243,7 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
     sick = it.RideComfort(ROAD, weighting="Wf").question(car)
     assert [w.output for w in sick.outputs] == ["sprung_acceleration"]
     yaw = replace(car, measures=replace(car.measures, comfort=(it.OutputWeight("front_travel"),)))
-    with pytest.raises(PerformanceIndexError, match="weighs accelerations"):
+    with pytest.raises(PerformanceIndexError, match="weights accelerations"):
         it.RideComfort(ROAD, weighting="Wk").question(yaw)
     strut = it.Strut("s", Spring(1e3) | Damper(10.0), upper={"tilt": 1.0}, lower={})
     tilting = it.Mechanism(
@@ -251,7 +251,7 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
         (strut,),
         measures=it.PerformanceOutputs(comfort=(it.OutputWeight("tilt_acceleration"),)),
     )
-    with pytest.raises(PerformanceIndexError, match=r"weighs pitch and roll.*'tilt'"):
+    with pytest.raises(PerformanceIndexError, match=r"weights pitch and roll.*'tilt'"):
         it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").question(tilting)
     for wrong in ("We", "Wx", 3):
         with pytest.raises(PerformanceIndexError, match=r"Wk, Wd"):
@@ -299,9 +299,9 @@ def test_what_a_trajectory_calls_an_output_can_be_asked_for(name: str) -> None:
 
 
 def test_elements_that_are_not_there_are_refused_with_those_that_are() -> None:
-    with pytest.raises(PerformanceIndexError, match=r"no element named 'q' \(there are: k, c, b, f"):
+    with pytest.raises(PerformanceIndexError, match=r"Unknown element 'q'; available: k, c, b, f"):
         it.evaluate(CAR, it.ElementForce(ROAD, "q"), it.Norm())
-    with pytest.raises(PerformanceIndexError, match="stroke of 'c' is not known"):
+    with pytest.raises(PerformanceIndexError, match="stroke of 'c' is undefined"):
         it.evaluate(CAR, it.ElementStroke(ROAD, "c"), it.Norm())
 
 

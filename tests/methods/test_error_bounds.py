@@ -13,7 +13,7 @@ import inerter as it
 from inerter.errors import ErrorSource, StatusKind
 from inerter.indices.excitation import RoadVelocity
 from inerter.methods import steady_squares
-from inerter.methods.error_bounds import checked, of_weighted_sum, of_worst
+from inerter.methods.error_bounds import of_weighted_sum, of_worst, with_error_sources
 from inerter.scatter.spread import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25)
@@ -50,11 +50,13 @@ def test_an_infinite_value_is_so_exactly():
 
 
 def test_a_bound_beyond_the_promise_is_said_with_its_number():
-    found = checked(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10), ErrorSource("period", 0.02)], 0.01)
+    found = with_error_sources(
+        it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10), ErrorSource("period", 0.02)], 0.01
+    )
     assert found.status.kind is StatusKind.INACCURATE
     assert "2.0e-02 of itself" in found.status.message
     assert "period" in found.status.message
-    assert checked(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10)], 0.01).status.ok
+    assert with_error_sources(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10)], 0.01).status.ok
 
 
 def test_a_sum_is_off_by_the_sum_of_what_its_parts_are_off_by():
@@ -87,7 +89,7 @@ class Approximate:
     size = property(lambda self: self.of.velocity_intensity)
     unit = "m/s"
 
-    def driven(self, mechanism):
+    def excited_mechanism(self, mechanism):
         return mechanism
 
     def arrivals(self, mechanism):
@@ -130,6 +132,10 @@ def test_the_jump_of_an_acceleration_where_friction_turns_is_twice_its_force_ove
     for kept in ways.values():
         modes = SimpleNamespace(maps=maps[kept], state=states[kept])
         some = SimpleNamespace(
-            system=integration.system, count=int(kept.sum()), modes=modes, seen=integration.seen, eta=integration.eta
+            system=integration.system,
+            count=int(kept.sum()),
+            modes=modes,
+            projected_state=integration.projected_state,
+            eta=integration.eta,
         )
         np.testing.assert_allclose(steady_squares.jump_sizes(some, outputs[:1]), expected, rtol=1e-9)

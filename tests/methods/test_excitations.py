@@ -15,9 +15,9 @@ from random_mechanisms import FAMILIES, mechanisms, opened
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
 from inerter.errors import LinearSystemError, PerformanceIndexError, StatusKind
-from inerter.methods.forced import Forced
+from inerter.methods.harmonic_response import ForcedResponse
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.on_roads import mean_on_roads, on_roads
+from inerter.methods.out_of_band import mean_on_roads, on_roads
 from inerter.systems.piecewise import piecewise
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
@@ -125,27 +125,27 @@ def test_a_single_mass_in_closed_form():
     )
     below = it.evaluate(one, it.RandomResponse({"mass_acceleration": 1.0}, push), it.Norm())
     assert math.isinf(below.value)
-    assert "white noise passes straight" in below.status.message
+    assert "direct feedthrough from white noise" in below.status.message
 
 
 def test_a_push_on_moving_ground_is_that_on_ground_at_rest():
     """Motions relative to the ground answer a force in the same way, whether the ground may move or not."""
     one = single(3.0, 0.7, 50.0)
-    moving = it.GroundAcceleration(4.0).driven(one)
+    moving = it.GroundAcceleration(4.0).excited_mechanism(one)
     found = it.h2_norm(it.state_space(moving, "push", "mass_relative_displacement"))
     assert found == pytest.approx(it.h2_norm(it.state_space(one, "push", "mass_displacement")), rel=1e-12)
 
 
 def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
     quake = it.RandomResponse({"mass_displacement": 1.0}, it.GroundAcceleration(1.0))
-    with pytest.raises(PerformanceIndexError, match=r"no bounds.*mass_relative_displacement"):
+    with pytest.raises(PerformanceIndexError, match=r"unbounded.*mass_relative_displacement"):
         it.evaluate(single(1.0, 0.1, 1.0), quake, it.Norm())
 
 
 def simulated(mechanism, index, roads=4):
     """By simulation of the design as it is, though it is linear: what `ExpectedValue` does with friction."""
     question = index.question(mechanism)
-    system = piecewise(question.drive.driven(mechanism))
+    system = piecewise(question.drive.excited_mechanism(mechanism))
     design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
     with ThreadPoolExecutor(1) as pool:
         return mean_on_roads(design, roads, None, pool)
@@ -237,7 +237,7 @@ def test_a_peak_is_where_a_simulated_sine_is_largest(source):
     car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
     found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
     (arrival,) = it.SingleInput(source).arrivals(car)
-    by_time, squares = Forced(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
+    by_time, squares = ForcedResponse(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
     assert squares.status.ok
     assert by_time == pytest.approx(found.value, rel=1e-5)
     assert found.value == found.peaks[0].gain
@@ -273,18 +273,18 @@ BAD = {
     "no shape": (lambda: it.FilteredExcitation(ROAD, None), "needs a filter"),
     "shape of one input": (
         lambda: it.FilteredExcitation(it.SingleInput("push"), Filter([1.0], [1.0, 1.0])),
-        "for what is random",
+        "requires a random excitation",
     ),
-    "no force": (lambda: ask({"mass_velocity": 1.0}, it.WhiteForce("shove", 1.0)), r"no force named 'shove'.*push"),
-    "no road": (lambda: ask({"mass_velocity": 1.0}, ROAD), "stands on none"),
+    "no force": (lambda: ask({"mass_velocity": 1.0}, it.WhiteForce("shove", 1.0)), r"Unknown force 'shove'.*push"),
+    "no road": (lambda: ask({"mass_velocity": 1.0}, ROAD), "has none"),
     "output": (lambda: ask({"mass_velocitee": 1.0}, it.WhiteForce("push", 1.0)), "Did you mean mass_velocity"),
     "absolute": (lambda: ask({"mass_velocity": 1.0}, it.GroundAcceleration(1.0)), "mass_relative_velocity"),
     "peak input": (lambda: it.PeakResponse(1, "a"), "by its name"),
     "peak output": (lambda: it.PeakResponse("a", None), "by its name"),
     "amplitude": (lambda: it.PeakResponse("a", "b", amplitude=0.0), "positive number"),
-    "no input": (lambda: peak("pull", "mass_velocity"), "no input named 'pull'"),
-    "no output": (lambda: peak("push", "mass_speed"), "no output named 'mass_speed'"),
-    "damped tyre": (peak_on_damped_tyre, r"A damper feels the velocity of road.*road_velocity"),
+    "no input": (lambda: peak("pull", "mass_velocity"), "Unknown input 'pull'"),
+    "no output": (lambda: peak("push", "mass_speed"), "Unknown output 'mass_speed'"),
+    "damped tyre": (peak_on_damped_tyre, r"A damper acts directly on the velocity of road.*road_velocity"),
 }  # fmt: skip
 
 

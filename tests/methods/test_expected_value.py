@@ -33,7 +33,7 @@ from inerter import (
 from inerter.errors import DesignError, PerformanceIndexError
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.objective import Differentiable
-from inerter.methods.on_roads import on_roads, rest_of
+from inerter.methods.out_of_band import on_roads, rest_of
 from inerter.methods.realisations import realisation_seeds
 from inerter.systems.piecewise import piecewise
 
@@ -198,7 +198,7 @@ def test_a_strut_that_sticks_on_an_undamped_tyre_has_no_steady_state():
             found = it.evaluate(paper_quarter_car(strut), index, TWO)
             assert math.isnan(found.value)
             assert found.status.kind == "marginal"
-            assert "damps the motion at 24.1 rad/s" in found.status.message  # root of 120e3 / 206.75
+            assert "almost undamped mode at 24.1 rad/s" in found.status.message  # root of 120e3 / 206.75
     held = ROAD.velocity_intensity * 120e3 / math.sqrt(2.0 * 800.0 * 206.75)  # one mass on tyre and skyhook damper
     assert it.evaluate(skyhook(k | Damper(500.0) | Friction(1e5)), J1, TWO).value == pytest.approx(held, rel=1e-6)
 
@@ -291,7 +291,7 @@ def test_a_relative_error_is_reached_or_missed_with_a_sentence(monkeypatch):
     coarse = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=0.05, seed=2))
     assert coarse.realisations == 8
     assert coarse.samples == found.samples[:8]
-    monkeypatch.setattr("inerter.methods.on_roads.MOST_ROADS", 16)
+    monkeypatch.setattr("inerter.methods.out_of_band.MOST_ROADS", 16)
     missed = it.evaluate(quarter_car(100.0), J3, ExpectedValue(relative_error=1e-5, seed=2))
     assert missed.status.kind == "inaccurate"
     assert missed.realisations == 16
@@ -321,22 +321,22 @@ def test_an_adaptive_method_fixes_its_roads_for_a_search():
 
 
 WRONG = {
-    "one road": (lambda: ExpectedValue(realisations=1), "whole number from 2 on, got 1"),
-    "half a road": (lambda: ExpectedValue(realisations=2.5), "whole number from 2 on, got 2.5"),
+    "one road": (lambda: ExpectedValue(realisations=1), "an integer of at least 2, got 1"),
+    "half a road": (lambda: ExpectedValue(realisations=2.5), "an integer of at least 2, got 2.5"),
     "roads as truth": (lambda: ExpectedValue(realisations=True), "got True"),
     "roads as text": (lambda: ExpectedValue(realisations="4"), "got '4'"),
-    "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed is a whole number from 0 on"),
-    "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed is a whole number"),
-    "no length": (lambda: ExpectedValue(period=0), "length of a road in seconds is a whole number from 1 on, got 0"),
-    "half a second": (lambda: ExpectedValue(period=0.5), "whole number from 1 on, got 0.5"),
-    "no threads": (lambda: ExpectedValue(jobs=0), "number of threads is a whole number from 1 on"),
+    "a negative seed": (lambda: ExpectedValue(seed=-1), "The seed must be a non-negative integer"),
+    "a seed that is none": (lambda: ExpectedValue(seed=1.5), "The seed must be a non-negative integer"),
+    "no length": (lambda: ExpectedValue(period=0), "length of a road in seconds must be a positive integer, got 0"),
+    "half a second": (lambda: ExpectedValue(period=0.5), "a positive integer, got 0.5"),
+    "no threads": (lambda: ExpectedValue(jobs=0), "number of threads must be a positive integer"),
     "both": (lambda: ExpectedValue(realisations=4, relative_error=0.01), "not both"),
     "no error": (lambda: ExpectedValue(relative_error=0.0), "between 0 and 1, got 0.0"),
     "an error of nan": (lambda: ExpectedValue(relative_error=math.nan), "between 0 and 1"),
     "an error as text": (lambda: ExpectedValue(relative_error="1 %"), "between 0 and 1"),
-    "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "known: exact, paper2008"),
-    "conventions in a list": (lambda: ExpectedValue(conventions=[]), "no conventions named"),
-    "no seed": (lambda: ExpectedValue(seed=None), "The seed is a whole number"),
+    "unknown conventions": (lambda: ExpectedValue(conventions="2008"), "available: exact, paper2008"),
+    "conventions in a list": (lambda: ExpectedValue(conventions=[]), "Unknown conventions"),
+    "no seed": (lambda: ExpectedValue(seed=None), "The seed must be a non-negative integer"),
 }
 
 

@@ -13,7 +13,7 @@ from strategies import elements, logarithmic, networks, paper_half_car, paper_qu
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, InerterError, RideComfort, Road, Spring, TyreLoad
-from inerter.methods.counterpart import has_play
+from inerter.methods.equivalent_linear import has_play
 from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)

@@ -134,7 +134,7 @@ def test_a_waviness_far_from_two_makes_a_line_of_two_inaccurate_and_says_by_how_
     car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
     found = it.evaluate(car, it.TyreLoad(it.Road(1e-6, 10.0, shape=shape)), it.Norm())
     assert found.status.kind == "inaccurate"
-    assert "mostly by line of the road" in found.status.message
+    assert "mostly from line of the road" in found.status.message
 
 
 def test_another_road_takes_its_place():

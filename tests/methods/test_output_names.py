@@ -114,7 +114,7 @@ def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
                 ask(method)
             told.add(str(error.value))
     assert len(told) == 1
-    assert told.pop().startswith(f"There is no output named {name!r}. Did you mean")
+    assert told.pop().startswith(f"Unknown output {name!r}. Did you mean")
 
 
 def test_an_input_that_is_not_there_gets_the_same_sentence_everywhere():

@@ -96,6 +96,6 @@ def test_a_half_car_answers_in_bounce():
 
 @pytest.mark.parametrize("design", [series, backlash])
 def test_without_an_amplitude_there_is_no_answer(design):
-    with pytest.raises(PerformanceIndexError, match="Give its amplitude"):
+    with pytest.raises(PerformanceIndexError, match="depends on the force amplitude"):
         it.evaluate(design(), LoadCarrying(), SIMULATED)
     assert it.evaluate(series(0.0), LoadCarrying(), SIMULATED).status.ok

@@ -7,7 +7,7 @@ import pytest
 from strategies import paper_quarter_car, random_network
 
 import inerter as it
-from inerter.methods.asking import objective_of
+from inerter.methods.composite_index import objective_of
 from inerter.networks.transform import map_elements
 
 

@@ -81,7 +81,7 @@ def test_between_slip_and_stick_it_is_not_ok_and_at_both_ends_it_is(index):
     assert np.count_nonzero(np.diff(ok)) == 2
     told = next(found for found in known if not found.status.ok)
     assert told.status.kind == "inaccurate"
-    assert "off by more than 3 %" in told.status.message
+    assert "the error may exceed 3 %" in told.status.message
 
 
 @pytest.mark.parametrize("first", sampled(range(0, 100, 10), seldom=range(0, 100, 10)))

@@ -34,8 +34,8 @@ def compiled(mechanism, index):
 
 def whole(question, point):
     """Norms of the whole mechanism: behind filters without rounding, and corrected where these only stand in."""
-    system = question.problem.system(question._closed(point))
-    return question.problem.corrected(system, h2_exactly(system, None)[0])[0]
+    system = question.problem.system(question._close_at(point))
+    return question.problem.correct_norms(system, h2_exactly(system, None)[0])[0]
 
 
 def check(seed):
@@ -56,7 +56,7 @@ def check(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_halves_have_the_norms_of_the_whole(seed):
     question, _, sure = check(seed)
-    sizes = [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart]
+    sizes = [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions]
     assert sizes == [4, 3]  # bounce, pitch and two wheels; roll and two wheels
     assert sure or seed % 3 == 2
 
@@ -72,7 +72,7 @@ def test_slopes_of_halves_are_those_of_the_whole():
     question, point, _ = check(1)
     value, gradient = question.value_and_gradient(point)
     problem = question.problem
-    total = lambda at: float(problem.question.combined(whole(question, at), problem.weights))  # noqa: E731
+    total = lambda at: float(problem.question.combine(whole(question, at), problem.weights))  # noqa: E731
     assert value == pytest.approx(total(point), rel=1e-9)
     for i, slope in enumerate(gradient):
         step = 1e-4 * (np.arange(2) == i)
@@ -87,7 +87,7 @@ def test_a_car_with_one_heavier_wheel_stays_whole():
     heavier = replace(wheel, inertia=wheel.inertia * (1.0 + 1e-12))
     lopsided = replace(mechanism, coordinates=tuple(heavier if c is wheel else c for c in mechanism.coordinates))
     question = compiled(lopsided, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
-    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart] == [7, 7]
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions] == [7, 7]
 
 
 def test_a_free_bar_keeps_the_half_that_feels_it():
@@ -96,7 +96,7 @@ def test_a_free_bar_keeps_the_half_that_feels_it():
     mechanism = car(rng, anti_roll_front=it.Spring(it.free(1e3, 1e5, name="bar"))).mechanism()
     question = compiled(mechanism, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
     point = np.array([{"c": 2e3, "b": 50.0, "bar": 9e3}[name] for name in mechanism.free_values()])
-    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.apart] == [4, 3]
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions] == [4, 3]
     assert question._exact_norms(point) == pytest.approx(whole(question, point), rel=1e-12)
     assert question._compiled_norms(point[None])[0] == pytest.approx(whole(question, point), rel=1e-9)
     _, gradient = question.value_and_gradient(point)
@@ -104,6 +104,6 @@ def test_a_free_bar_keeps_the_half_that_feels_it():
         whole(question, point * (1 + step * (np.array(list(mechanism.free_values())) == "bar")))
         for step in (1e-4, -1e-4)
     )
-    weighted = [float(question.problem.question.combined(one, question.problem.weights)) for one in (ahead, behind)]
+    weighted = [float(question.problem.question.combine(one, question.problem.weights)) for one in (ahead, behind)]
     at = list(mechanism.free_values()).index("bar")
     assert gradient[at] * point[at] == pytest.approx((weighted[0] - weighted[1]) / 2e-4, rel=1e-5)

@@ -7,7 +7,7 @@ import pytest
 from strategies import paper_quarter_car, random_half_car
 
 import inerter as it
-from inerter.methods.asking import objective_of
+from inerter.methods.composite_index import objective_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()

@@ -24,7 +24,7 @@ from inerter import (
     state_space,
 )
 from inerter.errors import LinearSystemError
-from inerter.kernels.h2 import propagated
+from inerter.kernels.h2 import propagate_columns
 from inerter.norms.delay import pade, propagate, transfer
 from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import h2
@@ -247,7 +247,7 @@ def test_the_rounding_bound_of_an_exponential_doubles_with_the_delay(compiled):
     def error_and_bound(time):
         if compiled:
             out, bound = np.empty(2), np.empty(2)
-            propagated(A, none, time, u, np.zeros(2), nothing, out, bound)
+            propagate_columns(A, none, time, u, np.zeros(2), nothing, out, bound)
         else:
             moved, unsure = propagate(A, none, u[:, None], np.zeros((2, 1)), time, None)
             out, bound = moved[:, 0], unsure[:, 0]

@@ -9,7 +9,7 @@ from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
-from inerter.methods.sampled import SampledObjective
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.limits import bounds_of, for_each
 

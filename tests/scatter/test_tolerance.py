@@ -13,7 +13,7 @@ from strategies import paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError
-from inerter.methods.asking import objective_of
+from inerter.methods.composite_index import objective_of
 from inerter.scatter.spread import scatter_of
 from inerter.scatter.tolerance import quantile_error
 

@@ -13,10 +13,10 @@ import inerter as it
 from inerter import Damper, Friction, Inerter, Mechanism, Road, Spring, Tyre
 from inerter.errors import SimulationError
 from inerter.simulation import event_driven
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import check_holds, parts_of, tabulate
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import initial_state
-from inerter.simulation.steady import mean_squares, recorded_period, repeating
+from inerter.simulation.periodic_steady_state import mean_squares, recorded_period, repeating
 from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)

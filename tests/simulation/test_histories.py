@@ -57,7 +57,7 @@ def test_a_folder_that_holds_something_stays_as_it_is(tmp_path: Path) -> None:
 
 def test_what_is_wrong_is_said_before_a_folder_is_made(tmp_path: Path) -> None:
     place = tmp_path / "new"
-    with pytest.raises(SimulationError, match="no output named 'comfort'"):
+    with pytest.raises(SimulationError, match="Unknown output 'comfort'"):
         it.simulate_to_files(CARS, place, outputs=["comfort"], duration=0.1, road=SIGNALS)
     with pytest.raises(SimulationError, match="one or more vehicles in a list"):
         it.simulate_to_files([], place, outputs=OUTPUTS, duration=0.1, road=SIGNALS)

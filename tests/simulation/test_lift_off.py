@@ -39,8 +39,8 @@ def test_when_a_tyre_would_lift(height):
     np.testing.assert_allclose(found, whole, atol=1.1e-4 if height < 0 else 1e-6)
     assert run.lift_offs[1].beyond == pytest.approx(STIFFNESS * abs(height) - MASS * G, rel=1e-3)
     assert run.status.ok
-    assert "tyre pulls at the road by more than its static load of 392.3 N" in run.notes[0]
-    assert "would have lifted off" in run.notes[0]
+    assert "tyre pulls on the road by more than its static load of 392.3 N" in run.notes[0]
+    assert "a real tyre would lift off there" in run.notes[0]
 
 
 def test_a_tyre_that_stays():
@@ -79,7 +79,7 @@ def test_where_the_static_load_is_not_known():
     )
     run = it.simulate(held, road=it.step(0.01, time=0.01), duration=0.1, step=1e-4)
     assert run.lift_offs == ()
-    assert run.notes[0].startswith("Whether a tyre would lift off cannot be told. The static tyre loads are not known")
+    assert run.notes[0].startswith("Wheel lift-off cannot be checked. The static tyre loads are not known")
 
 
 def test_a_profile_of_two_tracks(tmp_path):

@@ -14,7 +14,7 @@ import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Mechanism, Rig, Spring, Strut
 from inerter.errors import MechanismError
 from inerter.networks.elements import Element, Network, Parallel, Series
-from inerter.simulation.start import initial_state
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.statics import equilibrium
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle

@@ -206,7 +206,7 @@ def test_intervals_tile_the_run():
         assert parts[0][0] == 0.0
         assert parts[-1][1] == pytest.approx(2.0)
         assert all(a[1] == pytest.approx(b[0], abs=1e-12) for a, b in pairwise(parts))
-    with pytest.raises(SimulationError, match="no friction or gap named 'b'"):
+    with pytest.raises(SimulationError, match="Unknown friction or gap 'b'"):
         run.intervals("b", "stick")
 
 
@@ -239,7 +239,7 @@ def test_a_changed_kernel_is_compiled_again(tmp_path):
     """A copy of the package whose flow kernel is changed must not run what the cache holds of the original."""
     probe = textwrap.dedent(
         """
-        from inerter.kernels.declare import kernel
+        from inerter.kernels.decorators import kernel
         from inerter.kernels.flow import first_root, value_at
 
         @kernel("probe", "UniTuple(float64, 2)(float64[::1], float64[::1], float64[::1])")
@@ -293,6 +293,6 @@ def test_threads_that_compile_at_once_do_not_see_each_others_settings(monkeypatc
     before = numba.config.CACHE_DIR
     monkeypatch.setattr(numba, "njit", slow)
     with ThreadPoolExecutor(4) as pool:
-        list(pool.map(compiler.compiled, [first_root.function, over_columns.function] * 4))
+        list(pool.map(compiler.compile_function, [first_root.function, over_columns.function] * 4))
     assert kept == [True] * 8
     assert before == numba.config.CACHE_DIR

@@ -19,7 +19,7 @@ from inerter import Damper, Friction, Gap, Inerter, Spring, simulate
 from inerter.errors import DesignError, MechanismError, PerformanceIndexError, SimulationError
 from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import GuardRole, StatisticalRole, SwitchRole
-from inerter.systems.piecewise import piecewise, revalued
+from inerter.systems.piecewise import piecewise, with_element_values
 
 MASS, STIFFNESS = 10.0, 4000.0  # 20 rad/s
 
@@ -309,9 +309,9 @@ def test_a_constant_force_leaves_gains_as_they_are():
 def test_new_values_that_change_what_holds_are_refused():
     car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
     system = piecewise(car)
-    assert revalued(system, {"u": 20.0}).mechanics.limits.tolist() == [[-10.0, 20.0]]
-    with pytest.raises(DesignError, match="'u' holds what it did not, or the reverse"):
-        revalued(system, {"u": 70.0})
+    assert with_element_values(system, {"u": 20.0}).mechanics.limits.tolist() == [[-10.0, 20.0]]
+    with pytest.raises(DesignError, match="'u' changes whether it holds against small forces"):
+        with_element_values(system, {"u": 70.0})
 
 
 @dataclass(frozen=True)

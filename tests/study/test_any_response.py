@@ -409,7 +409,7 @@ BAD = {
     "an output without bounds": (
         SWAY + GROUND + "outputs = { primary_displacement = 1.0 }",
         "asked.outputs.primary_displacement",
-        ["no bounds", "primary_relative_displacement"],
+        ["unbounded", "primary_relative_displacement"],
     ),
     "an intensity per radian or per Hz": (
         SWAY + OUTPUTS + 'excitation = { ground_acceleration = "1 m^2/s^3" }',

@@ -13,7 +13,7 @@ from campaigns import sampled
 from extremes import BASES, extreme, what_is_wrong
 
 from inerter.cli.main import call
-from inerter.methods.error_bounds import ErrorSource, checked
+from inerter.methods.error_bounds import ErrorSource, with_error_sources
 from inerter.methods.method import Estimate
 
 LIMIT = 20.0  # s of a processor
@@ -55,7 +55,7 @@ def test_bases_are_valid_and_their_quantities_are_changed(tmp_path: Path, capsys
 def test_an_error_that_nobody_knows_is_no_number() -> None:
     """A bound that is nan was told as "off by nan of itself"."""
     estimate = Estimate(1.0, "m/s^2")
-    found = checked(estimate, (ErrorSource("time step", math.nan), ErrorSource("lines", 1e-4)), 0.01)
+    found = with_error_sources(estimate, (ErrorSource("time step", math.nan), ErrorSource("lines", 1e-4)), 0.01)
     assert not found.status.ok
-    assert found.status.message == "how much the value may be off by time step is not known"
+    assert found.status.message == "unknown error from time step"
     assert np.isnan(sum(source.bound for source in found.error_sources))

@@ -14,7 +14,7 @@ from study_text import ELEMENTS, study_text
 from inerter.files.study.cases import Case, Outcome, cases, run_case
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
-from inerter.methods.note import Note, parts_of
+from inerter.methods.notes import Note, parts_of
 
 STUDY = load_study(Path(__file__).parents[2] / "examples" / "quarter-car.toml")
 WORDS = st.text("abc 0123456789.{}", min_size=1, max_size=12)

@@ -270,7 +270,7 @@ def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
 def test_ill_posed_layout_is_found_before_work(tmp_path: Path) -> None:
     path = write(tmp_path)
     path.write_text(path.read_text().replace('serial = "k | c - (b | f)"', 'serial = "f"'))
-    with pytest.raises(StudyError, match=r"layouts\.serial.*held by nothing"):
+    with pytest.raises(StudyError, match=r"layouts\.serial.*unconstrained"):
         check_study(load_study(path))
 
 

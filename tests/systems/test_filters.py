@@ -81,7 +81,7 @@ REFUSED = {
     "undamped": (lambda: Filter([1.0], [1.0, 0.0, 4.0]), "open left half plane.*2j"),
     "integrator": (lambda: Filter([1.0], [1.0, 0.0]), "open left half plane"),
     "improper": (lambda: Filter([1.0, 0.0, 0.0], [1.0, 1.0]), "no higher order.*2 over 1"),
-    "zero": (lambda: Filter([0.0], [1.0, 1.0]), "lets nothing through"),
+    "zero": (lambda: Filter([0.0], [1.0, 1.0]), "must not be zero"),
     "no denominator": (lambda: Filter([1.0], [0.0, 0.0]), "denominator"),
     "empty": (lambda: Filter([], [1.0]), "numerator.*finite real numbers"),
     "complex": (lambda: Filter([1.0], [1.0, 1.0 + 1.0j]), "denominator.*finite real numbers"),

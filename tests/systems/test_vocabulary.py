@@ -84,7 +84,7 @@ def test_all_analyses_know_the_same_names(seed):
         assert it.state_space(mechanism, [road.name for road in mechanism.roads], linear).outputs == tuple(linear)
         for name in set(names) - set(linear):
             with pytest.raises(
-                LinearSystemError, match="in linear analysis, which leaves friction out and closes gaps"
+                LinearSystemError, match="in linear analysis, which neglects friction and treats gaps as closed"
             ):
                 it.state_space(mechanism, outputs=name)
         assert set(main_outputs(mechanism)) <= set(linear)

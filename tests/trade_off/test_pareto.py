@@ -11,7 +11,7 @@ from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
 import inerter as it
-from inerter.methods.sampled import SampledObjective
+from inerter.methods.multisine_lines import SampledObjective
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
@@ -175,16 +175,16 @@ class Made:
         value = 3.0 - np.sqrt(x) - x * np.sin(turn * x)
         return value, -0.5 / np.sqrt(x) - np.sin(turn * x) - turn * x * np.cos(turn * x)
 
-    def asks(self, vehicle):
+    def constituents(self, vehicle):
         return []
 
     def per_output(self, split, vehicle):
         return [self]
 
-    def estimated(self, vehicle, method):
+    def estimate(self, vehicle, method):
         return it.Estimate(float(self.function(np.float64(vehicle.strut.parts[1].value))[0]), "1")
 
-    def estimated_many(self, vehicle, method, points):
+    def estimate_many(self, vehicle, method, points):
         return self.function(points["x"])[0]
 
     def as_objective(self, vehicle, method):

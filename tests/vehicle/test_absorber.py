@@ -186,5 +186,5 @@ def test_bad_values_are_refused_in_one_sentence(given: dict[str, object], messag
 
 
 def test_on_a_road_it_cannot_be_judged() -> None:
-    with pytest.raises(it.InerterError, match="driven by a road, and this mechanism stands on none"):
+    with pytest.raises(it.InerterError, match="requires a road, and this mechanism has no tyre"):
         it.evaluate(absorber(0.1, 0.0, 0.1, 0.1), it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())

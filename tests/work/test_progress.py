@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.kernels.declare import kernel
+from inerter.kernels.decorators import kernel
 from inerter.work import kept, progress
 from inerter.work.forwarding import receive
 from inerter.work.pool import Pool
@@ -136,7 +136,7 @@ def test_compiling_is_told_with_a_warning_where_nobody_listens(
         return lambda x: 2.0 * x
 
     monkeypatch.setattr(progress, "_LONG", 0.1)
-    monkeypatch.setattr("inerter.kernels.compiler.compiled", compiled)
+    monkeypatch.setattr("inerter.kernels.compiler.compile_function", compiled)
 
     @kernel("twice", "float64(float64)")
     def doubled(x: float) -> float:

@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.errors import DesignError
 from inerter.files.study.study import Study
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import IndexLike
 from inerter.networks.elements import Free
 from inerter.units import parse_quantity, shown
 from inerter.vehicle.mechanism import Mechanism
@@ -40,7 +40,7 @@ class Design:
         """Study with the design variables replaced by the values of the design."""
         return self.study.with_values(self.values)
 
-    def resolve_index(self, index: str) -> Asked:
+    def resolve_index(self, index: str) -> IndexLike:
         """Objective of the design's layout for an index of its study."""
         return self.study.resolve_index(index, self.layout)
 

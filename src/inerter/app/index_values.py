@@ -12,7 +12,7 @@ from inerter.errors import Status, StatusKind
 from inerter.files.study.limits import StudyLimit, limits_in, part_words
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.constrained_search import KEPT_COSTLY
@@ -23,7 +23,7 @@ from inerter.vehicle.vehicle import Vehicle
 _REMEMBERED = 2000  # values of designs
 
 
-def estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def estimate_index(vehicle: Vehicle, index: IndexLike, method: Method) -> Estimate:
     """Estimate of an index; nan with a status if it cannot be computed."""
     asked: tuple[Any, ...] = vehicle, index, method
     try:
@@ -33,7 +33,7 @@ def estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
     return _remembered(*asked)
 
 
-def _estimate_index(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def _estimate_index(vehicle: Vehicle, index: IndexLike, method: Method) -> Estimate:
     try:
         return evaluate(vehicle, index, method)
     except FAILURES as error:

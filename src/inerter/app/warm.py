@@ -11,7 +11,7 @@ from inerter.errors import InerterError
 from inerter.indices.registry import INDICES, make_index
 from inerter.kernels.cache import is_kept
 from inerter.kernels.prepare import prepare
-from inerter.methods.method import Compiled
+from inerter.methods.method import MethodWithKernels
 from inerter.methods.registry import METHODS, is_blind, searches
 from inerter.networks.elements import Damper, Friction, Inerter, Spring, free
 from inerter.networks.parser import network
@@ -48,7 +48,7 @@ def _of_method(name: str) -> Iterator[Any]:
         try:
             method = kind()
             question = make_index(symbol, Road(roughness=5e-7, speed=25.0), {}).question(car)
-            if isinstance(method, Compiled):
+            if isinstance(method, MethodWithKernels):
                 yield from method.kernels(question, search=searches(name))
         except (InerterError, TypeError):  # what needs settings is compiled when it is called
             continue

@@ -27,7 +27,7 @@ from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
-from inerter.kernels.prepare import Told
+from inerter.kernels.prepare import ProgressCallback
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
 
@@ -36,7 +36,7 @@ class ProgressCallbacks(NamedTuple):
     """Callbacks that display the progress of a study."""
 
     cases: Report  # how many cases are done, and which one was last
-    kernels: Told  # which kernel is compiled before that
+    kernels: ProgressCallback  # which kernel is compiled before that
 
 
 @dataclass

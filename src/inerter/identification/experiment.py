@@ -17,9 +17,9 @@ from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable, tabulate
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import initial_state
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 

@@ -19,7 +19,7 @@ from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
-from inerter.systems.piecewise import PiecewiseSystem, piecewise, revalued
+from inerter.systems.piecewise import PiecewiseSystem, piecewise, with_element_values
 from inerter.vehicle.rig import Rig
 from inerter.work.pieces import Item, Result
 from inerter.work.running import mapped, over_threads
@@ -61,7 +61,7 @@ class FitProblem:
                 known = self._build_system(record, {n: v and largest[n] for n, v in values.items()})
                 self.systems[layout] = known
             if set(values) <= {b.label for b in known.graph.branches} and not known.kinematics.weighs:
-                return revalued(known, {n: v for n, v in values.items() if v != 0.0})
+                return with_element_values(known, {n: v for n, v in values.items() if v != 0.0})
             return self._build_system(record, values)
         except InerterError:
             return None

@@ -15,8 +15,8 @@ from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road, RoadShape
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter, as_filter
+from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
@@ -43,7 +43,7 @@ class Excitation(Protocol):
         """Whether the sources are white noises; else the excitation is one input, for gains."""
         ...
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited: unchanged, reduced by symmetry, or in coordinates relative to moving ground."""
         ...
 
@@ -54,7 +54,7 @@ class Excitation(Protocol):
 
 @dataclass(frozen=True)
 class RoadVelocity:
-    """The white velocity of a road, at each wheel when the wheel gets there."""
+    """White-noise velocity of a road, at each wheel with its wheelbase delay."""
 
     road: Road
     unit = _VELOCITY
@@ -65,14 +65,14 @@ class RoadVelocity:
         """2 pi sqrt(V kappa) [m/s per root of Hz]."""
         return self.road.velocity_intensity
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism on one track, halved if symmetric, without a coherence; unchanged with one."""
         return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
     def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
-            raise PerformanceIndexError("A road drives a mechanism at its tyres, and this one stands on none.")
+            raise PerformanceIndexError("A road excites a mechanism at its tyres, and this one has none.")
         if self.road.coherence is not None and any(r.track for r in mechanism.roads):
             return tuple(self._on_tracks(mechanism, self.road.coherence))
         return tuple(InputPath(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
@@ -84,7 +84,7 @@ class RoadVelocity:
         for road in mechanism.roads:
             if not road.track:
                 raise PerformanceIndexError(
-                    f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Say which, "
+                    f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Set "
                     f'track = "left" or "right", or leave the coherence out.'
                 )
             for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
@@ -118,7 +118,7 @@ class WhiteForce:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as given."""
         return mechanism
 
@@ -129,7 +129,7 @@ class WhiteForce:
 
 @dataclass(frozen=True)
 class GroundAcceleration:
-    """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz]; every mass feels it.
+    """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz], which acts on every mass.
 
     Roads lie still on the ground. Motions that stay bounded are those over the ground, `<coordinate>_relative_...`,
     and what follows from them; a `<coordinate>_acceleration` is the absolute one.
@@ -149,7 +149,7 @@ class GroundAcceleration:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism in coordinates relative to the ground."""
         return mechanism.on_moving_ground()
 
@@ -175,7 +175,7 @@ class FilteredExcitation:
     def __post_init__(self) -> None:
         of = as_excitation(self.excitation, "A shaping filter")
         if not of.is_random:
-            raise PerformanceIndexError(f"A shaping filter is for what is random, got {of!r}.")
+            raise PerformanceIndexError(f"A shaping filter requires a random excitation, got {of!r}.")
         shape = as_filter(self.filter)
         if shape is None:
             raise PerformanceIndexError("A shaped excitation needs a filter, such as Filter([1.0], [1.0, 2.0]).")
@@ -201,9 +201,9 @@ class FilteredExcitation:
     def _of(self) -> Excitation:
         return as_excitation(self.excitation, "A shaping filter")
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by the unfiltered excitation."""
-        return self._of.driven(mechanism)
+        return self._of.excited_mechanism(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the unfiltered excitation, each with the filter in series after its own."""
@@ -227,7 +227,7 @@ class SingleInput:
     unit = ""
     is_random = False
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as given."""
         return mechanism
 
@@ -245,7 +245,7 @@ class SingleInput:
 def as_excitation(given: object, what: str) -> Excitation:
     """`given`, a road or an excitation, as an excitation; raises `PerformanceIndexError` for anything else.
 
-    `what` asks for it, at the beginning of the sentence.
+    `what` requires it, at the beginning of the sentence.
     """
     if isinstance(given, Road):
         return RoadVelocity(given)
@@ -259,14 +259,14 @@ def as_excitation(given: object, what: str) -> Excitation:
 
 
 def shape_of(excitation: Excitation) -> tuple[RoadShape, float] | None:
-    """The measured shape of the road that drives, and the speed on it [m/s]; None where nothing was measured."""
+    """Measured shape of the road, and the speed on it [m/s]; None for a road without measurement."""
     of = road_of(excitation)
     shape = getattr(of, "shape", None)
     return (shape, of.speed) if isinstance(shape, RoadShape) else None
 
 
 def road_of(excitation: Excitation) -> Any:
-    """The road that drives, perhaps through filters; what drives itself where that is no road."""
+    """Road behind an excitation, perhaps through filters; the excitation itself if it is not a road."""
     of: Any = excitation
     while isinstance(of, FilteredExcitation | RoadVelocity):
         of = of.excitation if isinstance(of, FilteredExcitation) else of.road
@@ -286,5 +286,5 @@ def _force(mechanism: Mechanism, name: str) -> str:
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     if name not in forces:
         known = ", ".join(forces) or "none"
-        raise PerformanceIndexError(f"There is no force named {name!r} in this mechanism (there are: {known}).")
+        raise PerformanceIndexError(f"Unknown force {name!r} of the mechanism; available: {known}.")
     return name

@@ -1,4 +1,4 @@
-"""Frequency weightings of ISO 2631-1:1997 for what people feel, from the parameters of its Annex A.
+"""Frequency weightings of ISO 2631-1:1997 for human vibration, from the parameters of its Annex A.
 
 A weighting is a band pass (f1, f2, both of second order and Butterworth), a transition from acceleration to velocity
 (f3, f4, Q4), which has no zero without f3 and may be left out, and perhaps an upward step (f5, Q5, f6, Q6), from
@@ -74,9 +74,7 @@ ROTATIONS = {"roll": 0.63, "pitch": 0.4}  # [m/rad] by what rotations of a seat 
 def check_weighting(name: object) -> str:
     """Name of a weighting, as given; raises `PerformanceIndexError` unless there is a weighting of this name."""
     if not isinstance(name, str) or name not in WEIGHTINGS:
-        raise PerformanceIndexError(
-            f"There is no weighting {name!r} (of ISO 2631-1 there are: {', '.join(WEIGHTINGS)})."
-        )
+        raise PerformanceIndexError(f"Unknown weighting {name!r}; available of ISO 2631-1: {', '.join(WEIGHTINGS)}.")
     return name
 
 
@@ -116,7 +114,7 @@ def _blocks(sections: tuple[Filter, ...]) -> tuple[Matrix, Matrix, Matrix, Matri
 
 def _companion(one: Filter) -> tuple[Matrix, Matrix, Matrix, Matrix, float]:
     """Matrices A, B, C, D of a second-order filter in units of its frequency, and the frequency [rad/s]."""
-    rate, top, bottom = (np.asarray(part, dtype=float) for part in one.scaled)
+    rate, top, bottom = (np.asarray(part, dtype=float) for part in one.scaled_coefficients)
     a = np.array([[0.0, 1.0], -bottom[:2] / bottom[2]])
     d = top[2] / bottom[2]
     return a, np.array([[0.0], [1.0 / bottom[2]]]), (top[:2] - d * bottom[:2])[None], np.array([[d]]), float(rate)

@@ -14,8 +14,8 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -56,28 +56,28 @@ class MeasuredRoad:
     @property
     def size(self) -> float:
         """Root of the two-sided spectral density of the white velocity [m/s per root of Hz]."""
-        return self._shaped.size
+        return self._shaped_road.size
 
     @property
     def unit(self) -> str:
         """Unit of the source."""
-        return self._shaped.unit
+        return self._shaped_road.unit
 
     @property
-    def _shaped(self) -> Excitation:
+    def _shaped_road(self) -> Excitation:
         return FilteredExcitation(self.road, self.filter)
 
-    def driven(self, mechanism: Mechanism) -> Mechanism:
+    def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         """Mechanism as excited by a road."""
-        return self._shaped.driven(mechanism)
+        return self._shaped_road.excited_mechanism(mechanism)
 
     def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of a road, each with the filter."""
-        return self._shaped.arrivals(mechanism)
+        return self._shaped_road.arrivals(mechanism)
 
     def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
         """Error sources of the road, and of the filter, whose density deviates from the line by at most `DEVIATION`."""
-        return *stand_ins_of(self._shaped, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
+        return *stand_ins_of(self._shaped_road, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
 
 
 def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
@@ -95,7 +95,7 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     if not _SLOPES[0] < spectrum.waviness < _SLOPES[1]:
         raise PerformanceIndexError(
             f"The waviness of the spectrum is {spectrum.waviness:.3g}; a road for an index has one between 0 and 4. "
-            f"Is the profile in the unit that was named?"
+            f"Check the unit of the profile."
         )
     shape = spectrum.shape(spectrum.unevenness, spectrum.waviness)
     road = Road(0.5 * spectrum.unevenness * N0**2, speed, shape=shape)
@@ -120,8 +120,8 @@ def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
             if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
                 return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
     raise PerformanceIndexError(
-        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Lay the line over "
-        f"fewer wavenumbers: road_spectrum(profile, lowest=..., highest=...)."
+        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Fit the PSD over a "
+        f"narrower band: road_spectrum(profile, lowest=..., highest=...)."
     )
 
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from inerter.errors import PerformanceIndexError
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter, as_filter
+from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
@@ -77,7 +77,7 @@ class IndexDefinition:
         """Whether the index is a peak gain; else it is made of r.m.s. values."""
         return self.combination is Combination.PEAK_GAIN
 
-    def combined(self, rms: Array, weights: Array) -> Array:
+    def combine(self, rms: Array, weights: Array) -> Array:
         """Index from r.m.s. values (..., outputs) and weights (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
             return np.asarray(np.sqrt(rms**2 @ weights**2))
@@ -86,7 +86,7 @@ class IndexDefinition:
     def slopes(self, rms: Array, weights: Array) -> Array:
         """Derivatives of the combined index with respect to the r.m.s. values (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
-            return np.asarray(weights**2 * rms / max(float(self.combined(rms, weights)), 1e-300))
+            return np.asarray(weights**2 * rms / max(float(self.combine(rms, weights)), 1e-300))
         return weights
 
     def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
@@ -168,9 +168,7 @@ def on_road(
     if isinstance(index.road, type) or not (isinstance(index.road, Road) or getattr(index.road, "is_random", False)):
         raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
     if isinstance(index.road, Road) and not mechanism.roads:
-        raise PerformanceIndexError(
-            f"{index.symbol} is driven by a road, and this mechanism stands on none. Add a tyre."
-        )
+        raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:
         raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
     return IndexDefinition(outputs, combination, index.road, index.unit, filter)

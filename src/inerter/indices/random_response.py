@@ -75,7 +75,7 @@ class RandomResponse:
         if not drive.is_random:
             raise PerformanceIndexError(f"A random response needs a random excitation, got {drive!r}.")
         outputs = tuple(OutputWeight(name, weight) for name, weight in self.outputs.items())
-        unit = unit_of(drive.driven(mechanism), list(self.outputs))
+        unit = unit_of(drive.excited_mechanism(mechanism), list(self.outputs))
         return IndexDefinition(outputs, Combination.SUM_OF_RMS, drive, unit, self.filter)
 
 

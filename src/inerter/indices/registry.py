@@ -1,4 +1,4 @@
-"""The indices that files know by their symbols, and the keys of files that are settings of theirs."""
+"""Registry of the indices by their symbols in files, and their settings by key."""
 
 from __future__ import annotations
 

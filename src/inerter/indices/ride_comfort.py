@@ -49,21 +49,21 @@ class RideComfort:
             )
 
     def question(self, mechanism: Mechanism) -> IndexDefinition:
-        """Raises `PerformanceIndexError` if the mechanism has no road or says nothing of comfort."""
+        """Raises `PerformanceIndexError` if the mechanism has no road or no comfort output."""
         comfort, where = mechanism.measures.comfort, "measures.comfort"
         if self.weighting is None:
             return on_road(self, mechanism, comfort, where)
-        felt = [part for output in comfort if (part := self._felt(mechanism, output)) is not None]
+        felt = [part for output in comfort if (part := self._weighted_output(mechanism, output)) is not None]
         outputs, filters = tuple(output for output, _ in felt), tuple(passed for _, passed in felt)
         return on_road(self, mechanism, outputs, where, filters, Combination.ROOT_OF_SQUARES)
 
-    def _felt(self, mechanism: Mechanism, output: OutputWeight) -> tuple[OutputWeight, Filter] | None:
+    def _weighted_output(self, mechanism: Mechanism, output: OutputWeight) -> tuple[OutputWeight, Filter] | None:
         """Acceleration with its factor in ISO 2631-1 and its weighting filter; None if the standard ignores it."""
         assert self.weighting is not None
         moving = {f"{c.name}_acceleration": c for c in mechanism.coordinates}.get(output.output)
         if moving is None:
             raise PerformanceIndexError(
-                f"ISO 2631-1 weighs accelerations, and measures.comfort has {output.output!r}. Ask for comfort without "
+                f"ISO 2631-1 weights accelerations, and measures.comfort has {output.output!r}. Evaluate it without "
                 f"a weighting, or name the acceleration of a coordinate."
             )
         if not moving.angle:
@@ -77,7 +77,7 @@ def _lever(rotating: Coordinate) -> float:
     """Multiplying factor of ISO 2631-1 for a rotation [m/rad]."""
     if rotating.name not in ROTATIONS:
         raise PerformanceIndexError(
-            f"ISO 2631-1 weighs pitch and roll, and does not know the rotation {rotating.name!r}. Name the coordinate "
+            f"ISO 2631-1 weights pitch and roll, but not the rotation {rotating.name!r}. Name the coordinate "
             f"{' or '.join(ROTATIONS)}, or leave it out of measures.comfort."
         )
     return ROTATIONS[rotating.name]

@@ -1,1 +1,1 @@
-"""All compiled code, on plain arrays: to import it loads no compiler, compiles nothing and starts no process."""
+"""Compiled code on plain arrays; the import loads no compiler, compiles nothing and starts no process."""

@@ -1,4 +1,4 @@
-"""The structures that compiled code works on: what is in them, by name, and of which type it is.
+"""Structures of compiled code: named fields with their types.
 
 Annotations are types to the compiler too: `Annotated` says them in its words, or by a data type of NumPy.
 """
@@ -59,7 +59,7 @@ EVENT = record([("time", np.float64), ("element", np.int64), ("before", np.int64
 
 
 class Sizes(NamedTuple):
-    """How many there are of everything."""
+    """Numbers of coordinates, inputs, elements and outputs."""
 
     inertial: int  # velocities that inertia carries
     massless: int  # velocities of massless motions
@@ -78,7 +78,7 @@ class MapRows(NamedTuple):
     eta: int  # a', w and the forces of the elements
     entry: int  # conditions on entry
     output: int  # squared outputs, then what the energy account needs
-    seen: int  # the state as the mode sees it
+    projected_state: int  # the state after projection onto the mode
 
 
 class Mechanics(NamedTuple):
@@ -107,21 +107,21 @@ class Mode(NamedTuple):
 
 
 class Modes(NamedTuple):
-    """Modes met so far, one row each."""
+    """Modes reached so far, one row each."""
 
     number: Ints  # (3^k,) index of the mode that a state of the elements has, or -1
     state: IntTable  # (capacity, k): -1, 0, 1 of each element
     conditions: IntTable  # (capacity, 3): numbers of conditions on velocity, of springs, of the loose
-    maps: Matrices  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the state as seen
-    reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and what it asks of the elements
+    maps: Matrices  # (capacity, rows, width): rates, guards, (a', w, F), entry conditions, outputs, the projected state
+    reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and impulse on each element
     limits: Matrices  # (capacity, k, 2): intervals of the guards while the mode lasts
     entry_limits: Matrices  # the same on entry
-    steps: Matrices  # (capacity, columns, rows): see `march.lines_of`, then jumps of the state with inputs
+    steps: Matrices  # (capacity, columns, rows): see `integrate.lines_of`, then jumps of the state with inputs
     reach: Floats  # (capacity,) how far a Taylor series of the flow serves [s]
 
 
 class IntegrationState(NamedTuple):
-    """Where an integration is; it can be taken up again at any point."""
+    """State of an integration, from which it can resume at any point."""
 
     place: Annotated[Any, (PLACE,)]  # one
     state: Floats
@@ -131,7 +131,7 @@ class IntegrationState(NamedTuple):
 
 
 class Room(NamedTuple):
-    """What an integration works with, and what it finds on the way: all is made anew at every use."""
+    """Work space of an integration; every entry is overwritten at each use."""
 
     numbers: Floats  # the cubics of the inputs over this segment, see `flow.knot_numbers`
     line: Floats  # of the march
@@ -169,7 +169,7 @@ class Knots(NamedTuple):
 
 
 class History(NamedTuple):
-    """What is kept of a motion."""
+    """Recorded samples, mean squares and events of a motion."""
 
     states: Matrix  # (samples or 0, n)
     visited: Ints  # (samples or 0,) mode at each sample
@@ -179,7 +179,7 @@ class History(NamedTuple):
 
 
 class Account(NamedTuple):
-    """What the energy account needs, if it is asked for."""
+    """Data of the energy account, if it is wanted."""
 
     wanted: bool
     branch_road: Matrix  # (branches or 0, roads)
@@ -188,7 +188,7 @@ class Account(NamedTuple):
 
 
 class MarchShape(NamedTuple):
-    """Sizes of a march, see `march.march_of`."""
+    """Sizes of a march, see `integrate.march_of`."""
 
     states: int
     inputs: int  # numbers of the inputs over a step that are used
@@ -208,7 +208,7 @@ class March(NamedTuple):
 
 
 class MarchLines(NamedTuple):
-    """What whole steps of one mode are made from."""
+    """Matrices and state for whole steps in one mode."""
 
     steps: Matrix  # a line each column, then the jump of the state with each input
     limits: Matrix  # of the guards
@@ -217,7 +217,7 @@ class MarchLines(NamedTuple):
 
 
 class Span(NamedTuple):
-    """Which steps are to be made."""
+    """Range of the steps to make."""
 
     step: float
     mode: int

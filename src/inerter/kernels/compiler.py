@@ -1,9 +1,9 @@
 """The compiler: how declared functions become machine code, and which parts of it are used.
 
-There are two ways. The plain one, here, is `numba.njit` with options that its documentation tells. The tuned one, in
-`inerter.kernels.tuned`, compiles the same functions in half the time: it rests on private parts of Numba, which may
-change with any release. `declare.way` is the switch between them. Beside these two only `twofold` touches Numba, for
-a product and a sum with one rounding.
+There are two modes. The plain one, here, is `numba.njit` with documented options. The tuned one, in
+`inerter.kernels.numba_compiler`, compiles the same functions in half the time: it rests on private parts of Numba,
+which may change with any release. `decorators.compiler_mode` is the switch between them. Besides these two modules
+only `double_double` uses Numba, for a product and a sum with one rounding.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Any, cast
 import numba
 
 from inerter.kernels.cache import cache_folder
-from inerter.kernels.declare import PLAIN, Instruction, Kernel, Part, Signature, private, way
+from inerter.kernels.decorators import PLAIN, Instruction, Kernel, Part, Signature, compiler_mode, numba_internals
 
 FUSED = {"contract"}
 _ALONE = RLock()
 
 
-def compiled(
+def compile_function(
     function: Callable[..., Any],
     signature: Signature = None,
     *,
@@ -32,7 +32,7 @@ def compiled(
     borrowing: bool = False,
     by_address: bool = False,
 ) -> Callable[..., Any]:
-    """The function, compiled at once for a given signature, else at each first call with other types.
+    """Compile a function at once for a given signature, else at each first call with other types.
 
     One thread at a time: the compiler's settings, such as where it keeps its files, belong to the whole process.
     """
@@ -42,9 +42,9 @@ def compiled(
         before = settings.CACHE_DIR, settings.SLP_VECTORIZE
         settings.CACHE_DIR = str(folder)
         try:
-            if way() == PLAIN:
+            if compiler_mode() == PLAIN:
                 return _plain(function, fused, folder)
-            found: Callable[..., Any] = private().tuned(
+            found: Callable[..., Any] = numba_internals().compile_tuned(
                 function, signature, folder, fused=fused, borrowing=borrowing, by_address=by_address
             )
             return found
@@ -53,14 +53,14 @@ def compiled(
 
 
 def _plain(function: Callable[..., Any], fused: bool, folder: Path | None) -> Callable[..., Any]:
-    """Compiled at each first call with other types, with all that it calls."""
+    """Compile at each first call with other types, with all that the function calls."""
     options: dict[str, Any] = {"fastmath": FUSED} if fused else {}
     decorate = numba.njit(error_model="numpy", nogil=True, cache=folder is not None, **options)
-    return cast("Callable[..., Any]", decorate(_copied(function)))
+    return cast("Callable[..., Any]", decorate(_with_compiled_globals(function)))
 
 
-def _copied(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function that calls compiled code by the names by which it calls what is only declared."""
+def _with_compiled_globals(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Copy of a function whose global names of declared kernels and parts refer to compiled code."""
     names: dict[str, Any] = dict(function.__globals__)
     for name in function.__code__.co_names:
         if isinstance(names.get(name), (Kernel, Part, Instruction)):

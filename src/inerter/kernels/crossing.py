@@ -1,4 +1,4 @@
-"""Where along a piece of the motion a guard is crossed: guards as polynomials, and their first roots."""
+"""Location of guard crossings along a piece of the motion: guards as polynomials, and their first roots."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, NONE, Array, Run
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import first_root, polynomial, slope_at, value_at
 from inerter.kernels.locking import can_be_in
 
@@ -18,7 +18,7 @@ MET = 1e-9  # the same where a guard has just been met
 
 @part(borrowing=True, inside=True)
 def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
-    """When, in units of the piece (at most 1), the first guard is crossed, and that of which element, or -1.
+    """Time of the first guard crossing in units of the piece (at most 1), and its element, or -1.
 
     The piece has the length d and `ends` with the segment or before.
     """
@@ -46,8 +46,8 @@ def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
 
 
 @part(borrowing=True, inside=True)
-def go_to(run: Run, count: int, s: float) -> bool:
-    """Go on to the part s of the piece; False if the motion has grown beyond all bounds."""
+def advance_to(run: Run, count: int, s: float) -> bool:
+    """Advance the state to the part s of the piece; False if the motion has grown beyond all bounds."""
     motion, sizes = run.motion, run.mechanics.sizes
     for i in range(sizes.states):
         total = polynomial(run.room.series, count, i, s)
@@ -71,7 +71,7 @@ def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
     limits, watch = run.modes.limits[run.motion.place[0].mode, e], run.motion.watch[e]
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
-    c, g, swing = run.room.guard, run.room.distance, _swing(run, row, count)
+    c, g, swing = run.room.guard, run.room.distance, _guard_polynomial(run, row, count)
     best = 2.0
     for at in range(2):
         side, limit = 2 * at - 1, limits[at]
@@ -93,8 +93,8 @@ def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
 
 
 @part(borrowing=True, inside=True)
-def _swing(run: Run, row: Array, count: int) -> float:
-    """The polynomial of a guard along the piece goes to `room.guard`; how far it can be from its start."""
+def _guard_polynomial(run: Run, row: Array, count: int) -> float:
+    """Fill `room.guard` with the polynomial of a guard along the piece; returns a bound of its change."""
     sizes, room, swing = run.mechanics.sizes, run.room, 0.0
     n, c = sizes.states, room.guard
     for k in range(count):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import SHARP, Ints, MapRows, Matrix, Sizes
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.matrices import add, block, exponential, product
 
 
@@ -99,7 +99,7 @@ def _bound_sway(guards: Matrix, chain: Matrix, n: int, used: Ints, steps: Matrix
 
 
 @part(typed=True, apart=True)
-def growth(maps: Matrix, n: int) -> float:
+def spectral_radius_bound(maps: Matrix, n: int) -> float:
     """About the spectral radius of the state matrix, from above: the 32nd root of a norm of its 32nd power [1/s]."""
     A = block(maps, 0, n, 0, n)
     logarithm, power = 0.0, 1.0
@@ -154,4 +154,4 @@ def discretise(sizes: Sizes, first: MapRows, used: Ints, maps: Matrix, steps: Ma
         rows += sizes.squares
     sways = steps.shape[1] - -(-k // 4) * 4
     _bound_sway(guards, chain, n, moving.used, steps, rows if sways >= rows + SHARP * k else -1, sways)
-    return 1.0 / max(growth(maps, n), 1e-9)
+    return 1.0 / max(spectral_radius_bound(maps, n), 1e-9)

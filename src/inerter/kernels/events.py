@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from inerter.kernels.account import take_account
 from inerter.kernels.arrays import (
     BEFORE,
     BROKEN,
@@ -19,10 +18,11 @@ from inerter.kernels.arrays import (
     Run,
     Span,
 )
-from inerter.kernels.crossing import first_crossing, go_to
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.crossing import advance_to, first_crossing
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.energy import take_account
 from inerter.kernels.flow import inputs_from, knot_numbers, over_columns, series
-from inerter.kernels.march import whole_steps
+from inerter.kernels.integrate import whole_steps
 from inerter.kernels.switching import CHATTER, DONE, NOT_FINITE, PAUSED, STIFF, switch
 
 PIECES = 1e4  # of a segment: with more, a run would take hours
@@ -35,7 +35,7 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
     """Integrate up to knot `stop`, in whole steps of length h where there may be.
 
     Returns DONE, or why it stopped before: after PAUSED (no pieces are left), MODE_UNKNOWN (the states are on trial in
-    `watch`) and EVENTS_FULL it goes on from the same place once there are more, the mode is built, or there is room.
+    `watch`) and EVENTS_FULL it continues from the same place once there are more, the mode is built, or there is room.
     """
     place, numbers = run.motion.place[0], run.room.numbers
     while place.segment < stop:
@@ -44,7 +44,7 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
         if abs(length - h) < 1e-9 * h:
             length = h
         if place.mode < 0:
-            code = _begin(run, knots, record, length)
+            code = _find_first_mode(run, knots, record, length)
             if code != DONE:
                 return code
         knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
@@ -57,46 +57,46 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
             place.segment = whole_steps(march, lines, knots, record, span)
             if place.segment > k:
                 continue
-        code = _join(run, knots, record, account, length)
+        code = _cross_knot(run, knots, record, account, length)
         if code != DONE:
             return code
-        code = _through(run, knots, record, account, length)
+        code = _integrate_segment(run, knots, record, account, length)
         if code != DONE:
             return code
-        _close(run, knots, record, length)
+        _finish_segment(run, knots, record, length)
     return DONE
 
 
 @part(borrowing=True, inside=True)
-def _begin(run: Run, knots: Knots, record: History, length: float) -> int:
+def _find_first_mode(run: Run, knots: Knots, record: History, length: float) -> int:
     """Find the first mode: what jumps at the first knot jumps in a mode."""
     k = run.motion.place[0].segment
     before, slope_before = knots.value_before, knots.slope_before
     knot_numbers(before, slope_before, before, slope_before, k, length, run.room.numbers)
     code = switch(run, record.events, knots.time[k], length, NONE)
     if code == DONE:
-        _sample(run, record, knots.slot[k])
+        _record_sample(run, record, knots.slot[k])
     return code
 
 
 @part(borrowing=True, inside=True)
-def _join(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
-    """Go over a knot: where inputs jump or turn, another mode may go on, and what is kept is what comes after."""
+def _cross_knot(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
+    """Cross a knot: where inputs jump or turn, the mode may change, and the values after the knot are recorded."""
     place, k = run.motion.place[0], run.motion.place[0].segment
     if place.jumped == BEFORE:
-        place.jumped = BROKEN if _jump(run, knots, account) else SMOOTH
+        place.jumped = BROKEN if _apply_jump(run, knots, account) else SMOOTH
     if place.jumped == BROKEN:
         code = switch(run, record.events, knots.time[k], length, NONE)
         if code != DONE:
             return code
         place.jumped = SMOOTH
-        _renew(run, knots, record, length)
+        _record_break(run, knots, record, length)
     return DONE
 
 
 @part(borrowing=True, inside=True)
-def _through(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
-    """Go to the end of one segment piece by piece, and through every event on the way.
+def _integrate_segment(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
+    """Integrate to the end of one segment piece by piece, with every event in between.
 
     What changes at once at its start changes the mode of the sample there, if there is one.
     """
@@ -115,7 +115,7 @@ def _through(run: Run, knots: Knots, record: History, account: Account, length: 
         s, who = first_crossing(run, count, d, d == length - t)
         if account.wanted and s > 0.0:
             take_account(run, account, count, s, d)
-        if not go_to(run, count, s):
+        if not advance_to(run, count, s):
             return NOT_FINITE
         place.clock = length if who < 0 and d == length - t else t + s * d
         pauses = 0 if place.clock > t else pauses + 1
@@ -132,13 +132,13 @@ def _through(run: Run, knots: Knots, record: History, account: Account, length: 
 
 
 @part(borrowing=True, inside=True)
-def _close(run: Run, knots: Knots, record: History, length: float) -> None:
-    """Go over to the next segment, and keep what is to be kept at the knot."""
+def _finish_segment(run: Run, knots: Knots, record: History, length: float) -> None:
+    """Advance to the next segment, and record the sample and the squares at the knot."""
     place, sizes, rows, room = run.motion.place[0], run.mechanics.sizes, run.mechanics.rows, run.room
     k, m = place.segment, place.mode
     slot = knots.slot[k + 1]
     place.clock, place.jumped, place.switches, place.segment = 0.0, BEFORE, 0, k + 1
-    _sample(run, record, slot)
+    _record_sample(run, record, slot)
     if slot >= 0 and k >= place.settled and sizes.squares > 0:
         inputs_from(room.numbers, sizes.roads, sizes.inputs, length, length, length, room.inputs)
         for o in range(sizes.squares):
@@ -148,7 +148,7 @@ def _close(run: Run, knots: Knots, record: History, length: float) -> None:
 
 
 @part(borrowing=True, inside=True)
-def _sample(run: Run, record: History, slot: int) -> None:
+def _record_sample(run: Run, record: History, slot: int) -> None:
     if slot >= 0 and slot < record.states.shape[0]:
         record.visited[slot] = run.motion.place[0].mode
         for i in range(run.mechanics.sizes.states):
@@ -156,8 +156,8 @@ def _sample(run: Run, record: History, slot: int) -> None:
 
 
 @part(borrowing=True, inside=True)
-def _jump(run: Run, knots: Knots, account: Account) -> bool:
-    """Where a held road moves at once, positions follow and the mean force does the work. Whether an input breaks."""
+def _apply_jump(run: Run, knots: Knots, account: Account) -> bool:
+    """Apply the jump of a held road to the positions, with the work of the mean force; True if an input breaks."""
     sizes, k, u = run.mechanics.sizes, run.motion.place[0].segment, run.room.inputs[0]
     nr, maps = sizes.roads, run.modes.maps[run.motion.place[0].mode]
     leaps, kinks = 0.0, 0.0
@@ -187,11 +187,11 @@ def _jump(run: Run, knots: Knots, account: Account) -> bool:
 
 
 @part(borrowing=True, inside=True)
-def _renew(run: Run, knots: Knots, record: History, length: float) -> None:
-    """The sample where an input breaks, and the squares where it jumps, are those from the right."""
+def _record_break(run: Run, knots: Knots, record: History, length: float) -> None:
+    """Replace the sample where an input breaks, and the squares where it jumps, by those after the knot."""
     sizes, place, u, leaps = run.mechanics.sizes, run.motion.place[0], run.room.inputs, 0.0
     k, maps = place.segment, run.modes.maps[place.mode]
-    _sample(run, record, knots.slot[k])
+    _record_sample(run, record, knots.slot[k])
     for c in range(knots.value.shape[1]):
         leaps += abs(knots.value[k, c] - knots.value_before[k, c])
     if leaps == 0.0 or knots.slot[k] < 0 or k <= place.settled:

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close, pull_back
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close, pull_back
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.gain import resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, solve, solve_rows, solve_transposed
@@ -32,7 +32,7 @@ _MODAL = 1e-9  # of the largest gain by which a sum over modes may be off
 
 @part()
 def excess_at(excess: Array, omega: float) -> float:
-    """By what part the density exceeds that behind the filter: a cubic between the knots of the table."""
+    """Relative excess of the density over that of the filter: a cubic between the knots of the table."""
     time, first, step, table = excess
     place = (np.log(omega * time) - first) / step
     if place <= 0.0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 
 Array = Any
 CLOSE = 1e-15  # of the time since the piece began: a force that frees a friction must be met to rounding
@@ -132,7 +132,7 @@ def value_at(c: Array, count: int, s: float) -> float:
 
 @part("float64(float64[::1], int64, float64)", borrowing=True)
 def slope_at(c: Array, count: int, s: float) -> float:
-    """Its derivative."""
+    """Derivative of the polynomial with coefficients c[0], ..., c[count - 1]."""
     total = 0.0
     for k in range(count - 1, 0, -1):
         total = total * s + k * c[k]

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close, close_twofold, pull_back, twofold_space
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_extended, extended_space, pull_back
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.double_double import add_product
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, solve_rows, solve_transposed, sort
-from inerter.kernels.twofold import add_product
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -154,7 +154,7 @@ def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> fl
 
 
 @part()
-def farthest(poles: Array) -> float:
+def largest_pole(poles: Array) -> float:
     """The largest distance of a pole from zero; infinite where one is not finite."""
     size = 0.0
     for pole in poles:
@@ -168,7 +168,7 @@ def farthest(poles: Array) -> float:
 @part()
 def frequencies(poles: Array) -> Array:
     """Zero, a logarithmic grid over all time scales, and points on and around every resonance, in order."""
-    n, fastest = poles.size, farthest(poles)
+    n, fastest = poles.size, largest_pole(poles)
     slowest = np.inf
     for pole in poles:
         slowest = min(slowest, max(abs(pole), 1e-300))
@@ -196,7 +196,7 @@ def frequencies(poles: Array) -> Array:
 
 @part()
 def top(poles: Array, residues: Array, direct: float, low: float, high: float) -> float:
-    """Where the gain is largest between `low` and `high`, by golden section."""
+    """Frequency of the largest gain between `low` and `high`, by golden section."""
     width = 1e-5 * (high - low) + 1e-14 * high  # the grid is as fine as a resonance is wide
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     ga, gb = modal_gain(poles, residues, direct, a), modal_gain(poles, residues, direct, b)
@@ -223,7 +223,7 @@ def peaks(system: Array, lost: Array) -> Any:
     A, _, _, D = system
     scale, direct = units(A), D[0, 0]
     poles, residues, good = partial_fractions(system, lost[0], scale)
-    if not good or not farthest(poles) < np.inf:
+    if not good or not largest_pole(poles) < np.inf:
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
     values = np.empty(grid.size)
@@ -248,7 +248,7 @@ def peaks(system: Array, lost: Array) -> Any:
 
 
 @kernel("peaks of a gain", f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2))")
-def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
+def peaks_of(points: Array, descriptor: Array, extended: Array) -> Any:
     """`peaks` at each row of `points`: frequencies and values (designs, order + 2), those of each design in a row.
 
     The last place is that of an infinite frequency; places without a peak have the frequency nan and the value 0.
@@ -256,10 +256,10 @@ def peaks_of(points: Array, descriptor: Array, twofold: Array) -> Any:
     """
     places = descriptor[1].shape[2] + 2
     omegas, values = np.full((points.shape[0], places), np.nan), np.full((points.shape[0], places), np.nan)
-    room = twofold_space(descriptor)
+    room = extended_space(descriptor)
     A, B, C, D, _, _, _, _ = room[0]
     for i in range(points.shape[0]):
-        if not close_twofold(room, points[i], descriptor, twofold):
+        if not close_extended(room, points[i], descriptor, extended):
             continue
         where, found = peaks((A, B, C, D), room[1])
         if found.size == 0 or found.size >= places:  # there are never more than order + 1

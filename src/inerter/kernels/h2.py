@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close_twofold, pull_back, twofold_space
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.close_descriptor import DESCRIPTOR, close_extended, extended_space, pull_back
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.double_double import add_multiple
 from inerter.kernels.linalg import exponential, factor, factor_within, matmul, solve, solve_transposed
-from inerter.kernels.twofold import add_multiple
 
 Array = Any
 _ACCURATE = 1e-9  # relative error of a squared norm up to which it is believed
@@ -58,7 +58,7 @@ def balance(A: Array, scale: Array, inverse: Array) -> None:
 
 @part(borrowing=True)
 def list_places(A: Array, place: Array, depends: Array, order: Array) -> None:
-    """Fill `place` with where the entries of a symmetric matrix of the order of A stand when each is listed once.
+    """Fill `place` with the positions of the entries of a symmetric matrix when each is listed once.
 
     An entry stands before those that its equation in A P + P A' has from states which A moves without being moved by
     them, as a filter is moved by what it filters: blocks of zeros under the diagonal then stay zero in the factors.
@@ -98,7 +98,7 @@ def list_places(A: Array, place: Array, depends: Array, order: Array) -> None:
 
 @part(borrowing=True)
 def block_end(depends: Array, order: Array, start: int) -> int:
-    """Where the states end that depend on each other, from that one on."""
+    """End of the block of mutually dependent states that begins at `start`."""
     end = start + 1
     while end < order.size and depends[order[start], order[end]] and depends[order[end], order[start]]:
         end += 1
@@ -153,7 +153,7 @@ def lyapunov_factors(A: Array, drifts: Array, lyapunov: Array) -> bool:
 
 
 @part()
-def propagated(
+def propagate_columns(
     A: Array, E_A: Array, time: float, u: Array, unsure: Array, pade: Array, out: Array, error: Array
 ) -> None:
     """Fill `out` with exp(A time) u, or its Pade approximant where `pade` has poles, and `error` with a bound of its
@@ -224,10 +224,10 @@ def propagated(
 
 
 @part()
-def propagated_adjoint(
+def propagate_adjoint(
     A: Array, time: float, u: Array, bar: Array, poles: Array, residues: Array, direct: float, G_A: Array, out: Array
 ) -> None:
-    """The adjoint of `propagated`: adds d(bar' E u)/dA to G_A and fills `out` with E' bar."""
+    """The adjoint of `propagate_columns`: adds d(bar' E u)/dA to G_A and fills `out` with E' bar."""
     n = A.shape[0]
     if poles.size == 0:
         N = np.empty((n, n))
@@ -286,12 +286,12 @@ def solve_symmetric(lyapunov: Array, W: Array, adjoint: bool, P: Array) -> None:
 def norms_space(descriptor: Array) -> Any:
     """Room for `norms_in`."""
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    return twofold_space(descriptor), lyapunov_space(n), np.zeros((2, m, n)), np.empty((5, n, n)), np.empty((o, n))
+    return extended_space(descriptor), lyapunov_space(n), np.zeros((2, m, n)), np.empty((5, n, n)), np.empty((o, n))
 
 
 @part()
-def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arrivals: Array) -> None:
-    """Fill `met` with what each arrival meets of those before it, and with bounds of its error."""
+def delayed_covariance(E_A: Array, B: Array, E_B: Array, lyapunov: Array, delayed: Array, arrivals: Array) -> None:
+    """Fill `delayed` with the covariance of the state with each delayed input, and with bounds of its error."""
     gaps, (poles, residues, direct), (drifts, _) = arrivals
     _, _, _, (scale, _), _, scaled, _ = lyapunov
     n, m = B.shape
@@ -301,20 +301,22 @@ def excite(E_A: Array, B: Array, E_B: Array, lyapunov: Array, met: Array, arriva
             E_scaled[i, j] = abs(E_A[i, j]) * scale[j] / scale[i]
     for c in range(1, m):
         for i in range(n):
-            u[i] = (met[0, c - 1, i] + B[i, c - 1]) / scale[i]
-            unsure[i] = (met[1, c - 1, i] + abs(E_B[i, c - 1])) / scale[i] + _EPS * abs(u[i])
-        propagated(scaled, E_scaled, gaps[c - 1], u, unsure, (poles, residues, direct), met[0, c], met[1, c])
+            u[i] = (delayed[0, c - 1, i] + B[i, c - 1]) / scale[i]
+            unsure[i] = (delayed[1, c - 1, i] + abs(E_B[i, c - 1])) / scale[i] + _EPS * abs(u[i])
+        propagate_columns(
+            scaled, E_scaled, gaps[c - 1], u, unsure, (poles, residues, direct), delayed[0, c], delayed[1, c]
+        )
         for i in range(n):
-            met[0, c, i] *= scale[i]
-            met[1, c, i] *= scale[i]
+            delayed[0, c, i] *= scale[i]
+            delayed[1, c, i] *= scale[i]
         for i in range(drifts.size):  # they keep what they have
             w = drifts[i]
-            met[0, c, w], met[1, c, w] = met[0, c - 1, w] + B[w, c - 1], 0.0
+            delayed[0, c, w], delayed[1, c, w] = delayed[0, c - 1, w] + B[w, c - 1], 0.0
 
 
 @part(borrowing=True)
-def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest: Array) -> bool:
-    """Fill `rest` with what P leaves of A P + P A' + W = 0, A and B as they were before rounding; W is lost.
+def lyapunov_residual(lost: Array, A: Array, B: Array, delayed: Array, W: Array, P: Array, rest: Array) -> bool:
+    """Fill `rest` with the residual A P + P A' + W, with A and B before rounding; W is overwritten.
 
     False if that is much of the noise that enters a state.
     """
@@ -334,9 +336,9 @@ def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest:
         for c in range(m):  # half of the noise: the other half comes with the transpose
             add_multiple(high, low, 0.5 * B[i, c], B[:, c], n)
             if c > 0:
-                add_multiple(high, low, met[0, c, i], B[:, c], n)
+                add_multiple(high, low, delayed[0, c, i], B[:, c], n)
             for j in range(n):
-                low[j] += lost_B[i, c] * (B[j, c] + met[0, c, j])
+                low[j] += lost_B[i, c] * (B[j, c] + delayed[0, c, j])
         for j in range(n):
             high[j] += low[j]
         low[i] = noise
@@ -350,14 +352,14 @@ def leave(lost: Array, A: Array, B: Array, met: Array, W: Array, P: Array, rest:
 
 
 @part()
-def norms_in(space: Array, p: Array, descriptor: Array, twofold: Array, arrivals: Array, result: Array) -> float:
-    """Fill `result` with the norm of each output; returns how doubtful that is, see `judge`.
+def norms_in(space: Array, p: Array, descriptor: Array, extended: Array, arrivals: Array, result: Array) -> float:
+    """Fill `result` with the norm of each output; returns its doubt, see `assess_accuracy`.
 
-    What P leaves of A P + P A' + W = 0, A and B as they were before rounding, corrects all rounding at first order:
+    The residual A P + P A' + W, with A and B before rounding, corrects all rounding at first order:
     solved for once more it is what P lacks, whose share of a square has small terms where that can be believed.
     """
-    closing, lyapunov, met, (W, P, Q, rest, lacks), CP = space
-    if not close_twofold(closing, p, descriptor, twofold):
+    closing, lyapunov, delayed, (W, P, Q, rest, lacks), CP = space
+    if not close_extended(closing, p, descriptor, extended):
         return np.inf
     A, B, C = closing[0][0], closing[0][1], closing[0][2]
     lost_A, lost_B, lost_C, _ = closing[1]
@@ -365,18 +367,18 @@ def norms_in(space: Array, p: Array, descriptor: Array, twofold: Array, arrivals
     if not lyapunov_factors(A, drifts, lyapunov):
         return np.inf
     if B.shape[1] > 1:
-        excite(lost_A, B, lost_B, lyapunov, met, arrivals)
-    matrices, lost = (A, B, C, met), (lost_A, lost_B, lost_C)
-    return judge(matrices, lost, lyapunov, (drifts, walks), (W, P, Q, rest, lacks, CP), result)
+        delayed_covariance(lost_A, B, lost_B, lyapunov, delayed, arrivals)
+    matrices, lost = (A, B, C, delayed), (lost_A, lost_B, lost_C)
+    return assess_accuracy(matrices, lost, lyapunov, (drifts, walks), (W, P, Q, rest, lacks, CP), result)
 
 
 @part(borrowing=True)
-def unsure_of_road(matrices: Array, lyapunov: Array, known: Array, result: Array, Q: Array) -> float:
-    """Relative error of the squares that what each arrival meets has, and what enters the states that drift.
+def input_error(matrices: Array, lyapunov: Array, known: Array, result: Array, Q: Array) -> float:
+    """Relative error of the squares from the delayed covariances and from the inputs of drifting states.
 
     A change of what enters changes the squares by its product with Q of A' Q + Q A + C' C = 0, C over the norms.
     """
-    A, B, C, met = matrices
+    A, B, C, delayed = matrices
     drifts, walks = known
     n, m = B.shape
     for i in range(n):
@@ -395,27 +397,27 @@ def unsure_of_road(matrices: Array, lyapunov: Array, known: Array, result: Array
             Q[drifts[i], drifts[j]] = 0.0  # nothing else enters there
         for k in range(n):
             for c in range(m):
-                size = _ENTERED * abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(met[0, c, k]))
+                size = _ENTERED * abs(B[drifts[i], c]) * (abs(B[k, c]) + abs(delayed[0, c, k]))
                 total += 2.0 * size * abs(Q[k, drifts[i]])
     for i in range(n):
         for j in range(n):
             for c in range(1, m):
-                total += 2.0 * abs(Q[i, j]) * (met[1, c, i] * abs(B[j, c]))
+                total += 2.0 * abs(Q[i, j]) * (delayed[1, c, i] * abs(B[j, c]))
     return total
 
 
 @part(borrowing=True)
 def refine(matrices: Array, lost: Array, lyapunov: Array, drifts: Array, room: Array) -> tuple[bool, float]:
-    """Correct P by what it lacks until that is little; fill `rest` with what it leaves, `lacks` with what it lacks.
+    """Correct P until the correction is small; fill `rest` with its residual and `lacks` with the last correction.
 
     Whether that came to an end, and the largest share that a variance may lack: `_DAMPED` as P was, `_ACCURATE` where
     it had to be corrected, zero where one lacked more than `_REFINED` before.
     """
-    A, B, _, met = matrices
+    A, B, _, delayed = matrices
     W, P, rest, lacks = room
     n, limit = A.shape[0], _DAMPED
     for _ in range(_REFINEMENTS):
-        if not leave(lost, A, B, met, W, P, rest):
+        if not lyapunov_residual(lost, A, B, delayed, W, P, rest):
             return False, 0.0
         for i in range(drifts.size):
             for j in range(drifts.size):
@@ -437,13 +439,13 @@ def refine(matrices: Array, lost: Array, lyapunov: Array, drifts: Array, room: A
 
 
 @part(borrowing=True)
-def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> float:
-    """Fill `result` once A, B and C, the factors and `met` are there. See `norms_in`.
+def assess_accuracy(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Array, result: Array) -> float:
+    """Fill `result` once A, B and C, the factors and `delayed` are there. See `norms_in`.
 
     Returns the sizes of the terms of the correction and of what rounding may add, relative to a square: the norm may be
     off by a small part of it. Infinite where it may be off by more than `_ACCURATE`.
     """
-    A, B, C, met = matrices
+    A, B, C, delayed = matrices
     drifts, walks = known
     lost_A, lost_B, lost_C = lost
     W, P, Q, rest, lacks, CP = room
@@ -452,7 +454,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
         for j in range(n):
             W[i, j] = 0.0
             for c in range(m):
-                W[i, j] += B[i, c] * B[j, c] + met[0, c, i] * B[j, c] + B[i, c] * met[0, c, j]
+                W[i, j] += B[i, c] * B[j, c] + delayed[0, c, i] * B[j, c] + B[i, c] * delayed[0, c, j]
     for i in range(drifts.size):
         for j in range(drifts.size):
             for k in range(n):
@@ -485,7 +487,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
         terms += size / total
         unsure += rounding / total
     if m > 1 or drifts.size > 0:
-        unsure += unsure_of_road(matrices, lyapunov, known, result, Q)
+        unsure += input_error(matrices, lyapunov, known, result, Q)
     believed = limit > 0.0 and terms <= min(_SMALL, limit) and unsure <= _ACCURATE
     return terms + unsure if believed else np.inf
 
@@ -493,7 +495,7 @@ def judge(matrices: Array, lost: Array, lyapunov: Array, known: Array, room: Arr
 @part()
 def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weights: Array, result: Array) -> Array:
     """Gradient over p of the weighted sum of the norms that `norms_in` has filled `result` with."""
-    (closing, _, _, _, _, _), lyapunov, met, (CC, P, Q, _, _), CP = space
+    (closing, _, _, _, _, _), lyapunov, delayed, (CC, P, Q, _, _), CP = space
     A, B, C, _, T, factors, _, _ = closing
     gaps, (poles, residues, direct), _ = arrivals
     o, m, n = C.shape[0], B.shape[1], A.shape[0]
@@ -518,13 +520,13 @@ def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weig
             here, before = 0.0, 0.0
             for j in range(n):
                 here += Q[i, j] * B[j, c]
-                before += Q[i, j] * met[0, c, j]
+                before += Q[i, j] * delayed[0, c, j]
             G_B[i, c] += 2.0 * (here + before) + carry[i]
             bar[i] = 2.0 * here + carry[i]
         if c > 0:
             for i in range(n):
-                u[i] = met[0, c - 1, i] + B[i, c - 1]
-            propagated_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
+                u[i] = delayed[0, c - 1, i] + B[i, c - 1]
+            propagate_adjoint(A, gaps[c - 1], u, bar, poles, residues, direct, G_A, carry)
     return pull_back(p, descriptor, T, factors, G_A, G_B, G_C, G_D)
 
 
@@ -533,21 +535,21 @@ def gradient_in(space: Array, p: Array, descriptor: Array, arrivals: Array, weig
     f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2), Tuple((float64[::1], Tuple((complex128[::1], "
     "complex128[::1], float64)), Tuple((int64[::1], float64[:,::1])))), float64[::1])",
 )
-def norms(points: Array, descriptor: Array, twofold: Array, arrivals: Array, weights: Array) -> Any:
-    """Norms (designs, outputs) at each row of `points`, gradients over it, and how doubtful the norms are.
+def norms(points: Array, descriptor: Array, extended: Array, arrivals: Array, weights: Array) -> Any:
+    """Norms (designs, outputs) at each row of `points`, gradients over it, and the doubts of the norms.
 
     The gradients (designs, values) are those of the sum of the norms with `weights`; none without weights. Norms that
-    may be off are nan, or what was found, with its gradient; their doubt (see `judge`) is infinite. `twofold` as in
-    `close_twofold`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an arrival of the
-    road and the next, the Pade approximant (no poles: exact), and the states that only the road moves, if there are
-    any, with their covariance.
+    may be off are nan, or what was found, with its gradient; their doubt (see `assess_accuracy`) is infinite.
+    `extended` as in `close_extended`. `arrivals` = (gaps, (poles, residues, direct), (drifts, walks)): times between an
+    arrival of the road and the next, the Pade approximant (no poles: exact), and the states that only the road moves,
+    if there are any, with their covariance.
     """
     space = norms_space(descriptor)
     count = points.shape[0]
     result, doubts = np.full((count, descriptor[7].shape[1]), np.nan), np.empty(count)
     gradients = np.full((count if weights.size > 0 else 0, points.shape[1]), np.nan)
     for i in range(count):
-        doubts[i] = norms_in(space, points[i], descriptor, twofold, arrivals, result[i])
+        doubts[i] = norms_in(space, points[i], descriptor, extended, arrivals, result[i])
         if weights.size > 0 and not np.isnan(result[i, -1]):
             gradient = gradient_in(space, points[i], descriptor, arrivals, weights, result[i])
             for j in range(gradient.size):

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.closing import DESCRIPTOR, close
-from inerter.kernels.declare import kernel, part
-from inerter.kernels.gain import farthest, frequencies, resolve
+from inerter.kernels.close_descriptor import DESCRIPTOR, close
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.gain import frequencies, largest_pole, resolve
 from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, merge, solve, sort
 
@@ -240,7 +240,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
             for j in range(A.shape[0]):
                 scaled[i, j] = A[i, j] * scale[j] / scale[i]
         poles = np.linalg.eigvals(scaled)
-        size = farthest(poles)
+        size = largest_pole(poles)
         if not size < np.inf:
             continue
         if exponent == 0:
@@ -266,10 +266,10 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
 
 
 @part()
-def merged(grid: Array, values: Array, points: Array, new: Array) -> Any:
-    """Points in order with their values, from two such lists; of neighbours of equal value the first.
+def merge_samples(grid: Array, values: Array, points: Array, new: Array) -> Any:
+    """Merge two sorted lists of points with values; of neighbours with equal values only the first is kept.
 
-    Or a top between two of them would be lost.
+    Otherwise a maximum between two of them would be lost.
     """
     omegas, heights = np.empty(grid.size + points.size), np.empty(grid.size + points.size)
     i, count = 0, 0
@@ -287,7 +287,7 @@ def merged(grid: Array, values: Array, points: Array, new: Array) -> Any:
 
 @part()
 def top(system: Array, low: float, high: float, limit: Array, amplitude: float, reference: float, work: Array) -> float:
-    """Where the gain is largest between `low` and `high`, by golden section."""
+    """Frequency of the largest gain between `low` and `high`, by golden section."""
     width = 1e-10 * high
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     ga, gb = (
@@ -307,7 +307,7 @@ def top(system: Array, low: float, high: float, limit: Array, amplitude: float, 
 
 
 @part()
-def finer(grid: Array, values: Array) -> Array:
+def refine_grid(grid: Array, values: Array) -> Array:
     """Points between those where the gain bends."""
     extra = np.empty(grid.size)
     count = 0
@@ -349,8 +349,8 @@ def peaks(
         for k in range(points.size):
             new[k], settled = gain_at(system, points[k], limit, amplitude, reference, work)
             fine = fine and settled
-        grid, values = merged(grid, values, points, new)
-        points = finer(grid, values)
+        grid, values = merge_samples(grid, values, points, new)
+        points = refine_grid(grid, values)
         if points.size == 0:
             break
     omegas, found = np.empty(grid.size), np.empty(grid.size)

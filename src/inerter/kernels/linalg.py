@@ -1,4 +1,4 @@
-"""Small dense linear algebra in place, for real and complex matrices alike. Faster than a library below order 20."""
+"""Small dense linear algebra in place, for real and complex matrices; faster than a library below order 20."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 
 Array = Any  # compiled code is typed when it is compiled
 
@@ -24,7 +24,7 @@ def factor(A: Array, pivots: Array) -> bool:
 
 @part(borrowing=True)
 def factor_within(A: Array, pivots: Array) -> bool:
-    """As `factor`, where `pivots` come as rows below which each column is zero, none less than that before it."""
+    """LU factors of A in its place; each column is zero below the row in `pivots`, which are in ascending order."""
     n = A.shape[0]
     for k in range(n):
         best, row, end = abs(A[k, k]), k, pivots[k] + 1

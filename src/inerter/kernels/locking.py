@@ -1,4 +1,4 @@
-"""What is locked in a mode, and what the locks leave to massless motions."""
+"""Locked elements of a mode, and the massless motions that remain free."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, Flags, Floats, Ints, Matrix, Sizes
-from inerter.kernels.declare import part
-from inerter.kernels.matrices import RANK_TOLERANCE, block, null_space, product, transposed
+from inerter.kernels.decorators import part
+from inerter.kernels.matrices import RANK_TOLERANCE, block, null_space, product, transpose
 
 
 class Rates(NamedTuple):
@@ -21,7 +21,7 @@ class Rates(NamedTuple):
 
 
 class Locks(NamedTuple):
-    """What is locked, without what follows from the rest."""
+    """Independent locked elements and their rows."""
 
     held: Ints  # numbers of the elements
     still: Flags  # whether those hold each element
@@ -130,11 +130,11 @@ def adds_to(row: Floats, basis: Matrix, count: int, rest: Floats) -> bool:
 
 @part(typed=True, apart=True)
 def bases_of(rates: Rates, locks: Locks) -> Bases:
-    """What locks leave to massless motions, and how these divide into damped, sprung and loose ones."""
+    """Bases of the massless motions that locks leave free, divided into damped, sprung and loose ones."""
     free = null_space(locks.on_w).null
-    forces = null_space(transposed(locks.on_w))
+    forces = null_space(transpose(locks.on_w))
     undamped = product(free, null_space(product(rates.dampers, free)).null)
     parts = null_space(product(rates.springs, undamped))
     sprung, loose = product(undamped, parts.complement), product(undamped, parts.null)
-    others = null_space(transposed(undamped)).null
+    others = null_space(transpose(undamped)).null
     return Bases(forces.null, forces.complement, sprung, loose, others)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import Ints, Matrix
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.linalg import factor, matmul, solve
 
 RANK_TOLERANCE = 1e-9  # rows are scaled to one
@@ -56,8 +56,8 @@ def unit(n: int) -> Matrix:
 
 
 @part(typed=True, apart=True)
-def transposed(A: Matrix) -> Matrix:
-    """A^T, in memory of its own."""
+def transpose(A: Matrix) -> Matrix:
+    """A^T as a copy."""
     out = np.zeros((A.shape[1], A.shape[0]))
     for i in range(A.shape[0]):
         for j in range(A.shape[1]):
@@ -75,7 +75,7 @@ def add(out: Matrix, top: int, left: int, A: Matrix, sign: float) -> None:
 
 @part(typed=True, apart=True)
 def block(A: Matrix, top: int, bottom: int, left: int, right: int) -> Matrix:
-    """A block of A, in memory of its own."""
+    """A block of A as a copy."""
     out = np.zeros((bottom - top, right - left))
     for i in range(bottom - top):
         for j in range(right - left):

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 from inerter.kernels.locking import Bases, Locks, Rates, bases_of, can_be_in, is_locked, limit_of, locks_of, rates_of
 from inerter.kernels.matrices import (
     add,
@@ -32,13 +32,13 @@ from inerter.kernels.matrices import (
     product,
     sizes_of,
     solve_scaled,
-    transposed,
+    transpose,
     unit,
 )
 
 
 class Balance(NamedTuple):
-    """Right-hand sides, and what is differentiated of them."""
+    """Right-hand sides of the balances, and the rows that are differentiated."""
 
     sides: Matrix  # (na + nw, width)
     on_w: Matrix  # those of massless motions
@@ -48,7 +48,7 @@ class Balance(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """(a', w, forces of the locks) over the columns of maps, and what their rounding is part of."""
+    """(a', w, forces of the locks) over the columns of maps, and the sizes that bound their rounding."""
 
     eta: Matrix
     bound: Matrix
@@ -74,8 +74,8 @@ def build(mechanics: Mechanics, mode: Mode) -> bool:
     fill_entry(sizes, rows.entry, balance, bases, mode)
     if not fill_reaction(sizes, mechanics.balance, rates, locks, bases, balance, mode.reaction):
         return False
-    see_what_entry_leaves(sizes, rows, mode)
-    watch_what_moves(mechanics, mode, locks.still)
+    project_onto_entry(sizes, rows, mode)
+    set_entry_limits(mechanics, mode, locks.still)
     return True
 
 
@@ -93,13 +93,13 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
     spring_rate = product(inner(bases.sprung, block(sides, na, nv, na, n)), rates.positions)
     add(spring_rate, 0, nv, inner(bases.sprung, block(sides, na, nv, n, n + nr)), 1.0)
     on_w = block(sides, na, nv, 0, sides.shape[1])
-    velocity, road_velocity = across(bases.inertial, locks.on_a), across(bases.inertial, locks.on_z)
+    velocity, road_velocity = lock_velocities(bases.inertial, locks.on_a), lock_velocities(bases.inertial, locks.on_z)
     return Balance(sides, on_w, spring_rate, velocity, road_velocity)
 
 
 @part(typed=True, apart=True)
-def across(forces: Matrix, locks: Matrix) -> Matrix:
-    """Velocities across locks, without their rounding: at rest nothing else tells it from a motion."""
+def lock_velocities(forces: Matrix, locks: Matrix) -> Matrix:
+    """Velocities across locks, with rounding set to zero, which at rest would look like a motion."""
     found = inner(forces, locks)
     drop_rounding(found, inner(sizes_of(forces), sizes_of(locks)))
     return found
@@ -110,7 +110,7 @@ def solve_balance(sizes: Sizes, inertia: Matrix, balance: Balance, locks: Locks,
     """Inertial accelerations, massless velocities and forces of the locks, from as many equations."""
     nv, nl, width = balance.sides.shape[0], locks.held.shape[0], balance.sides.shape[1]
     S, right = np.zeros((nv + nl, nv + nl)), np.zeros((nv + nl, width))
-    equations(sizes, inertia, balance, locks, bases, S, right)
+    fill_equations(sizes, inertia, balance, locks, bases, S, right)
     solved = np.zeros((nv + nl, width + nv + nl))
     add(solved, 0, 0, right, 1.0)
     add(solved, 0, width, unit(nv + nl), 1.0)
@@ -124,18 +124,18 @@ def solve_balance(sizes: Sizes, inertia: Matrix, balance: Balance, locks: Locks,
 
 
 @part(typed=True, apart=True)
-def equations(
+def fill_equations(
     sizes: Sizes, inertia: Matrix, balance: Balance, locks: Locks, bases: Bases, S: Matrix, right: Matrix
 ) -> None:
-    """Fill S and `right` with all balances, then with what stays put and what is locked."""
+    """Fill S and `right` with all balances, then with the loose motions and the locks."""
     na, n, nr, nv = sizes.inertial, sizes.states, sizes.roads, balance.sides.shape[0]
     add(S, 0, 0, block(inertia, 0, na, 0, nv), 1.0)
-    add(S, 0, nv, transposed(locks.on_a), 1.0)
+    add(S, 0, nv, transpose(locks.on_a), 1.0)
     add(right, 0, 0, block(balance.sides, 0, na, 0, right.shape[1]), 1.0)
     row = na
     # balances of massless motions that something damps or locks
     add(S, row, na, inner(bases.others, block(inertia, na, nv, na, nv)), 1.0)
-    add(S, row, nv, inner(bases.others, transposed(locks.on_w)), 1.0)
+    add(S, row, nv, inner(bases.others, transpose(locks.on_w)), 1.0)
     add(right, row, 0, inner(bases.others, balance.on_w), 1.0)
     row += bases.others.shape[1]
     # the rate of the springs' balance
@@ -144,8 +144,8 @@ def equations(
     add(right, row, 0, block(rate, 0, nz, 0, na), 1.0)
     add(right, row, n + nr, block(rate, 0, nz, nv, rate.shape[1]), 1.0)
     row += nz
-    # what stays put
-    add(S, row, na, transposed(bases.loose), 1.0)
+    # loose motions
+    add(S, row, na, transpose(bases.loose), 1.0)
     row += bases.loose.shape[1]
     # locks that massless motions meet at once, and locks between inertial motions
     add(S, row, na, inner(bases.at_once, locks.on_w), 1.0)
@@ -166,7 +166,7 @@ def clear(A: Matrix) -> None:
 
 @part(typed=True, apart=True)
 def put(A: Matrix, top: int, rows: Matrix) -> None:
-    """Rows in the place of those from `top` on."""
+    """Replace the rows of A from `top` on."""
     for i in range(rows.shape[0]):
         for j in range(rows.shape[1]):
             A[top + i, j] = rows[i, j]
@@ -200,7 +200,7 @@ def fill_eta(sizes: Sizes, eta: int, held: Ints, solution: Solution, maps: Matri
 
 @part(typed=True, apart=True)
 def fill_guards(mechanics: Mechanics, mode: Mode, locks: Matrix, still: Flags, solution: Solution) -> None:
-    """What the state of each element asks: a row and the interval in which its value must stay."""
+    """Fill the guard of each element: a row, and the interval of its value in the present state."""
     sizes, maps, width = mechanics.sizes, mode.maps, mode.maps.shape[1]
     na, nv = sizes.inertial, sizes.inertial + sizes.massless
     for e in range(sizes.elements):
@@ -236,7 +236,7 @@ def slip_of(sizes: Sizes, lock: Matrix, solution: Solution) -> Matrix:
 
 @part(typed=True, apart=True)
 def limit_guard(guards: Matrix, e: int, state: int, limits: Matrix) -> None:
-    """A lock's force stays within its limits, what slips or is open on its side."""
+    """Set the interval of a guard: force limits of a lock, or the side of a slip or an open gap."""
     guards[e, 0], guards[e, 1] = -np.inf, np.inf
     if can_be_in(limits, e, 0):
         guards[e, 0] = limits[e, 0] if state == 0 else (0.0 if state > 0 else -np.inf)
@@ -267,12 +267,12 @@ def fill_entry(sizes: Sizes, first: int, balance: Balance, bases: Bases, mode: M
 def fill_reaction(
     sizes: Sizes, inertia: Matrix, rates: Rates, locks: Locks, bases: Bases, balance: Balance, reaction: Matrix
 ) -> bool:
-    """Jumps that make the conditions true, and what these ask of the elements; False if there are none."""
+    """Jumps that fulfil the conditions, and their impulses on the elements; False if there are none."""
     clear(reaction)
     na, n, nv, ng = sizes.inertial, sizes.states, sizes.inertial + sizes.massless, sizes.states - sizes.inertial
     nc, nz = bases.inertial.shape[1], bases.sprung.shape[1]
     locks_w = block(rates.locks, 0, sizes.elements, na, nv)
-    impulse, inverse = transposed(balance.velocity), unit(nc)
+    impulse, inverse = transpose(balance.velocity), unit(nc)
     if not solve_scaled(block(inertia, 0, na, 0, na), impulse):
         return False
     if not solve_scaled(product(balance.velocity, impulse), inverse):
@@ -292,11 +292,11 @@ def fill_reaction(
 
 
 @part(typed=True, apart=True)
-def see_what_entry_leaves(sizes: Sizes, first: MapRows, mode: Mode) -> None:
-    """Have all rows see the state as the conditions on entry leave it: drift off them then changes nothing."""
+def project_onto_entry(sizes: Sizes, first: MapRows, mode: Mode) -> None:
+    """Project the state in all rows onto the conditions on entry, so that drift off them has no effect."""
     n, entry, conditions = sizes.states, first.entry, mode.conditions[0] + mode.conditions[1]
     maps, width = mode.maps, mode.maps.shape[1]
-    add(maps, first.seen, 0, unit(n), 1.0)
+    add(maps, first.projected_state, 0, unit(n), 1.0)
     if conditions == 0:
         return
     mended = block(mode.reaction, 0, n, 0, conditions)
@@ -309,8 +309,8 @@ def see_what_entry_leaves(sizes: Sizes, first: MapRows, mode: Mode) -> None:
 
 
 @part(typed=True, apart=True)
-def watch_what_moves(mechanics: Mechanics, mode: Mode, still: Flags) -> None:
-    """Limits on entry are those while the mode lasts; there, what is constant need not be watched.
+def set_entry_limits(mechanics: Mechanics, mode: Mode, still: Flags) -> None:
+    """Copy the limits to those on entry, then remove the limits of constant guards.
 
     A slip whose velocity is zero whatever happens sticks: its limits are then such that they cannot be kept.
     """

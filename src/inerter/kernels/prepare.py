@@ -1,4 +1,4 @@
-"""Compiling what is missing before it is called: over several processes, and telling how far it is."""
+"""Compilation of missing kernels before they are called, over several processes, with progress."""
 
 from __future__ import annotations
 
@@ -12,28 +12,29 @@ from importlib import import_module
 from threading import Lock, Thread
 from typing import TYPE_CHECKING
 
-from inerter.kernels.cache import is_kept, told
-from inerter.kernels.declare import TUNED, Kernel, way
+from inerter.kernels.cache import announce_compilation, is_kept
+from inerter.kernels.decorators import TUNED, Kernel, compiler_mode
 from inerter.work.progress import ProgressStep, listener_here, told_if_long
 
 if TYPE_CHECKING:
     from inerter.work.pool import Pool
 
-Told = Callable[[str, int, int], None]  # title of the kernel that is begun, its number from 1, how many there are
+ProgressCallback = Callable[[str, int, int], None]  # title of the kernel, its number, their total
 _ALONE = Lock()
 _SEEN: set[Kernel] = set()  # which this process need not look for again
 _MOST = 4  # processes: there are few kernels, and the longest takes as long as all others
-_HELPER = "from inerter.kernels.prepare import help_out; help_out()"
+_HELPER = "from inerter.kernels.prepare import compile_requested; compile_requested()"
 
 
-def prepare(kernels: Iterable[Kernel], progress: Told | None = None) -> None:
+def prepare(kernels: Iterable[Kernel], progress: ProgressCallback | None = None) -> None:
     """Compile those of `kernels` that are not kept on disk, those that take long first, if they come first.
 
     Other processes help with it, and what they do this one reads from the cache later. Should one fail, a kernel is
-    compiled where it is called. `progress` is called when a kernel is begun; without it one line says what goes on.
+    compiled where it is called. `progress` is called when a kernel is begun; without it one line
+    announces the compilation.
     """
     wanted = [kernel for kernel in dict.fromkeys(kernels) if kernel not in _SEEN]
-    if wanted and way() == TUNED:
+    if wanted and compiler_mode() == TUNED:
         with _ALONE:
             missing = [kernel for kernel in wanted if not is_kept(kernel)]
             if missing:
@@ -41,17 +42,17 @@ def prepare(kernels: Iterable[Kernel], progress: Told | None = None) -> None:
             _SEEN.update(wanted)
 
 
-def prepare_on(pool: Pool | None, kernels: Sequence[Kernel], progress: Told | None = None) -> None:
-    """The same where work is done: once on each machine of a cluster, else here, for all processes of this machine."""
+def prepare_on(pool: Pool | None, kernels: Sequence[Kernel], progress: ProgressCallback | None = None) -> None:
+    """Prepare kernels where work runs: once on each machine of a cluster, else here for all local processes."""
     if pool is None or not pool.on_each_node(prepare, kernels):
         prepare(kernels, progress)
 
 
-def _compile(missing: list[Kernel], progress: Told | None) -> None:
+def _compile(missing: list[Kernel], progress: ProgressCallback | None) -> None:
     waiting, helpers = deque(enumerate(missing, 1)), min(os.cpu_count() or 1, _MOST, len(missing)) - 1
     listener = listener_here()
 
-    def upcoming() -> Iterator[Kernel]:
+    def next_kernels() -> Iterator[Kernel]:
         while waiting:
             with suppress(IndexError):  # another thread has taken the last
                 number, kernel = waiting.popleft()
@@ -61,10 +62,10 @@ def _compile(missing: list[Kernel], progress: Told | None) -> None:
                     listener.tell(ProgressStep(f"compiling kernels ({kernel.title})", number, len(missing)))
                 yield kernel
 
-    with told(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:
+    with announce_compilation(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:
         for _ in range(helpers):
-            stack.enter_context(_helper(upcoming()))
-        for kernel in upcoming():
+            stack.enter_context(_helper(next_kernels()))
+        for kernel in next_kernels():
             kernel.ready()
 
 
@@ -81,14 +82,14 @@ def _helper(kernels: Iterator[Kernel]) -> Iterator[None]:
         yield
         return
 
-    def feed() -> None:
+    def send_names() -> None:
         with suppress(OSError):  # it has ended
             while process.stdout.readline() and (kernel := next(kernels, None)):  # type: ignore[union-attr]
                 print(kernel.function.__module__, kernel.function.__qualname__, file=process.stdin, flush=True)
         with suppress(OSError):
             process.stdin.close()  # type: ignore[union-attr]
 
-    thread = Thread(target=feed, daemon=True)
+    thread = Thread(target=send_names, daemon=True)
     thread.start()
     try:
         yield
@@ -100,8 +101,8 @@ def _helper(kernels: Iterator[Kernel]) -> Iterator[None]:
         process.stdout.close()  # type: ignore[union-attr]
 
 
-def help_out() -> None:
-    """Compile what is asked for on standard input, a module and a name a line, and say each time that one is free."""
+def compile_requested() -> None:
+    """Compile the kernels named on standard input (module and name in each line), with an empty line when ready."""
     print(flush=True)
     for line in sys.stdin:
         module, name = line.split()

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from inerter.kernels.declare import kernel, part
+from inerter.kernels.decorators import kernel, part
 
 Array = Any  # compiled code is typed when it is compiled
 
@@ -54,14 +54,14 @@ class Scratch(NamedTuple):
     force: Array  # reactions
     LU: Array  # their equations
     pivots: Array
-    weight: Array  # of the reactions in `combine`, and its equations
+    weight: Array  # of the reactions in `fill_share_equations`, and its equations
     taken: Array
     Q: Array
     order: Array
 
 
 class Stretch(NamedTuple):
-    """Which steps are made: from `first` of `total`, of which every `every`-th instant is a sample."""
+    """Range of steps: from `first` of `total`, with a sample at every `every`-th instant."""
 
     first: int
     total: int
@@ -112,7 +112,7 @@ def eliminate(changed: bool, A: Array, pivots: Array) -> bool:
 
 @part()
 def forward(LU: Array, pivots: Array, b: Array) -> None:
-    """The first half of solving A x = b."""
+    """Forward substitution: b becomes L^-1 P b."""
     n = LU.shape[0]
     for k in range(n):
         here = b[pivots[k]]
@@ -124,7 +124,7 @@ def forward(LU: Array, pivots: Array, b: Array) -> None:
 
 @part()
 def backward(LU: Array, b: Array) -> None:
-    """The second half: b becomes x."""
+    """Backward substitution: b becomes U^-1 b."""
     n = LU.shape[0]
     for k in range(n):
         i = n - 1 - k
@@ -135,8 +135,8 @@ def backward(LU: Array, b: Array) -> None:
 
 
 @part()
-def weigh(law: Array, weight: Array) -> None:
-    """How easily a reaction takes a rate that inertia gives to several: frictions that slid do, in proportion.
+def set_weights(law: Array, weight: Array) -> None:
+    """Fill `weight` with the share of each reaction in a rate that inertia gives to several: its sliding speed.
 
     A friction that stuck or a gap that was closed takes next to nothing. One that was open takes nearly all: -1.
     """
@@ -154,8 +154,8 @@ def weigh(law: Array, weight: Array) -> None:
 
 
 @part()
-def combine(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Array) -> None:
-    """Equations for a (what each reaction takes) and multipliers m: a = weight Z' m and Z a = rates."""
+def fill_share_equations(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Array) -> None:
+    """Fill the equations for the shares a of the reactions and multipliers m: a = weight Z' m and Z a = rates."""
     count, size = Z.shape
     for i in range(size + count):
         taken[i] = 0.0
@@ -170,15 +170,15 @@ def combine(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Arr
 
 
 @part()
-def shift(weight: Array, taken: Array, law: Array) -> None:
-    """Add to the aims of frictions what they take."""
+def shift_aims(weight: Array, taken: Array, law: Array) -> None:
+    """Add the shares of frictions to their aims."""
     for i in range(weight.shape[0]):
         if law[KIND, i] == FRICTION:
             law[AIM, i] += taken[i]
 
 
 @part()
-def hold(law: Array, force: Array) -> bool:
+def set_forces(law: Array, force: Array) -> bool:
     """Set up the forces for the present sides: right sides where a reaction holds, and the force itself where not.
 
     True if other reactions hold than before.
@@ -206,8 +206,8 @@ def hold(law: Array, force: Array) -> bool:
 
 
 @part()
-def collect(changed: bool, G: Array, law: Array, LU: Array) -> None:
-    """The equations of the forces, if they are `changed`."""
+def fill_force_equations(changed: bool, G: Array, law: Array, LU: Array) -> None:
+    """Fill the equations of the forces, if they are `changed`."""
     for i in range(G.shape[0] if changed else 0):
         for j in range(G.shape[0]):
             LU[i, j] = G[i, j] * law[HELD, i]
@@ -215,8 +215,8 @@ def collect(changed: bool, G: Array, law: Array, LU: Array) -> None:
 
 
 @part()
-def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
-    """How many reactions do not fit their side, and the last of them; notes on which side each should be."""
+def count_misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
+    """Number of reactions that do not fit their side, and the last of them; records the side of each that fits."""
     count, last = 0, -1
     for i in range(G.shape[0]):
         kind, side, lower, upper = law[KIND, i], law[SIDE, i], law[LOWER, i], law[UPPER, i]
@@ -248,15 +248,15 @@ def misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
 
 
 @part()
-def feed(inputs: Array, step: int, known: Array, at: int) -> None:
-    """The inputs of a step to their places."""
+def fill_inputs(inputs: Array, step: int, known: Array, at: int) -> None:
+    """Copy the inputs of a step into `known`."""
     for j in range(inputs.shape[1]):
         known[at + j] = inputs[step, j]
 
 
 @part()
-def take(guess: Array, at: int, law: Array) -> float:
-    """Rates and aims without reactions to their places; how small a rate must be for its sign to mean nothing."""
+def set_free_rates(guess: Array, at: int, law: Array) -> float:
+    """Copy the rates and aims without reactions; returns the rate below which a sign is rounding."""
     count, largest = law.shape[1], 0.0
     for i in range(count):
         law[DRIFT, i] = guess[at + i]
@@ -266,15 +266,15 @@ def take(guess: Array, at: int, law: Array) -> float:
 
 
 @part()
-def change(law: Array, least: int) -> None:
-    """Reactions from `least` on change to the side where they should be."""
+def change_sides(law: Array, least: int) -> None:
+    """Move reactions from number `least` upwards to the side that fits."""
     for i in range(least, law.shape[1]):
         law[SIDE, i] = law[BETTER, i]
 
 
 @part()
-def slow(guess: Array, pull: Array, force: Array, known: Array, at: int) -> float:
-    """Mean velocities and forces of the step to their places; their sum tells whether they are numbers."""
+def set_means(guess: Array, pull: Array, force: Array, known: Array, at: int) -> float:
+    """Copy mean velocities and forces of the step into `known`; returns their sum, finite if all are numbers."""
     n, count = pull.shape
     total = 0.0
     for i in range(n):
@@ -288,8 +288,8 @@ def slow(guess: Array, pull: Array, force: Array, known: Array, at: int) -> floa
 
 
 @part()
-def move(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
-    """Displacements and momenta from the start of the step to its end."""
+def advance_motion(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
+    """Advance displacements and momenta from the start of the step to its end."""
     n = inertia.shape[0]
     for i in range(n):
         momentum = -known[n + i]
@@ -321,29 +321,29 @@ def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array,
     w = known.shape[0] - n - count
     sample, left = (first + every - 1) // every, -first % every  # the next one, and the steps until then
     for now in range(first, first + inputs.shape[0]):
-        feed(inputs, now - first, known, 2 * n)
+        fill_inputs(inputs, now - first, known, 2 * n)
         times(predict, known, guess)
-        slack = take(guess, n, law)
+        slack = set_free_rates(guess, n, law)
         for _ in range(min(Z.shape[0], 1)):
-            weigh(law, weight)
-            combine(Z, guess, n + 2 * count, weight, Q, taken)
+            set_weights(law, weight)
+            fill_share_equations(Z, guess, n + 2 * count, weight, Q, taken)
             eliminate(True, Q, order)
             forward(Q, order, taken)
             backward(Q, taken)
-            shift(weight, taken, law)
+            shift_aims(weight, taken, law)
         wrong, fewest, patience, tried = 1, count + 1, PATIENCE, 0
         while wrong > 0 and tried < LIMIT:
-            changed = hold(law, force)
-            collect(changed, G, law, LU)
+            changed = set_forces(law, force)
+            fill_force_equations(changed, G, law, LU)
             eliminate(changed, LU, pivots)
             forward(LU, pivots, force)
             backward(LU, force)
-            wrong, last = misfits(G, law, force, slack)
+            wrong, last = count_misfits(G, law, force, slack)
             tried, patience = tried + 1, patience - 1
             if wrong < fewest:
                 fewest, patience = wrong, PATIENCE
-            change(law, 0 if patience >= 0 else last)
-        check = slow(guess, pull, force, known, w)
+            change_sides(law, 0 if patience >= 0 else last)
+        check = set_means(guess, pull, force, known, w)
         if wrong > 0 or not abs(check) < 1e300:
             return STUCK if wrong > 0 else INFINITE, now
         if left == 0:
@@ -352,5 +352,5 @@ def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array,
         left -= 1
         if left == 0:
             observe(ends, known, 1.0 if now + 1 == total else 0.5, out, sample)
-        move(inertia, moved, h, known, w)
+        advance_motion(inertia, moved, h, known, w)
     return DONE, first + inputs.shape[0]

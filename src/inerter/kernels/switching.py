@@ -1,4 +1,4 @@
-"""Which mode goes on where a guard was met or an input broke: modes are put on trial until one of them can."""
+"""Mode switching where a guard is crossed or an input breaks: modes are tried until one is consistent."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
 from inerter.kernels.crossing import MET, ORDERS, ROUNDING
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import input_sizes, inputs_from, over_columns
 from inerter.kernels.locking import can_be_in, limit_of
 
@@ -21,7 +21,7 @@ _LARGEST_ZERO = 1e-7  # relative to the largest state so far
 
 @part(borrowing=True)
 def switch(run: Run, events: Array, start: float, length: float, who: int) -> int:
-    """Find the mode that goes on from here, after the guard of element `who` (or nothing, -1) was met.
+    """Find and enter the mode that continues the motion, after the guard of element `who` (or nothing, -1) was met.
 
     Some mode can in exact arithmetic, so if none is found, rounding has taken the place of a zero somewhere: then what
     counts as zero grows until one is, and derivatives of higher order decide where values did.
@@ -30,19 +30,19 @@ def switch(run: Run, events: Array, start: float, length: float, who: int) -> in
     if place.events + run.mechanics.sizes.elements > events.shape[0]:
         return EVENTS_FULL
     if place.mode >= 0:
-        _as_seen(run, length)
+        _project_state(run, length)
     place.zero, code = ROUNDING, NO_MODE
     while code in (NO_MODE, IMPACT) and place.zero < 2.0 * _LARGEST_ZERO:
-        code = _find(run, length, who)
+        code = _search_modes(run, length, who)
         place.zero *= 10.0
     if code == DONE:
-        _go_over(run, events, start, _number_on_trial(run))
+        _enter_mode(run, events, start, _number_on_trial(run))
     return code
 
 
 @part(borrowing=True, inside=True)
-def _find(run: Run, length: float, who: int) -> int:
-    """Put modes on trial until one can go on, and leave it there; DONE, or why there is none.
+def _search_modes(run: Run, length: float, who: int) -> int:
+    """Try modes until one is consistent, and leave it on trial; DONE, or the reason why there is none.
 
     Starts from the present mode and lets one element after the other change its state, the first that violates its
     guard first (Murty's least-index rule, finite for friction and contact without impacts); if that does not settle,
@@ -54,8 +54,8 @@ def _find(run: Run, length: float, who: int) -> int:
     for _ in range(20 + 8 * elements):
         m = _number_on_trial(run)
         if m < 0:
-            return _unknown(run)
-        verdict = judge(run, m, length, who)
+            return _request_mode(run)
+        verdict = check_contact_state(run, m, length, who)
         if verdict < 0:
             break
         watch[verdict].trial = place.wanted
@@ -67,8 +67,8 @@ def _find(run: Run, length: float, who: int) -> int:
         if possible:
             m = _number_on_trial(run)
             if m < 0:
-                return _unknown(run)
-            verdict = judge(run, m, length, who)
+                return _request_mode(run)
+            verdict = check_contact_state(run, m, length, who)
     if verdict == ACCEPTED:
         return DONE
     return IMPACT if struck else NO_MODE
@@ -76,7 +76,7 @@ def _find(run: Run, length: float, who: int) -> int:
 
 @part(borrowing=True, inside=True)
 def _first_trial(run: Run, who: int) -> None:
-    """The present states, with that changed whose guard was crossed; before there is a mode, all at rest."""
+    """Put the present states on trial, with that of the crossed guard changed; before the first mode, all at rest."""
     before, watch = run.motion.place[0].mode, run.motion.watch
     for e in range(run.mechanics.sizes.elements):
         first = 0 if can_be_in(run.mechanics.limits, e, 0) else 1
@@ -107,16 +107,16 @@ def _number_on_trial(run: Run) -> int:
 
 
 @part(borrowing=True, inside=True)
-def _unknown(run: Run) -> int:
-    """Leave to have a mode built; what has been found out about modes on trial must not stay."""
+def _request_mode(run: Run) -> int:
+    """Return MODE_UNKNOWN, so that the mode is built; results about modes on trial are discarded."""
     for e in range(run.mechanics.sizes.elements):
         run.motion.watch[e].touch = 0
     return MODE_UNKNOWN
 
 
 @part(borrowing=True, inside=True)
-def _go_over(run: Run, events: Array, start: float, m: int) -> None:
-    """Go over to mode m, and note what has changed."""
+def _enter_mode(run: Run, events: Array, start: float, m: int) -> None:
+    """Enter mode m, and record the changes of contact state as events."""
     motion, place, before = run.motion, run.motion.place[0], run.motion.place[0].mode
     for i in range(run.mechanics.sizes.states):
         motion.state[i] = run.room.guess[i]
@@ -131,16 +131,16 @@ def _go_over(run: Run, events: Array, start: float, m: int) -> None:
 
 
 @part(borrowing=True, inside=True)
-def _as_seen(run: Run, length: float) -> None:
-    """Make the state what its mode has seen of it: without the rounding that drifted off the mode's conditions.
+def _project_state(run: Run, length: float) -> None:
+    """Project the state onto the conditions of its mode, which removes the drift by rounding.
 
     A velocity of 1e-13 m/s that a long stick has left behind would otherwise choose the direction of the slip.
     """
-    sizes, motion, room, seen = run.mechanics.sizes, run.motion, run.room, run.mechanics.rows.seen
+    sizes, motion, room, first = run.mechanics.sizes, run.motion, run.room, run.mechanics.rows.projected_state
     m, n, nu = motion.place[0].mode, sizes.states, sizes.inputs
     inputs_from(room.numbers, sizes.roads, nu, length, motion.place[0].clock, length, room.inputs)
     for i in range(n):
-        room.guess[i] = over_columns(run.modes.maps[m, seen + i], motion.state, room.inputs[0], n, nu)
+        room.guess[i] = over_columns(run.modes.maps[m, first + i], motion.state, room.inputs[0], n, nu)
     for i in range(n):
         motion.state[i] = room.guess[i]
         motion.scale[i] = max(motion.scale[i], abs(motion.state[i]))
@@ -162,8 +162,8 @@ def _is_at_rest(run: Run) -> bool:
 
 
 @part(borrowing=True)
-def judge(run: Run, m: int, length: float, who: int) -> int:
-    """Whether mode m can go on from here: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
+def check_contact_state(run: Run, m: int, length: float, who: int) -> int:
+    """Verdict on mode m in the present state: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
 
     First the conditions on entry, then each guard by the sign of its first derivative that is not zero.
     """
@@ -172,7 +172,7 @@ def judge(run: Run, m: int, length: float, who: int) -> int:
     d = min(run.modes.reach[m], length)
     inputs_from(room.numbers, sizes.roads, sizes.inputs, length, clock, d, room.inputs)
     input_sizes(room.numbers, sizes.roads, sizes.inputs, length, clock, d, room.input_sizes)
-    distance = _guess(run)
+    distance = _reset_guess(run)
     for e in range(sizes.elements):
         if _is_apart(run, e, distance):
             run.motion.place[0].wanted = 0
@@ -181,18 +181,18 @@ def judge(run: Run, m: int, length: float, who: int) -> int:
     for group in range(3):
         last = first + run.modes.conditions[m, group]
         if _is_broken(run, m, first, last):
-            verdict = _blame(run, m, first, last, group)
+            verdict = _verdict_on_conditions(run, m, first, last, group)
             if verdict != ACCEPTED:
                 return verdict
         for j in range(sizes.states):
-            room.guess[j] += _asked(run.modes.reaction[m], j, room.residual, first, last)
+            room.guess[j] += _condition_impulse(run.modes.reaction[m], j, room.residual, first, last)
         first = last
-    return _judge_guards(run, m, d, who)
+    return _check_guards(run, m, d, who)
 
 
 @part(borrowing=True, inside=True)
-def _guess(run: Run) -> float:
-    """Start from the state as it is, and from how exact it is; the size of positions.
+def _reset_guess(run: Run) -> float:
+    """Set the guess and its accuracy from the present state; returns the size of positions.
 
     What has not moved yet is no finer than what has.
     """
@@ -244,15 +244,15 @@ def _is_broken(run: Run, m: int, first: int, last: int) -> bool:
 
 
 @part(borrowing=True, inside=True)
-def _blame(run: Run, m: int, first: int, last: int, group: int) -> int:
-    """What follows from conditions that do not hold: the element that cannot bear what they ask of it, or a verdict."""
+def _verdict_on_conditions(run: Run, m: int, first: int, last: int, group: int) -> int:
+    """Element whose limits the impulses of unfulfilled conditions exceed, or a verdict if there is none."""
     mechanics, place, n = run.mechanics, run.motion.place[0], run.mechanics.sizes.states
     reaction, residual, largest = run.modes.reaction[m], run.room.residual, 0.0
     for e in range(mechanics.sizes.elements):
-        largest = max(largest, abs(_asked(reaction, n + e, residual, first, last)))
+        largest = max(largest, abs(_condition_impulse(reaction, n + e, residual, first, last)))
     for e in range(mechanics.sizes.elements):
         trial = run.motion.watch[e].trial
-        s = _asked(reaction, n + e, residual, first, last)
+        s = _condition_impulse(reaction, n + e, residual, first, last)
         if not can_be_in(mechanics.limits, e, 0) or abs(s) <= 1e-9 * largest:
             continue
         if trial == 0 and group == VELOCITY and mechanics.kind[e] == FRICTION:
@@ -268,8 +268,8 @@ def _blame(run: Run, m: int, first: int, last: int, group: int) -> int:
 
 
 @part(typed=True, borrowing=True)
-def _asked(reaction: Matrix, row: int, residual: Floats, first: int, last: int) -> float:
-    """What conditions on entry ask of a part of the state, or of an element."""
+def _condition_impulse(reaction: Matrix, row: int, residual: Floats, first: int, last: int) -> float:
+    """Jump of a state, or impulse on an element, by the residuals of conditions on entry."""
     total = 0.0
     for i in range(first, last):
         total += reaction[row, i] * residual[i]
@@ -288,15 +288,15 @@ def _size(row: Floats, size: Floats, u: Floats, n: int, nu: int) -> float:
 
 
 @part(borrowing=True, inside=True)
-def _judge_guards(run: Run, m: int, d: float, who: int) -> int:
-    """The first element whose guard does not stay within its limits, or ACCEPTED."""
+def _check_guards(run: Run, m: int, d: float, who: int) -> int:
+    """First element whose guard leaves its limits, or ACCEPTED."""
     mechanics, place, before = run.mechanics, run.motion.place[0], run.motion.place[0].mode
     place.known = -1
     for e in range(mechanics.sizes.elements):
         trial = run.motion.watch[e].trial
         was = run.modes.state[max(before, 0), e]  # slip up and slip down have the same guard
         slips = mechanics.kind[e] == FRICTION and trial * was != 0
-        side = _violated(run, m, e, d, before >= 0 and e == who and (trial == was or slips))
+        side = _guard_violation(run, m, e, d, before >= 0 and e == who and (trial == was or slips))
         if side != 0:
             place.wanted = side if trial == 0 else 0
             return e
@@ -304,8 +304,8 @@ def _judge_guards(run: Run, m: int, d: float, who: int) -> int:
 
 
 @part(borrowing=True, inside=True)
-def _violated(run: Run, m: int, e: int, d: float, met: bool) -> int:
-    """At which limit (-1, 1) the guard of element e is violated at once, else 0; notes how long it stays on a limit.
+def _guard_violation(run: Run, m: int, e: int, d: float, met: bool) -> int:
+    """Limit (-1, 1) that the guard of element e violates at once, else 0; records the orders of contact with a limit.
 
     `met`: the guard has just been found to be at a limit.
     """

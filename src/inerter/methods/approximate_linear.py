@@ -19,20 +19,20 @@ from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, Statu
 from inerter.indices.excitation import shape_of, stand_ins_of
 from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.averages import interval_of
-from inerter.methods.counterpart import Counterpart, counterpart, has_play, with_velocities
-from inerter.methods.error_bounds import checked
-from inerter.methods.excitation import Excitation, Excited, MultisineExcitation, NoiseExcitation
+from inerter.methods.equivalent_linear import EquivalentLinearModel, equivalent_linear_model, has_play, with_velocities
+from inerter.methods.error_bounds import with_error_sources
+from inerter.methods.excitation import Excitation, ExcitedInputs, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
-from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, under
-from inerter.methods.measured import road_errors
+from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, with_convention_filters
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
-from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
-from inerter.systems.arrivals import InputPath
 from inerter.systems.graph import full_graph
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle
@@ -44,8 +44,8 @@ PROMISE = 0.05  # relative error of a value that is ok, sampling apart
 _STEPPED = 1e-4  # relative error of gains by the cubics between four points of the shortest wave, jumps apart
 _UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
-_UNLIKE = "no linear design resembles the motion: gains stand alone, up to the highest frequency excited"
-_HELD = "noise is held: gains at the instants of its samples stand alone"
+_UNLIKE = "no equivalent linear model: the gains are used alone, up to the highest excited frequency"
+_HELD = "the noise is held: the gains at the instants of its samples are used alone"
 _MOST = 1000  # realisations
 
 
@@ -111,9 +111,9 @@ class ApproximateLinear:
         _check_whole("The number of realisations", self.realisations, 2, _MOST)
         _check_whole("A seed", self.seed, 0, 2**63)
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise PerformanceIndexError(f"A relative error lies between 0 and 1, got {self.relative_error!r}.")
+            raise PerformanceIndexError(f"A relative error must lie between 0 and 1, got {self.relative_error!r}.")
         if not is_number(self.smoothing) or self.smoothing < 0.0:
-            raise PerformanceIndexError(f"The reach of the smoothing is 0 Hz or more, got {self.smoothing!r}.")
+            raise PerformanceIndexError(f"The reach of the smoothing must be non-negative, got {self.smoothing!r}.")
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
@@ -126,22 +126,22 @@ class ApproximateLinear:
         """
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        questions = [under(conventions, mechanism, index.question(mechanism)) for index in indices]
+        questions = [with_convention_filters(conventions, mechanism, index.question(mechanism)) for index in indices]
         if not always and not _is_nonlinear(mechanism):
-            return [self._known(mechanism, question) for question in questions]
-        linears = [self._counterpart(mechanism, question) for question in questions]
+            return [self._estimate_linear(mechanism, question) for question in questions]
+        linears = [self._equivalent_linear_model(mechanism, question) for question in questions]
         drives = [self._drive(mechanism, question) for question in questions]
-        driven = [question.drive.driven(mechanism) for question in questions]
+        driven = [question.drive.excited_mechanism(mechanism) for question in questions]
         moved = [(one.ground_moves, drive) for one, drive in zip(driven, drives, strict=True)]
         systems = {one.ground_moves: with_velocities(piecewise(one)) for one in driven}
-        runs = dict[tuple[bool, Excited], Runs]()
+        runs = dict[tuple[bool, ExcitedInputs], Runs]()
         for question, way in zip(questions, moved, strict=True):
             names = runs[way].outputs if way in runs else ()
             names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
             system, frictions = systems[way[0]]
             runs[way] = Runs(system, way[1], names, frictions, int(self.seed))
         return [
-            self._answer(question, linear, runs[way])
+            self._estimate_from_runs(question, linear, runs[way])
             for question, linear, way in zip(questions, linears, moved, strict=True)
         ]
 
@@ -156,14 +156,14 @@ class ApproximateLinear:
         return result
 
     def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
-        """The compiled code of simulations, and of the methods that tell where a search begins."""
+        """Compiled functions of simulations, and of the methods that start a search."""
         return (*StatisticalLinearisation().kernels(question, search=True), *KERNELS) if search else KERNELS
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""
         return SampledObjective(self.estimate, vehicle, index)
 
-    def fixed(self, realisations: int, period: int | None = None) -> ApproximateLinear:
+    def with_realisations(self, realisations: int, period: int | None = None) -> ApproximateLinear:
         """Copy of the method with a fixed number of realisations; `period` is ignored, as the excitation sets it."""
         return replace(self, realisations=realisations, relative_error=None)
 
@@ -171,15 +171,15 @@ class ApproximateLinear:
     def _raw(self) -> bool:
         return self.conventions == "paper2008"
 
-    def _known(self, mechanism: Mechanism, question: IndexDefinition) -> Estimate:
+    def _estimate_linear(self, mechanism: Mechanism, question: IndexDefinition) -> Estimate:
         """Estimate of a linear design: its norm, without scatter."""
         problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
         norm = problem.estimate({})
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
-    def _drive(self, mechanism: Mechanism, question: IndexDefinition) -> Excited:
+    def _drive(self, mechanism: Mechanism, question: IndexDefinition) -> ExcitedInputs:
         """Excitation of the inputs: signal, r.m.s. value, and delay of each input."""
-        driven = question.drive.driven(mechanism)
+        driven = question.drive.excited_mechanism(mechanism)
         arrivals = question.arrivals(driven)
         _check_gains(arrivals)
         delays = {arrival.input: arrival.delay for arrival in arrivals}
@@ -188,16 +188,18 @@ class ApproximateLinear:
         excitation = (self.road if on_road else self.force) or default
         rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, arrivals[0].input))
         inputs = [*(r.name for r in driven.roads), *(f.name for f in driven.forces)]
-        return Excited(excitation, rms, tuple(delays.get(name) for name in inputs))
+        return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in inputs))
 
-    def _counterpart(self, mechanism: Mechanism, question: IndexDefinition) -> Counterpart | None:
+    def _equivalent_linear_model(self, mechanism: Mechanism, question: IndexDefinition) -> EquivalentLinearModel | None:
         """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
-        return None if self._raw else counterpart(mechanism, question, CONVENTIONS[self.conventions])
+        return None if self._raw else equivalent_linear_model(mechanism, question, CONVENTIONS[self.conventions])
 
-    def _answer(self, question: IndexDefinition, linear: Counterpart | None, runs: Runs) -> Estimate:
+    def _estimate_from_runs(
+        self, question: IndexDefinition, linear: EquivalentLinearModel | None, runs: Runs
+    ) -> Estimate:
         notes: tuple[str, ...] = ()
         if question.amplitude is not None:
-            notes = ("the amplitude of a sine says nothing here: the excitation has its own size",)
+            notes = ("the amplitude of a sine is ignored: the excitation sets the size",)
         count, estimate = int(self.realisations), None
         while estimate is None or not self._is_settled(estimate, count):
             count = count if estimate is None else min(2 * count, _MOST)
@@ -211,7 +213,7 @@ class ApproximateLinear:
             estimate = self._from_gains(question, linear, gains * factor, runs)
         settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
         near = factor * self._near_peak(estimate, runs.drive)
-        jumps = 0.0 if self._raw else runs.missed(places, near)  # of raw gains instants are a part
+        jumps = 0.0 if self._raw else runs.sampling_error(places, near)  # of raw gains instants are a part
         stepped = ErrorSource("time step", _STEPPED + jumps)
         own = stepped, settled, *estimate.error_sources
         stand_ins = stand_ins_of(question.drive, runs.system.mechanism)
@@ -219,13 +221,15 @@ class ApproximateLinear:
             model = linear_model(linear, runs.speeds, runs.drive.excitation.period)
             stand_ins += road_errors(question, model.system, linear.problem.pade_order, model.norms)
         status = worst_of([estimate.status, runs.warning])
-        estimate = checked(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
+        estimate = with_error_sources(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
         status = estimate.status
-        if status.ok and self.relative_error is not None and not self._reached(estimate):
-            status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the relative error asked for")
+        if status.ok and self.relative_error is not None and not self._is_accurate_enough(estimate):
+            status = Status(StatusKind.INACCURATE, f"{count} realisations do not reach the requested relative error")
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
 
-    def _from_gains(self, question: IndexDefinition, linear: Counterpart | None, gains: Array, runs: Runs) -> Estimate:
+    def _from_gains(
+        self, question: IndexDefinition, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
+    ) -> Estimate:
         """Estimate of the index from squared gains, with the equivalent linear model as control if there is one."""
         drive = runs.drive
         if self._raw:
@@ -241,18 +245,23 @@ class ApproximateLinear:
         if has_play(runs.system):
             return replace(self._combine(question, None, gains, drive), notes=(_UNLIKE,))
         motion = f"the motion at {abs(model.pole.imag):.3g} rad/s, which decays by {-model.pole.real:.2g} 1/s"
-        message = f"a period of {drive.excitation.period:g} s is too short for {motion}: take a longer one"
+        message = f"a period of {drive.excitation.period:g} s is too short for {motion}; use a longer one"
         return Estimate(math.nan, question.unit, Status(StatusKind.INACCURATE, message))
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
-        return self.relative_error is None or count >= _MOST or self._reached(estimate)
+        return self.relative_error is None or count >= _MOST or self._is_accurate_enough(estimate)
 
-    def _reached(self, estimate: Estimate) -> bool:
+    def _is_accurate_enough(self, estimate: Estimate) -> bool:
         error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf
         return error <= asked * estimate.value
 
     def _combine(
-        self, question: IndexDefinition, known: LinearModel | None, gains: Array, drive: Excited, unseen: float = 0.0
+        self,
+        question: IndexDefinition,
+        known: LinearModel | None,
+        gains: Array,
+        drive: ExcitedInputs,
+        unseen: float = 0.0,
     ) -> Estimate:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
@@ -272,11 +281,11 @@ class ApproximateLinear:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks = float(question.combined(sizes, weights)), ()
+            value, peaks = float(question.combine(sizes, weights)), ()
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * question.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
             if self._raw:
                 logs = np.log(
-                    question.combined(np.sqrt(sums), weights)
+                    question.combine(np.sqrt(sums), weights)
                 )  # a standard error of raw ratios has no expectation, theirs has
                 value = float(np.exp(np.median(logs)))
                 scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
@@ -286,7 +295,7 @@ class ApproximateLinear:
         sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
         return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources)
 
-    def _near_peak(self, estimate: Estimate, drive: Excited) -> Array:
+    def _near_peak(self, estimate: Estimate, drive: ExcitedInputs) -> Array:
         """Mask (harmonics,) as 0 or 1: harmonics smoothed together at the peak of a peak gain; else all ones."""
         if not estimate.peaks:
             return np.ones(drive.omega.size)
@@ -326,7 +335,7 @@ def _check_gains(arrivals: Sequence[InputPath]) -> None:
     """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
     if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
         raise PerformanceIndexError(
-            "Method approximate-linear takes gains from one signal, and here several arrive, each by a way of its own. "
+            "Method approximate-linear computes gains from one signal, but several signals excite this mechanism. "
             "Use norm, statistical-linearisation or expected-value."
         )
 
@@ -348,4 +357,4 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
 
 def _check_whole(what: str, value: object, least: int, most: int) -> None:
     if not is_number(value) or value != int(value) or not least <= value <= most:
-        raise PerformanceIndexError(f"{what} is a whole number from {least} to {most}, got {value!r}.")
+        raise PerformanceIndexError(f"{what} must be an integer from {least} to {most}, got {value!r}.")

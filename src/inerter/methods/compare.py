@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status, worst_of
-from inerter.methods.asking import Asked, is_composed
 from inerter.methods.averages import interval_of, mean_and_error
-from inerter.methods.method import Averaging, Controlled, Estimate, Method, evaluate
+from inerter.methods.composite_index import IndexLike, is_composite
+from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
 from inerter.methods.ties import ACCURACY
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
@@ -58,7 +58,7 @@ class Comparison:
 
     @property
     def is_tie(self) -> bool:
-        """Whether either may be the better: nothing lies between them but chance, or the accuracy of their values."""
+        """Whether the difference is not significant at 95 %, or within the accuracy of the values."""
         low, high = self.difference.interval
         accuracy = 2.0 * ACCURACY * min(abs(self.first.value), abs(self.second.value))
         return low - accuracy <= 0.0 <= high + accuracy
@@ -72,10 +72,10 @@ class Comparison:
         doubt = "" if self.status.ok else f"not certain ({self.status}): "
         if not np.isfinite(self.percent):
             values = f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}"
-            return f"{doubt}{values}: their difference is no number"
+            return f"{doubt}{values}: the difference is not defined"
         apart = f"{abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
         if self.is_tie:
-            return f"{doubt}neither is known to be better: they differ by {apart}"
+            return f"{doubt}difference not significant at 95 %: {apart}"
         word = "better" if self.difference.value < 0.0 else "worse"
         return f"{doubt}the first is {apart} {word} than the second"
 
@@ -83,7 +83,7 @@ class Comparison:
 def compare(
     first: Vehicle,
     second: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     *,
     known: Known = (None, None),
@@ -111,15 +111,15 @@ def compare(
     (-0.3, True)
     """
     with running_on(executor):
-        return _compared(first, second, index, method, known)
+        return _compare(first, second, index, method, known)
 
 
-def _compared(first: Vehicle, second: Vehicle, index: Asked, method: Method, known: Known) -> Comparison:
+def _compare(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, known: Known) -> Comparison:
     designs = first, second
     one, other = (found or evaluate(design, index, method) for found, design in zip(known, designs, strict=True))
     most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
-    if most > 0 and isinstance(method, Averaging):
-        method = method.fixed(most, longest)
+    if most > 0 and isinstance(method, AveragingMethod):
+        method = method.with_realisations(most, longest)
         one, other = (
             found
             if found.realisations in (0, most) and found.period in (None, longest)
@@ -127,7 +127,7 @@ def _compared(first: Vehicle, second: Vehicle, index: Asked, method: Method, kno
             for found, design in ((one, first), (other, second))
         )
     controls: list[Controls | None] = []
-    if most > 0 and isinstance(method, Controlled) and not is_composed(index):
+    if most > 0 and isinstance(method, MethodWithControls) and not is_composite(index):
         controls = [method.controls(design, index, most) for design in (first, second)]
     return Comparison(one, other, difference_of(one, other, controls))
 

@@ -55,8 +55,8 @@ class CompiledQuestion:
         return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
 
     @cached_property
-    def twofold(self) -> tuple[Array, Array]:
-        """S, [R F], Y_eta and [Y_x Y_u] in a row, and what rounding has taken: no entries where that is nothing."""
+    def extended_descriptor(self) -> tuple[Array, Array]:
+        """S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors: no entries where these are zero."""
         d = self.problem.descriptor
         stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
         stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
@@ -87,7 +87,7 @@ class CompiledQuestion:
         return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
 
     @cached_property
-    def apart(self) -> tuple[CompiledQuestion, ...]:
+    def single_source_questions(self) -> tuple[CompiledQuestion, ...]:
         """Objectives of the single sources, whose squares add up; empty for one source."""
         sources = tuple(dict.fromkeys(self.problem.sources))
         return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
@@ -98,25 +98,27 @@ class CompiledQuestion:
         return self.problem.question.is_peak
 
     @cached_property
-    def serves(self) -> NDArray[np.bool_]:
+    def supported_outputs(self) -> NDArray[np.bool_]:
         """True for outputs that compiled code can evaluate: finite at a design near the middle of the bounds."""
         if self.is_peak:
             return np.array([self._exact(self._special).status.ok])
-        return np.asarray(~np.isinf(self._beside))
+        return np.asarray(~np.isinf(self._special_norms))
 
     @cached_property
-    def seen(self) -> NDArray[np.bool_]:
+    def reachable_outputs(self) -> NDArray[np.bool_]:
         """True for outputs that the source excites; those of a half model ignore the common motion of both sides."""
-        return np.asarray(self._beside > 0.0)
+        return np.asarray(self._special_norms > 0.0)
 
     @cached_property
-    def sighted(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
+    def per_source_questions(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
         """Mask of the outputs that each source excites, and the objective of these outputs."""
-        sources = [one for one in self.apart or (self,) if np.any(one.seen)]
-        return tuple((one.seen, CompiledQuestion(one.problem.part(one.seen))) for one in sources)
+        sources = [one for one in self.single_source_questions or (self,) if np.any(one.reachable_outputs)]
+        return tuple(
+            (one.reachable_outputs, CompiledQuestion(one.problem.part(one.reachable_outputs))) for one in sources
+        )
 
     @cached_property
-    def _beside(self) -> Array:
+    def _special_norms(self) -> Array:
         """Norms of the outputs at a design near the middle of the bounds."""
         return self._norms(self._special)
 
@@ -138,21 +140,21 @@ class CompiledQuestion:
     def _values(self, point: Array) -> dict[str, float]:
         return dict(zip(self._free, point.tolist(), strict=True))
 
-    def _closed(self, point: Array) -> LinearSystem:
+    def _close_at(self, point: Array) -> LinearSystem:
         return close(self.problem.descriptor, self._values(point))
 
     def _exact(self, point: Array) -> Estimate:
         return self.problem.estimate(self._values(point))
 
     def _norms(self, point: Array) -> Array:
-        return self.problem.norms(self.problem.system(self._closed(point)), self._values(point))[0].outputs
+        return self.problem.norms(self.problem.system(self._close_at(point)), self._values(point))[0].outputs
 
     def _exact_norms(self, point: Array) -> Array:
-        if self.apart:
-            parts = [one._exact_norms(point[self._columns(one)]) for one in self.apart]
+        if self.single_source_questions:
+            parts = [one._exact_norms(point[self._columns(one)]) for one in self.single_source_questions]
             return np.asarray(np.linalg.norm(parts, axis=0))
-        system = self.problem.system(self._closed(point))
-        return self.problem.corrected(system, h2_exactly(system, self.problem.pade_order)[0])[0]
+        system = self.problem.system(self._close_at(point))
+        return self.problem.correct_norms(system, h2_exactly(system, self.problem.pade_order)[0])[0]
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, for a search: infinite where unknown.
@@ -160,22 +162,22 @@ class CompiledQuestion:
         Where compiled code is not sure there is hardly any damping, or nearly a rigid link, which few searches want. So
         such designs are valued without rounding only where there are few others to choose from.
         """
-        values = self._compiled(points)
+        values = self._compiled_values(points)
         unsure = np.flatnonzero(np.isnan(values))
         if points.shape[0] <= _FEW or unsure.size > 0.9 * points.shape[0]:
-            values[unsure[:_MOST_EXACT]] = self.known(points[unsure[:_MOST_EXACT]])
+            values[unsure[:_MOST_EXACT]] = self.evaluate_points(points[unsure[:_MOST_EXACT]])
         return np.where(np.isnan(values), np.inf, values)
 
     def is_unsure(self, points: Array) -> Bools:
         """Whether double precision does not suffice for the index, at each row of `points`."""
-        found = self._compiled(points) if self.is_peak else self._compiled_norms(points)
+        found = self._compiled_values(points) if self.is_peak else self._compiled_norms(points)
         return np.asarray(np.isnan(found.reshape(points.shape[0], -1)).any(axis=1))
 
-    def known(self, points: Array) -> Array:
+    def evaluate_points(self, points: Array) -> Array:
         """Index at each row of `points`, which may be infinite; nan where unknown."""
         if not self.is_peak:
-            return self._combined(self.output_norms(points))
-        result = self._compiled(points)
+            return self._combine(self.output_norms(points))
+        result = self._compiled_values(points)
         for i in np.flatnonzero(np.isnan(result)):
             result[i] = self._exact(points[i]).value
         return result
@@ -187,36 +189,38 @@ class CompiledQuestion:
             result[i] = self._norms(points[i])
         return result
 
-    def _compiled(self, points: Array) -> Array:
+    def _compiled_values(self, points: Array) -> Array:
         """Index by compiled code alone; infinite where the topology makes it so, nan where inaccurate."""
         if not self.is_peak:
-            return self._combined(self._compiled_norms(points))
-        if not self.serves[0]:
+            return self._combine(self._compiled_norms(points))
+        if not self.supported_outputs[0]:
             return np.full(points.shape[0], np.inf)
-        largest = gain_kernels.peaks_of(points, self.descriptor, self.twofold)[1].max(axis=1)
+        largest = gain_kernels.peaks_of(points, self.descriptor, self.extended_descriptor)[1].max(axis=1)
         return np.where(np.isfinite(largest), largest * self.problem.weights[0], np.nan)
 
     def _compiled_norms(self, points: Array) -> Array:
-        result = np.full((points.shape[0], self.serves.size), np.inf)
-        if not np.all(self.serves):
-            if np.any(self.serves):
-                result[:, self.serves] = CompiledQuestion(self.problem.part(self.serves))._compiled_norms(points)
+        result = np.full((points.shape[0], self.supported_outputs.size), np.inf)
+        if not np.all(self.supported_outputs):
+            if np.any(self.supported_outputs):
+                result[:, self.supported_outputs] = CompiledQuestion(
+                    self.problem.part(self.supported_outputs)
+                )._compiled_norms(points)
             return result
         norms, _, doubts = self._with_gradients(points, np.empty(0))
         norms[~self._sure(points, norms, doubts)] = np.nan
         return norms
 
     def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients of their sum with `weights`, none without, and how doubtful norms are, by compiled code.
+        """Norms, gradients of their sum with `weights`, none without, and doubts of the norms, by compiled code.
 
-        Of several sources, squares are added up; what does not see one gets nothing of it.
+        Over several sources, squares are added up for the outputs that each one excites.
         """
-        if not self.apart and np.all(self.seen) and self._excess is None:
+        if not self.single_source_questions and np.all(self.reachable_outputs) and self._excess is None:
             norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
             return np.asarray(norms), np.asarray(gradients), np.asarray(doubts)
-        squares, doubts = np.zeros((points.shape[0], self.serves.size)), np.zeros(points.shape[0])
+        squares, doubts = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
-        for seen, one in self.sighted:
+        for seen, one in self.per_source_questions:
             own = np.ascontiguousarray(points[:, self._columns(one)])
             norms, behind, of_one = one._of_one_source(own)
             squares[:, seen] += norms**2
@@ -225,7 +229,7 @@ class CompiledQuestion:
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
-            for (seen, one), (norms, behind) in zip(self.sighted, found, strict=True):
+            for (seen, one), (norms, behind) in zip(self.per_source_questions, found, strict=True):
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
                 columns = self._columns(one)
                 own = np.ascontiguousarray(points[row, columns])
@@ -248,7 +252,7 @@ class CompiledQuestion:
         return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, doubts)
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
-        """Gradient at one point of the sum with `weights` of what `_of_one_source` gives there."""
+        """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
             return np.asarray(h2_kernels.norms(point[None], *self.arguments, weights)[1][0])
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
@@ -265,8 +269,8 @@ class CompiledQuestion:
         sure = np.isfinite(doubts)
         asked = np.flatnonzero(sure & (doubts > _DOUBTFUL) & (self.problem.highest_filter >= 2))
         if asked.size:
-            moved = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
-            again = self._with_gradients(moved, np.empty(0))[0].reshape(len(_MOVED), asked.size, -1)
+            shifted_value = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
+            again = self._with_gradients(shifted_value, np.empty(0))[0].reshape(len(_MOVED), asked.size, -1)
             with np.errstate(invalid="ignore"):
                 steady = np.all(np.abs(again - norms[asked]) <= _STEADY * norms[asked], axis=(0, 2))
             sure[asked] = steady & bool(points.shape[1])
@@ -278,19 +282,19 @@ class CompiledQuestion:
         The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
         without rounding.
         """
-        if not np.all(self.serves):
+        if not np.all(self.supported_outputs):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
         norms, gradients, doubts = self._with_slopes(point[None])
-        found = value = float(self._combined(norms)[0])
+        found = value = float(self._combine(norms)[0])
         if not self._sure(point[None], norms, doubts)[0]:
             value = self._exact_index(point)
-        if abs(found - value) <= _SAME * value and self._confirmed(point, value, gradients[0]):
+        if abs(found - value) <= _SAME * value and self._gradient_agrees(point, value, gradients[0]):
             return value, gradients[0]
-        slopes = _slopes(lambda place: float(self._combined(self._compiled_norms(place[None]))[0]), point, _FAR)
+        slopes = _slopes(lambda place: float(self._combine(self._compiled_norms(place[None]))[0]), point, _FAR)
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
 
-    def _combined(self, norms: Array) -> Array:
-        return self.problem.question.combined(norms, self.problem.weights)
+    def _combine(self, norms: Array) -> Array:
+        return self.problem.question.combine(norms, self.problem.weights)
 
     def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
         """Norms, gradient of the index, and doubts of the norms, at one point."""
@@ -303,16 +307,16 @@ class CompiledQuestion:
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
         """Arguments of compiled code other than the points; filters are part of the descriptor."""
-        return self.descriptor, self.twofold, self.arrivals
+        return self.descriptor, self.extended_descriptor, self.arrivals
 
     def _exact_index(self, point: Array) -> float:
-        return float(self._combined(self._exact_norms(point)))
+        return float(self._combine(self._exact_norms(point)))
 
-    def _confirmed(self, point: Array, value: float, gradient: Array) -> bool:
+    def _gradient_agrees(self, point: Array, value: float, gradient: Array) -> bool:
         """Whether the gradient agrees with a central difference in one direction; gradients have no error bound."""
         direction = np.cos(1.0 + np.arange(point.size))
         ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = self._combined(self._with_gradients(ends, np.empty(0))[0])
+        ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
         slope = (ahead - behind) / (2.0 * _ASTRIDE)
         return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
 
@@ -320,7 +324,9 @@ class CompiledQuestion:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
         if not self.is_peak:
             return None
-        omegas, gains = (found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor, self.twofold))
+        omegas, gains = (
+            found[0] for found in gain_kernels.peaks_of(point[None], self.descriptor, self.extended_descriptor)
+        )
         peaks = np.isfinite(omegas)
         if not peaks.any():  # equal poles have no partial fractions
             return np.array([peak.omega for peak in self._exact(point).peaks if np.isfinite(peak.omega)])
@@ -346,12 +352,15 @@ def kernels_of(question: IndexDefinition) -> tuple[Any, ...]:
 def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:
     """Central differences of the value by relative steps, those of the stencil with their weights."""
 
-    def moved(i: int, step: float) -> float:
+    def shifted_value(i: int, step: float) -> float:
         return value(point * (1.0 + step * (np.arange(point.size) == i)))
 
     with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
         return np.array(
-            [sum(w * (moved(i, h) - moved(i, -h)) for h, w in stencil) / point[i] for i in range(point.size)]
+            [
+                sum(w * (shifted_value(i, h) - shifted_value(i, -h)) for h, w in stencil) / point[i]
+                for i in range(point.size)
+            ]
         )
 
 
@@ -369,7 +378,9 @@ def evaluate_problems(
     for members in groups.values():
         if questions[members[0]].is_peak:
             compiled = CompiledQuestion(problems[members[0]])
-            result[:, members[0]] = compiled.known(rows_of(compiled.problem.descriptor, points, result.shape[0]))
+            result[:, members[0]] = compiled.evaluate_points(
+                rows_of(compiled.problem.descriptor, points, result.shape[0])
+            )
             continue
         asked = [problems[i].question for i in members]
         found = {o.output: (o, f) for one in asked for o, f in zip(one.outputs, one.filters, strict=True)}
@@ -380,7 +391,7 @@ def evaluate_problems(
         places = [o.output for o in outputs]
         for i in members:
             columns = [places.index(o.output) for o in questions[i].outputs]
-            result[:, i] = questions[i].combined(norms[:, columns], problems[i].weights)
+            result[:, i] = questions[i].combine(norms[:, columns], problems[i].weights)
     result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
 

@@ -15,10 +15,10 @@ from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError, Status, worst_of
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, Ties, estimate_of, estimates_of, is_index, objective_of
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combine_objectives
+from inerter.methods.composite_index import IndexLike, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.error_bounds import of_weighted_sum, of_worst
-from inerter.methods.method import Estimate, Method, asked_of
+from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Objective
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
@@ -49,7 +49,7 @@ class Condition:
 
     def __post_init__(self) -> None:
         if not is_number(self.share) or self.share <= 0.0:
-            raise PerformanceIndexError(f"The share of a condition is a positive number, got {self.share!r}.")
+            raise PerformanceIndexError(f"The share of a condition must be a positive number, got {self.share!r}.")
         if not isinstance(self.vehicle, Mapping):
             raise PerformanceIndexError(
                 f"A condition gives numbers of the vehicle by name, such as {{'sprung_mass': 240.0}}, "
@@ -62,7 +62,7 @@ class Condition:
                 f"got {self.road!r}."
             )
 
-    def of(self, index: Asked) -> Asked:
+    def of(self, index: IndexLike) -> IndexLike:
         """Index on the road of the condition; unchanged if the condition has none."""
         return _on_other_road(index, self.road) if isinstance(self.road, Road) or self.road else index
 
@@ -74,7 +74,7 @@ class Condition:
                 f"{name} = {value:g}" if is_number(value) else f"{name} = {value}"
                 for name, value in {**road, **self.vehicle}.items()
             )
-            or "as it is"
+            or "unchanged"
         )
 
 
@@ -105,11 +105,11 @@ class Conditions:
             raise PerformanceIndexError(f"Conditions are a list of Condition(...), at least one, got {conditions!r}.")
         object.__setattr__(self, "conditions", several)
 
-    def mean(self, index: Asked) -> OverConditions:
+    def mean(self, index: IndexLike) -> OverConditions:
         """The mean of the index over the conditions, by their shares."""
         return OverConditions(index, self, worst=False)
 
-    def worst(self, index: Asked) -> OverConditions:
+    def worst(self, index: IndexLike) -> OverConditions:
         """The largest value of the index in any of the conditions, whatever its share."""
         return OverConditions(index, self, worst=True)
 
@@ -124,7 +124,7 @@ class Conditions:
 class OverConditions(OfIndex):
     """An index taken over conditions: its mean by their shares, or the worst of them."""
 
-    index: Asked
+    index: IndexLike
     conditions: Conditions
     worst: bool
 
@@ -139,24 +139,24 @@ class OverConditions(OfIndex):
         """Title of the index, with "mean" or "worst" over conditions."""
         return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
 
-    def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, Asked]]:
-        """Vehicle and index in each condition; raises `DesignError` for a name that stands for nothing."""
+    def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, IndexLike]]:
+        """Vehicle and index in each condition; raises `DesignError` for an unknown name."""
         return [
             (replace_values(vehicle, one.vehicle, if_there=one.if_there), one.of(self.index))
             for one in self.conditions.conditions
         ]
 
-    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+    def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """Constituent indices in all conditions, each with its vehicle."""
-        return [asked for case, index in self.cases(vehicle) for asked in asked_of(case, index)]
+        return [asked for case, index in self.cases(vehicle) for asked in constituents_of(case, index)]
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[OverConditions]:
         """The index of each single output, taken in the same way; `split` takes an index apart."""
         return [dataclasses.replace(self, index=one) for one in split(self.index, vehicle)]
 
-    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+    def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values; what was left out anywhere is among the notes."""
-        found = mapped(partial(_estimated, method), self.cases(vehicle))
+        found = mapped(partial(_estimate_case, method), self.cases(vehicle))
         status = worst_of(one.status for one in found)
         notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
         if self.worst:
@@ -166,7 +166,7 @@ class OverConditions(OfIndex):
             return dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
         return _mean(found, self.conditions.shares, status, notes)
 
-    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+    def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values, nan where one is not ok."""
         columns = []
         for case, index in self.cases(vehicle):
@@ -184,10 +184,10 @@ class OverConditions(OfIndex):
             own = tuple(case.free_values())
             follow = None if own == names else Ties(names, tuple(Tied((name,)) for name in own))
             parts.append(ObjectivePart(objective_of(case, index, method), follow, 1.0 if self.worst else share))
-        return combined(parts, worst=self.worst)
+        return combine_objectives(parts, worst=self.worst)
 
 
-def _estimated(method: Method, case: tuple[Vehicle, Asked]) -> Estimate:
+def _estimate_case(method: Method, case: tuple[Vehicle, IndexLike]) -> Estimate:
     return estimate_of(*case, method)
 
 

@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind
 from inerter.indices.question import IndexDefinition
 from inerter.kernels import harmonic as kernels
-from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly
-from inerter.methods.error_bounds import checked
+from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly_represented
+from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
 from inerter.norms.hinf import GainPeak
-from inerter.systems.arrivals import InputPath, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, describe
-from inerter.systems.filtered import filtered
+from inerter.systems.input_paths import InputPath, apply_excitation, inputs_of
+from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import force_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism
 
@@ -90,7 +90,7 @@ class HarmonicBalance:
         for row, limit in zip(*self._rows(points), strict=True):
             yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
 
-    def known(self, points: Array, trusted: bool = True) -> Array:
+    def evaluate_points(self, points: Array, trusted: bool = True) -> Array:
         """The index at each row of `points`; nan where it could not be found, or is not to be `trusted`."""
         result = np.full(points.shape[0], np.nan)
         for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
@@ -106,7 +106,7 @@ class HarmonicBalance:
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, accurate or not; infinite where unknown."""
-        known = self.known(points, trusted=False)
+        known = self.evaluate_points(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -147,15 +147,15 @@ class HarmonicBalance:
         bound = self._off_by(np.zeros(0), omegas, gains)
         status = OK
         if not bound <= PROMISE:
-            status = poorly("friction as large as the forces beside it", bound)
+            status = poorly_represented("friction as large as the forces in parallel with it", bound)
         if not fine:
-            status = Status(StatusKind.INACCURATE, "the frictions did not settle at every frequency")
+            status = Status(StatusKind.INACCURATE, "harmonic balance not converged at every frequency")
         if not np.isfinite(peaks[0].gain):
-            status = Status(StatusKind.MARGINAL, "a motion that nothing holds: the gain grows without bound")
+            status = Status(StatusKind.MARGINAL, "rigid-body mode without stiffness: unbounded gain")
         words = [f"{said} by its describing function" for said in self.parts.frictions]
         result = replace(result, value=peaks[0].gain, status=status, notes=(*result.notes, *words))
         own = ErrorSource("one harmonic of friction", bound), ErrorSource("search for the peak", _SEARCH)
-        return checked(result, own, PROMISE + _SEARCH)
+        return with_error_sources(result, own, PROMISE + _SEARCH)
 
 
 def harmonic_balance(mechanism: Mechanism, question: IndexDefinition) -> HarmonicBalance:
@@ -177,7 +177,9 @@ def harmonic_balance(mechanism: Mechanism, question: IndexDefinition) -> Harmoni
         (question.outputs[0].output, *map(velocity_of, parts.dampers)),
     )
     filters = (*question.filters, *(None for _ in parts.dampers))
-    return HarmonicBalance(question, filtered(fed(descriptor, (*arrivals, *beside)), filters), parts)
+    return HarmonicBalance(
+        question, with_output_filters(apply_excitation(descriptor, (*arrivals, *beside)), filters), parts
+    )
 
 
 def _slowest(omegas: Array) -> float:

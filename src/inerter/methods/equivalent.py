@@ -22,16 +22,16 @@ from inerter.indices.question import IndexDefinition
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import LinearRole, StatisticalRole
 from inerter.networks.transform import map_elements
-from inerter.systems.arrivals import InputPath, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
+from inerter.systems.input_paths import InputPath, apply_excitation, inputs_of
 from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
 GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
 PROMISE = 0.03  # relative error of a value that is ok, what stands in for its excitation apart
-POORLY = "is poorly represented by one damper: the value may be off by more than 3 %"
+POORLY = "is poorly represented by one damper: the error may exceed 3 %"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
 
 
@@ -74,19 +74,20 @@ class Equivalent:
         idle = ", ".join(name for name in self.design if name not in seen)
         if idle:
             raise DesignError(
-                f"The free value of {idle} has no effect: its element cannot move beside a closed gap, or carries "
+                f"The free value of {idle} has no effect: its element cannot move in parallel with a closed gap, or "
+                "carries "
                 f"no force. Fix it, or leave the element out."
             )
 
 
-def poorly(what: str, bound: float) -> Status:
+def poorly_represented(what: str, bound: float) -> Status:
     """Status inaccurate because of `what`, with the error bound if below 1."""
     most = f", by {100.0 * bound:.2g} % at most" if bound < 1.0 else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 
 def check_damped(mechanism: Mechanism) -> None:
-    """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with play."""
+    """Raises `PerformanceIndexError` for what switches and is no dry friction, such as a gap with backlash."""
     for mount in switching(mechanism).mounts():
         for element in mount.network.elements():
             if element.acts and not element.is_damped:
@@ -106,7 +107,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
     for name in names:
         if name in told:
             raise PerformanceIndexError(
-                f"Statistical linearisation does not give {name!r}: it puts a damper in the place of the friction. "
+                f"Statistical linearisation does not give {name!r}: it replaces the friction by a damper. "
                 f"Use expected-value or approximate-linear, which simulate it."
             )
 
@@ -129,8 +130,8 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
     found: dict[str, tuple[str, Element]] = {}
 
-    def changed(mount: str, network: Network) -> Network:
-        def damped(element: Element) -> Network:
+    def replace_frictions(mount: str, network: Network) -> Network:
+        def to_damper(element: Element) -> Network:
             if not element.is_damped:
                 return element
             name = f"equivalent_damper_{len(found) + 1}"
@@ -143,12 +144,12 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
                 return Gap(0.0, name)
             return Damper(Free(1e-3 * scale, 1e3 * scale, name), name)
 
-        return map_elements(network, damped)
+        return map_elements(network, to_damper)
 
     other = replace(
         mechanism,
-        struts=tuple(replace(s, network=changed(s.name, s.network)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=changed(t.name, t.network)) for t in mechanism.tyres),
+        struts=tuple(replace(s, network=replace_frictions(s.name, s.network)) for s in mechanism.struts),
+        tyres=tuple(replace(t, network=replace_frictions(t.name, t.network)) for t in mechanism.tyres),
     )
     moving = {branch.label for branch in linear_graph(other).branches}
     names = tuple(name for name in found if name in moving)
@@ -171,7 +172,7 @@ def slipping_freely(mechanism: Mechanism, question: IndexDefinition) -> frozense
 
     With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
     """
-    driven = switching(question.drive.driven(mechanism))
+    driven = switching(question.drive.excited_mechanism(mechanism))
     arrivals = question.arrivals(driven)
     if not any(element.is_damped for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
         return frozenset()
@@ -179,7 +180,9 @@ def slipping_freely(mechanism: Mechanism, question: IndexDefinition) -> frozense
     while True:
         parts = equivalent(driven, found)
         velocities = [velocity_of(name) for name in parts.dampers]
-        reached = _reached_directly(fed(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals))
+        reached = _reached_directly(
+            apply_excitation(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals)
+        )
         if not reached:
             return found
         found |= {parts.dampers[i] for i in reached}

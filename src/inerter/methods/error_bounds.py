@@ -16,7 +16,7 @@ ROUNDING = "rounding"
 STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
 
-def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
+def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
     """Estimate with a method's `own` error sources before those of approximated excitations, which it already has.
 
     Inaccurate where its own exceed `promise`, or the others `STAND_INS`. A value that is infinite is so exactly, and
@@ -31,10 +31,10 @@ def checked(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> E
         bound = sum(source.bound for source in several)
         if result.status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
-            message = f"the value may be off by {bound:.1e} of itself, more than {most:g}, mostly by {largest.name}"
+            message = f"relative error up to {bound:.1e}, more than {most:g}, mostly from {largest.name}"
             if math.isnan(bound):
                 unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
-                message = f"how much the value may be off by {unknown} is not known"
+                message = f"unknown error from {unknown}"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
     return result
 

@@ -16,7 +16,7 @@ from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, parts_of, tabulate
 from inerter.simulation.observe import sampled_input
-from inerter.simulation.steady import repeating
+from inerter.simulation.periodic_steady_state import repeating
 
 Array = NDArray[np.float64]
 _COARSEST = 5e-4  # [s] longest step for an input without steps of its own
@@ -112,7 +112,7 @@ Excitation = MultisineExcitation | NoiseExcitation
 
 
 @dataclass(frozen=True)
-class Excited:
+class ExcitedInputs:
     """An excitation of some inputs of a mechanism, each with its delay."""
 
     excitation: Excitation
@@ -137,7 +137,7 @@ class Excited:
     def realisation(self, seed: int) -> tuple[InputTable, Array]:
         """Input table over one period of a realisation, and its `power`."""
         small = self.excitation.samples * len(self.delays) <= _SMALL
-        return _kept(self, seed) if small else _laid_out(self, seed)
+        return _kept(self, seed) if small else _tabulate_realisation(self, seed)
 
     def power(self, samples: Array) -> Array:
         """Squared sizes of the excited harmonics in the samples of a period, both ends included."""
@@ -145,7 +145,7 @@ class Excited:
         return np.asarray(np.abs(spectrum[1 : self.excitation.harmonics + 1]) ** 2)
 
 
-def _laid_out(drive: Excited, seed: int) -> tuple[InputTable, Array]:
+def _tabulate_realisation(drive: ExcitedInputs, seed: int) -> tuple[InputTable, Array]:
     signals, period = drive.signals(seed), drive.excitation.period
     delays = [delay or 0.0 for delay in drive.delays]
     interval = period / drive.excitation.samples
@@ -155,7 +155,7 @@ def _laid_out(drive: Excited, seed: int) -> tuple[InputTable, Array]:
     return (repeating(table) if drive.excitation.is_held else table), power
 
 
-_kept = lru_cache(maxsize=32)(_laid_out)
+_kept = lru_cache(maxsize=32)(_tabulate_realisation)
 
 
 def _check_rms(rms: object) -> None:

@@ -14,15 +14,22 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, IndexDefinition
-from inerter.methods.error_bounds import checked
-from inerter.methods.forced import Forced, coarse_maxima, frequency_grid, local_maxima
-from inerter.methods.linear import CONVENTIONS, Conventions, LinearProblem, check_conventions, linear_problem, under
+from inerter.methods.error_bounds import with_error_sources
+from inerter.methods.harmonic_response import ForcedResponse, coarse_maxima, frequency_grid, local_maxima
+from inerter.methods.linear import (
+    CONVENTIONS,
+    Conventions,
+    LinearProblem,
+    check_conventions,
+    linear_problem,
+    with_convention_filters,
+)
 from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
-from inerter.methods.on_roads import PROMISE, mean_on_roads, on_roads
+from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import drive, realisation_seeds
-from inerter.methods.sampled import SampledObjective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import middle
 from inerter.simulation.event_driven import KERNELS
@@ -39,7 +46,7 @@ _MORE = 400  # roads on which the first-order change is averaged, which is quick
 
 @dataclass(frozen=True)
 class ExpectedValue:
-    """What the design does as it is, friction and gaps included: on random roads, or under all sines.
+    """Simulation of the nonlinear design, with friction and gaps: on random roads, or under sinusoidal forces.
 
     Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the
     design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the roots of
@@ -82,7 +89,7 @@ class ExpectedValue:
     period: int | None = None
     name = "expected-value"
     description = (
-        "means over simulations of the design as it is, with friction, gaps and elasticity, on random roads; for a "
+        "means over simulations of the nonlinear design, with friction, gaps and elasticity, on random roads; for a "
         "peak gain the largest response to a sinusoidal force"
     )
     brief = "simulation"
@@ -134,10 +141,10 @@ class ExpectedValue:
         if self.relative_error is not None:
             halfway = {name: middle(free) for name, free in vehicle.free_values().items()}
             roads = self.estimate(vehicle.with_values(halfway), index).realisations
-            fixed = self.fixed(max(roads, 2))
+            fixed = self.with_realisations(max(roads, 2))
         return SampledObjective(fixed.estimate, vehicle, index)
 
-    def fixed(self, realisations: int, period: int | None = None) -> ExpectedValue:
+    def with_realisations(self, realisations: int, period: int | None = None) -> ExpectedValue:
         """Copy of the method with a fixed number of roads, and with `period` [s] as their length if given."""
         return replace(self, realisations=realisations, relative_error=None, period=period or self.period)
 
@@ -147,8 +154,8 @@ class ExpectedValue:
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = under(conventions, mechanism, index.question(mechanism))
-        system = piecewise(question.drive.driven(mechanism))
+        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
+        system = piecewise(question.drive.excited_mechanism(mechanism))
         if question.is_peak:
             return None
         if not is_nonlinear(system, question):
@@ -161,15 +168,15 @@ class ExpectedValue:
         return changes[:count], changes[count:]
 
     def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
-        """The compiled code of simulations, and of the methods that tell where to look."""
+        """Compiled functions of simulations, and of the methods that locate peaks and optima."""
         quick = StatisticalLinearisation().kernels(question, search=search)
         return (*quick, *KERNELS) if search or question.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = under(conventions, mechanism, index.question(mechanism))
+        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
         linear = _linear(vehicle, question, conventions)
-        system = piecewise(question.drive.driven(mechanism))
+        system = piecewise(question.drive.excited_mechanism(mechanism))
         if not _is_held(system, question, conventions) and not is_nonlinear(system, question):
             assert linear is not None
             return replace(linear.estimate({}), standard_error=0.0)
@@ -190,12 +197,12 @@ class ExpectedValue:
     ) -> Estimate:
         if question.amplitude is None:
             raise PerformanceIndexError(
-                "What a design with friction or gaps carries depends on the size of the force. Give its amplitude, "
-                "such as 1000 N."
+                "The peak gain of a design with friction or gaps depends on the force amplitude. Give it, such as 1000 "
+                "N."
             )
         (output,) = question.outputs
         (arrival,) = question.arrivals(system.mechanism)
-        forced = Forced(system, arrival, output.output, question.amplitude, *question.filters)
+        forced = ForcedResponse(system, arrival, output.output, question.amplitude, *question.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})
@@ -209,7 +216,7 @@ class ExpectedValue:
         status = worst_of(one.status for one in summits)
         value = np.nan if status.kind is StatusKind.FAILED else weighted[0].gain
         estimate = Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
-        return checked(estimate, summits[0].errors, PROMISE)
+        return with_error_sources(estimate, summits[0].errors, PROMISE)
 
 
 def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
@@ -245,4 +252,5 @@ def _linear(vehicle: Vehicle, question: IndexDefinition, conventions: Convention
 
 def _check_whole(what: str, value: object, least: int) -> None:
     if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        raise PerformanceIndexError(f"{what} is a whole number from {least} on, got {value!r}.")
+        expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
+        raise PerformanceIndexError(f"{what} must be {expected}, got {value!r}.")

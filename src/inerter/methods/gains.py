@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.methods.counterpart import Counterpart, memory
-from inerter.methods.excitation import Excited
-from inerter.methods.steady_squares import jump_scatter, share_of
+from inerter.methods.equivalent_linear import EquivalentLinearModel, remaining_share
+from inerter.methods.excitation import ExcitedInputs
+from inerter.methods.steady_squares import jump_scatter, relative_bound
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
 from inerter.simulation.inputs import check_holds
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.steady import recorded_period
+from inerter.simulation.periodic_steady_state import recorded_period
 from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 
@@ -29,7 +29,7 @@ _REPEATS = 1e-4  # change of the state over a period, relative to its size, that
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """The linear design that a motion resembles, for one question."""
+    """Equivalent linear model of a simulated motion, for one index definition."""
 
     system: LinearSystem
     norms: Array  # of its outputs
@@ -43,8 +43,9 @@ class LinearModel:
         return np.asarray(np.abs(frequency_response(self.system, omega)[:, :, 0].T) ** 2)
 
     def unseen(self, gains: Array, omega: Array) -> float:
-        """Share of a mean square that may hide between harmonics at which squared `gains` (outputs, harmonics) are
-        known: what they miss, so far as the motion there is not this model's.
+        """Share of a mean square between the harmonics of the squared `gains` (outputs, harmonics).
+
+        It is the share that harmonics may miss, as far as the motion differs from this model's.
         """
         if self.missed <= _UNSEEN:
             return self.missed
@@ -53,13 +54,13 @@ class LinearModel:
         return float(self.missed * min(misfit + self.unlike, 1.0))
 
 
-def linear_model(linear: Counterpart, speeds: Array, period: float) -> LinearModel:
+def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) -> LinearModel:
     """The model for a motion with these r.m.s. velocities across the frictions that repeats after `period` [s]."""
     system = linear.system(speeds)
     whole = h2(system, linear.problem.pade_order)
     if not whole.status.ok:
         return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, 0j)
-    left, pole = memory(system, whole.outputs, period)
+    left, pole = remaining_share(system, whole.outputs, period)
     unlike = linear.unlike(speeds, whole.outputs) if 2.0 * left > _UNSEEN else 0.0
     return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, pole)
 
@@ -69,7 +70,7 @@ class Runs:
     """Power spectra of some outputs of a design, with realisations simulated on demand."""
 
     system: PiecewiseSystem
-    drive: Excited
+    drive: ExcitedInputs
     outputs: tuple[str, ...]
     frictions: tuple[str, ...]  # velocities across them
     seed: int
@@ -95,7 +96,7 @@ class Runs:
         """R.m.s. velocities across the frictions so far [m/s]."""
         return np.asarray(np.sqrt(np.mean(self.powers, axis=0)))
 
-    def missed(self, places: Sequence[int], factor: Array) -> float:
+    def sampling_error(self, places: Sequence[int], factor: Array) -> float:
         """Relative error from sampling of r.m.s. values of squared gains times `factor` (outputs, harmonics).
 
         That of the worst realisation: what is folded onto low harmonics adds to all of them.
@@ -106,7 +107,7 @@ class Runs:
             lines = 2.0 * squares[list(places)] / samples**2
             with np.errstate(divide="ignore", invalid="ignore"):
                 sizes = (lines * passed).sum(axis=1) / np.sqrt((lines * passed**2).sum(axis=1))
-            shares.append(share_of(scatter[list(places)], sizes))
+            shares.append(relative_bound(scatter[list(places)], sizes))
         return float(np.max(shares, initial=0.0))
 
     def _add(self, number: int) -> None:
@@ -122,8 +123,8 @@ class Runs:
         if mismatch > _REPEATS:
             self.warning = Status(
                 StatusKind.INACCURATE,
-                f"in realisation {number + 1} the state still changes by {mismatch:.1e} of its size over a period; "
-                f"take a longer one",
+                f"periodic steady state not reached in realisation {number + 1}: relative change of state per period "
+                f"{mismatch:.1e}; use a longer period",
             )
         trajectory = trajectory_of(run, None, "")
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))
@@ -150,9 +151,9 @@ def largest_gain(
         linear = 0.0 if known is None else known.squares(at)[0]
         return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
 
-    peaks = [_refined(between, omega, i) for i in _summits(total, window.size)]
+    peaks = [_refine_maximum(between, omega, i) for i in _summits(total, window.size)]
     if known is not None:  # whose gain is known below the lowest harmonic too
-        peaks.append(_refined(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
+        peaks.append(_refine_maximum(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
     found = sorted(peaks, key=lambda peak: -peak.gain)
     best = found[0]
     deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
@@ -165,7 +166,7 @@ def _summits(values: Array, reach: int) -> list[int]:
     return [int(i) for i in high if values[i] >= values[max(i - reach, 0) : i + reach + 1].max()]
 
 
-def _refined(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
+def _refine_maximum(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
     """The maximum between the neighbours of a harmonic."""
     at = np.linspace(omega[max(i - 1, 0)], omega[min(i + 1, omega.size - 1)], 129)
     values = squares(at)

@@ -18,11 +18,19 @@ from numpy.typing import NDArray
 from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
 from inerter.indices.question import IndexDefinition
 from inerter.methods.compiled_norm import CompiledQuestion
-from inerter.methods.equivalent import GAUSSIAN, PROMISE, STIFFEST, Equivalent, equivalent, poorly, slipping_freely
-from inerter.methods.error_bounds import checked
+from inerter.methods.equivalent import (
+    GAUSSIAN,
+    PROMISE,
+    STIFFEST,
+    Equivalent,
+    equivalent,
+    poorly_represented,
+    slipping_freely,
+)
+from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
-from inerter.methods.note import Note
+from inerter.methods.notes import Note
 from inerter.systems.outputs import velocity_of
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
@@ -176,7 +184,7 @@ class Pattern:
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class DamperSolution:
     """Some designs that share a pattern, and their dampers there.
 
     `unlike` and `share` (designs, frictions) are those of all frictions of the mechanism, those that are links in the
@@ -229,7 +237,7 @@ class GaussianClosure:
         """Raises `DesignError` if a free value has no effect."""
         self.free.parts.check_idle(self.free.index.problem.descriptor)
 
-    def solve(self, points: Array) -> list[Solved]:
+    def solve(self, points: Array) -> list[DamperSolution]:
         """The dampers of every row of `points`, by which frictions stick."""
         start = np.full((points.shape[0], len(self.free.parts.dampers)), self.free.parts.scale)
         return self._solve(points, np.arange(points.shape[0]), start, frozenset(), np.zeros((2, *start.shape)))
@@ -241,13 +249,13 @@ class GaussianClosure:
         start: Array,
         locked: frozenset[str],
         off_by: Array,
-    ) -> list[Solved]:
+    ) -> list[DamperSolution]:
         pattern = self.pattern(locked)
         assert pattern is not None
         found = pattern.dampers(points[designs], start)
         off_by[:, designs[:, None], self._numbers(pattern)] = found.unlike, found.share
         kinds, kind_of = np.unique(found.sticks, axis=0, return_inverse=True)
-        solved: list[Solved] = []
+        solved: list[DamperSolution] = []
         for number, sticks in enumerate(kinds):
             here = np.flatnonzero(kind_of.ravel() == number)
             part = found.of(here)
@@ -261,14 +269,14 @@ class GaussianClosure:
                 too_stiff = np.any(part.sticks & (part.damping > STIFFEST * pattern.parts.scale), axis=1)
                 part = pattern.dampers(points[designs[here]], part.damping, part.sticks)
                 part.error[too_stiff] = np.nan
-            solved.append(Solved(pattern, designs[here], part, *off_by[:, designs[here]]))
+            solved.append(DamperSolution(pattern, designs[here], part, *off_by[:, designs[here]]))
         return solved
 
     def _numbers(self, pattern: Pattern) -> list[int]:
         """Numbers, among all frictions, of those that slip in a pattern."""
         return [self.free.parts.dampers.index(name) for name in pattern.parts.dampers]
 
-    def off_by(self, points: Array, solved: Solved, promise: float = PROMISE) -> Array:
+    def off_by(self, points: Array, solved: DamperSolution, promise: float = PROMISE) -> Array:
         """Relative error of the index (designs,) from the linearisation: sum over all frictions.
 
         Where that is more than `promise`, a friction counts only by a share of the range that the index has without it,
@@ -287,7 +295,7 @@ class GaussianClosure:
             for damper in free.parts.scale * np.geomspace(1.0 / _FIRM, _FIRM, _BETWEEN):
                 damping_there = damping[here].copy()
                 damping_there[:, i] = damper
-                found.append(free.index.known(free.rows(points[designs[here]], damping_there)))
+                found.append(free.index.evaluate_points(free.rows(points[designs[here]], damping_there)))
             with np.errstate(invalid="ignore"):
                 spread = np.ptp(found, axis=0) / np.min(found, axis=0)
             part = solved.share[here, i] * np.where(np.isnan(spread), np.inf, spread)
@@ -296,10 +304,10 @@ class GaussianClosure:
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, accurate or not; infinite where unknown."""
-        known = self.known(points, trusted=False)
+        known = self.evaluate_points(points, trusted=False)
         return np.where(np.isnan(known), np.inf, known)
 
-    def known(self, points: Array, trusted: bool = True) -> Array:
+    def evaluate_points(self, points: Array, trusted: bool = True) -> Array:
         """Index at each row of `points`; nan where it is not available, or not accurate if `trusted`."""
         result = np.full(points.shape[0], np.nan)
         for solved in self.solve(points):
@@ -307,7 +315,7 @@ class GaussianClosure:
             if trusted:
                 good &= self.off_by(points, solved) <= PROMISE
             rows = solved.pattern.rows(points[solved.designs[good]], solved.dampers.damping[good])
-            result[solved.designs[good]] = solved.pattern.index.known(rows)
+            result[solved.designs[good]] = solved.pattern.index.evaluate_points(rows)
         return result
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
@@ -341,7 +349,7 @@ class GaussianClosure:
         (solved,) = self.solve(np.zeros((1, 0)))
         parts, dampers, problem = solved.pattern.parts, solved.dampers, solved.pattern.index.problem
         if np.isnan(dampers.error[0]):
-            message = "the r.m.s. velocity across a friction could not be computed: rounding hides it"
+            message = "the r.m.s. velocity across a friction could not be computed: lost to rounding"
             return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
         result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:
@@ -349,8 +357,10 @@ class GaussianClosure:
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
         bound = float(self.off_by(np.zeros((1, 0)), solved, promise=0.0)[0])
         if result.status.ok and not bound <= PROMISE:
-            result = replace(result, status=poorly(self._stick(solved.unlike[0]), bound))
-        result = checked(result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf)
+            result = replace(result, status=poorly_represented(self._stick(solved.unlike[0]), bound))
+        result = with_error_sources(
+            result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf
+        )
         told = [Note(f"{words} sticks") for words in parts.locked]
         told += [
             Note(f"{words} sticks") if sticks else Note(f"{words} taken as a damper of ", float(c), " N s/m")

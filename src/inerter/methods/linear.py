@@ -13,19 +13,19 @@ from numpy.typing import NDArray
 from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import IndexDefinition
-from inerter.methods.error_bounds import ROUNDING, checked
-from inerter.methods.measured import road_errors
+from inerter.methods.error_bounds import ROUNDING, with_error_sources
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
-from inerter.methods.sides import on_one_side
+from inerter.methods.symmetric_half import on_one_side
 from inerter.norms.excess import excess_squares
 from inerter.norms.h2 import H2, h2
 from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
-from inerter.systems.arrivals import Column, columns_of, excesses_of, fed, inputs_of
 from inerter.systems.descriptor import Descriptor, close, describe
-from inerter.systems.filtered import filtered
 from inerter.systems.filters import Filter, high_pass
+from inerter.systems.input_paths import Column, apply_excitation, columns_of, excesses_of, inputs_of
 from inerter.systems.linear import LinearSystem
+from inerter.systems.output_filters import with_output_filters
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ CONVENTIONS = {
 def check_conventions(name: object) -> None:
     """Raises `PerformanceIndexError` unless there are conventions of this name."""
     if not isinstance(name, str) or name not in CONVENTIONS:
-        raise PerformanceIndexError(f"There are no conventions named {name!r} (known: {', '.join(CONVENTIONS)}).")
+        raise PerformanceIndexError(f"Unknown conventions {name!r}; available: {', '.join(CONVENTIONS)}.")
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +88,7 @@ class LinearProblem:
     @cached_property
     def descriptor(self) -> Descriptor:
         """Descriptor with the filters on its outputs."""
-        return filtered(self.unfiltered, self.question.filters)
+        return with_output_filters(self.unfiltered, self.question.filters)
 
     @cached_property
     def weights(self) -> Array:
@@ -132,7 +132,7 @@ class LinearProblem:
         half = on_one_side(mechanism, [a for a in self.question.arrivals(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
-            return replace(self, unfiltered=fed(described, half[1]), arrivals=tuple(columns_of(half[1])))
+            return replace(self, unfiltered=apply_excitation(described, half[1]), arrivals=tuple(columns_of(half[1])))
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(
@@ -149,19 +149,19 @@ class LinearProblem:
         """The closed descriptor with sources and delays."""
         return replace(closed, sources=self.sources, delays=self.delays)
 
-    def closed(self, values: Mapping[str, float]) -> LinearSystem:
+    def system_at(self, values: Mapping[str, float]) -> LinearSystem:
         """The system for these free values; others that have no effect here may be among them."""
         d = self.descriptor
         return self.system(close(d, {name: value for name, value in values.items() if name in d.free}))
 
     def estimate(self, values: Mapping[str, float]) -> Estimate:
         """The value of the index for these free values."""
-        system = self.closed(values)
+        system = self.system_at(values)
         if self.question.is_peak:
             return self._peak_gain(system)
         norms, unsure = self.norms(system, values)
         outputs = norms.outputs
-        value = float(self.question.combined(outputs, self.weights))
+        value = float(self.question.combine(outputs, self.weights))
         found = Estimate(value, self.question.unit, norms.status, notes=system.notes)
         more = road_errors(self.question, system, self.pade_order, outputs)
         return self._with_errors(found, norms.error, more, unsure)
@@ -175,10 +175,10 @@ class LinearProblem:
         if not self.excesses:
             return h2(system, self.pade_order), 0.0
         several = [self.of_source(source) for source in dict.fromkeys(self.sources)]
-        systems = [one.closed(values) for one in several]
+        systems = [one.system_at(values) for one in several]
         found = [h2(part, self.pade_order) for part in systems]
         pairs = zip(several, systems, found, strict=True)
-        corrected = [one.corrected(part, norms.outputs) for one, part, norms in pairs]
+        corrected = [one.correct_norms(part, norms.outputs) for one, part, norms in pairs]
         outputs = np.linalg.norm([norms for norms, _ in corrected], axis=0)
         status, error = worst_of([one.status for one in found]), max(one.error for one in found)
         unsure = sum(squares for _, squares in corrected) / np.maximum(outputs**2, 1e-300)
@@ -186,7 +186,7 @@ class LinearProblem:
             np.max(0.5 * unsure, where=np.isfinite(outputs), initial=0.0)
         )
 
-    def corrected(self, system: LinearSystem, norms: Array) -> tuple[Array, Array]:
+    def correct_norms(self, system: LinearSystem, norms: Array) -> tuple[Array, Array]:
         """The norms of the outputs of `system` for the densities that are meant, and what their squares may be off by.
 
         As they are where the filters before the inputs are exact, where they are zero and where they are infinite.
@@ -214,7 +214,7 @@ class LinearProblem:
         if self.excesses:
             own = (*own, ErrorSource(DENSITY, integral))
         promise = CORRECTED if self.excesses else PROMISE
-        return checked(replace(found, error_sources=(*stand_ins, *more)), own, promise)
+        return with_error_sources(replace(found, error_sources=(*stand_ins, *more)), own, promise)
 
 
 def linear_problem(mechanism: Mechanism, question: IndexDefinition, conventions: Conventions) -> LinearProblem:
@@ -223,24 +223,33 @@ def linear_problem(mechanism: Mechanism, question: IndexDefinition, conventions:
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
     check_peak_gain(question)
-    asked, driven = under(conventions, mechanism, question), question.drive.driven(mechanism)
+    asked, driven = (
+        with_convention_filters(conventions, mechanism, question),
+        question.drive.excited_mechanism(mechanism),
+    )
     arrivals = question.arrivals(driven)
     descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
     columns = tuple(columns_of(arrivals))
-    return LinearProblem(asked, fed(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals))
+    return LinearProblem(
+        asked, apply_excitation(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals)
+    )
 
 
 def check_peak_gain(question: IndexDefinition) -> None:
     """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
     if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
-        raise PerformanceIndexError("A peak gain goes from one force or motion to one output, without a random input.")
+        raise PerformanceIndexError(
+            "A peak gain requires one force or motion as input and one output, without a random input."
+        )
 
 
-def under(conventions: Conventions, mechanism: Mechanism, question: IndexDefinition) -> IndexDefinition:
+def with_convention_filters(
+    conventions: Conventions, mechanism: Mechanism, question: IndexDefinition
+) -> IndexDefinition:
     """Index definition with the filters of the conventions added to its filters."""
     if conventions.load_filter is None:
         return question
-    delays = [arrival.delay for arrival in question.arrivals(question.drive.driven(mechanism))]
+    delays = [arrival.delay for arrival in question.arrivals(question.drive.excited_mechanism(mechanism))]
     if np.ptp(delays) == 0.0:
         return question
     loads = {weighted.output for weighted in mechanism.measures.tyre_load}

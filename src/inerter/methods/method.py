@@ -16,11 +16,18 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
 from inerter.indices.question import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.asking import Asked, estimate_of, estimates_of, is_composed, is_index, without_tied_values
+from inerter.methods.composite_index import (
+    IndexLike,
+    estimate_of,
+    estimates_of,
+    is_composite,
+    is_index,
+    without_tied_values,
+)
 from inerter.methods.objective import Objective
 from inerter.norms.hinf import GainPeak
-from inerter.systems.arrivals import inputs_of
 from inerter.systems.graph import full_graph
+from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
@@ -60,16 +67,16 @@ class Estimate:
 
 
 @runtime_checkable
-class Averaging(Protocol):
+class AveragingMethod(Protocol):
     """A method whose value is a mean over random inputs."""
 
-    def fixed(self, realisations: int, period: int | None = None) -> Method:
+    def with_realisations(self, realisations: int, period: int | None = None) -> Method:
         """Copy of the method with a fixed number of random inputs, and with `period` [s] as their length if given."""
         ...
 
 
 @runtime_checkable
-class Controlled(Protocol):
+class MethodWithControls(Protocol):
     """Method with control variates for its samples."""
 
     def controls(self, vehicle: Vehicle, index: Index, count: int) -> tuple[Array, Array] | None:
@@ -78,7 +85,7 @@ class Controlled(Protocol):
 
 
 @runtime_checkable
-class Doubting(Protocol):
+class MethodWithExactFallback(Protocol):
     """Method that is much slower where double precision does not suffice."""
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, NDArray[np.float64]]) -> float:
@@ -87,7 +94,7 @@ class Doubting(Protocol):
 
 
 @runtime_checkable
-class Refusing(Protocol):
+class MethodWithChecks(Protocol):
     """Method that does not support some indices or elements, whatever the values."""
 
     def check(self, vehicle: Vehicle, index: Index) -> None:
@@ -96,7 +103,7 @@ class Refusing(Protocol):
 
 
 @runtime_checkable
-class Compiled(Protocol):
+class MethodWithKernels(Protocol):
     """A method that calls compiled code."""
 
     def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
@@ -159,7 +166,7 @@ class Method(Protocol):
         ...
 
 
-def evaluate(vehicle: Vehicle, index: Asked, method: Method, *, executor: Executor | None = None) -> Estimate:
+def evaluate(vehicle: Vehicle, index: IndexLike, method: Method, *, executor: Executor | None = None) -> Estimate:
     """Estimate of one index of one design by one method.
 
     An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) does what comes apart, such as random roads.
@@ -187,7 +194,7 @@ def evaluate(vehicle: Vehicle, index: Asked, method: Method, *, executor: Execut
 
 def evaluate_many(
     vehicle: Vehicle,
-    indices: Sequence[Asked] | Asked,
+    indices: Sequence[IndexLike] | IndexLike,
     values: Mapping[str, ArrayLike],
     method: Method,
     *,
@@ -212,27 +219,29 @@ def evaluate_many(
         _prepare(pool, vehicle, several, method)
         rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
         parts = np.array_split(rows, -(-len(rows) // _TOGETHER)) if len(rows) else [rows]
-        return np.concatenate(mapped(partial(_estimated, vehicle, several, tuple(points), method), parts))
+        return np.concatenate(mapped(partial(_estimate_rows, vehicle, several, tuple(points), method), parts))
 
 
-def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[Asked], method: Method) -> None:
+def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[IndexLike], method: Method) -> None:
     """Compile what an estimate calls where it will be called, before several processes would do so at once."""
-    if isinstance(method, Compiled):
-        questions = [i.question(v.mechanism()) for index in indices for v, i in asked_of(vehicle, index)]
+    if isinstance(method, MethodWithKernels):
+        questions = [i.question(v.mechanism()) for index in indices for v, i in constituents_of(vehicle, index)]
         prepare_on(pool, [k for question in questions for k in method.kernels(question, search=False)])
 
 
-def _estimated(vehicle: Vehicle, indices: Sequence[Asked], names: Sequence[str], method: Method, rows: Array) -> Array:
+def _estimate_rows(
+    vehicle: Vehicle, indices: Sequence[IndexLike], names: Sequence[str], method: Method, rows: Array
+) -> Array:
     return estimates_of(vehicle, indices, method, dict(zip(names, rows.T, strict=True)))
 
 
-def asked_of(vehicle: Vehicle, index: Asked) -> Sequence[tuple[Vehicle, Index]]:
+def constituents_of(vehicle: Vehicle, index: IndexLike) -> Sequence[tuple[Vehicle, Index]]:
     """Constituent indices of an index, each with its vehicle."""
-    return index.asks(vehicle) if is_composed(index) else [(vehicle, index)]
+    return index.constituents(vehicle) if is_composite(index) else [(vehicle, index)]
 
 
-def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
-    """Raises `DesignError` or `PerformanceIndexError` where an argument is not what its place asks for.
+def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
+    """Raises `DesignError` or `PerformanceIndexError` for an argument of the wrong kind.
 
     So it does for an index that names an input or output which the vehicle does not have.
     """
@@ -242,13 +251,13 @@ def check_request(vehicle: Vehicle, index: Asked, method: object) -> None:
     if isinstance(method, type) or not isinstance(method, Method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     loose = without_tied_values(vehicle)
-    for asked, one in asked_of(vehicle if loose is None else loose.vehicle, index):
+    for asked, one in constituents_of(vehicle if loose is None else loose.vehicle, index):
         mechanism = asked.mechanism()
         _check_names(mechanism, one.question(mechanism))
 
 
 def _check_names(mechanism: Mechanism, question: IndexDefinition) -> None:
-    driven = question.drive.driven(mechanism)
+    driven = question.drive.excited_mechanism(mechanism)
     check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
     unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]
     if unusual:  # finding all names takes longer than most norms

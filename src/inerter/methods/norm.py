@@ -72,8 +72,9 @@ class Norm:
         idle = [name for name in vehicle.free_values() if name not in problem.descriptor.free]
         if idle:
             raise DesignError(
-                f"The free value of {', '.join(idle)} has no effect in linear analysis, which leaves friction out, "
-                f"closes gaps and drops what carries no force then. Fix it, or choose a method that sees it."
+                f"The free value of {', '.join(idle)} has no effect in linear analysis, which neglects friction, "
+                "treats gaps as closed and drops elements without force. Fix it, or use a method that models its "
+                "element."
             )
         return CompiledQuestion(problem)
 

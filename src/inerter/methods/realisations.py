@@ -18,12 +18,12 @@ from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
-from inerter.simulation.start import initial_state
-from inerter.simulation.steady import FEW_PERIODS
+from inerter.simulation.periodic_steady_state import FEW_PERIODS
 from inerter.simulation.trajectory import PeriodicState
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ class Drive:
         own = seed if source == 0 else int(np.random.SeedSequence([seed, source]).generate_state(1, np.uint64)[0])
         return multisine(self.road, own, lowest=1.0 / self.period)
 
-    def moved(self, seed: int) -> list[Harmonics | None]:
+    def input_signals(self, seed: int) -> list[Harmonics | None]:
         """Inputs in one realisation: displacements of roads, and forces; None for an input at rest."""
         signals = {name: self.signal(seed, i) for i, name in enumerate(self.sources)}
         return [
@@ -95,7 +95,7 @@ def _one_road(reached: Sequence[Sequence[InputPath]], roads: int) -> bool:
 
 
 @dataclass(frozen=True)
-class Ran:
+class RoadRun:
     """Mean squares over one period of the steady state on one road."""
 
     power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
@@ -127,7 +127,7 @@ def table(way: Drive, seed: int) -> InputTable:
 
 def _table(way: Drive, seed: int) -> InputTable:
     if way.delays is None:
-        moved = way.moved(seed)
+        moved = way.input_signals(seed)
         return tabulate(moved, [0.0] * len(moved), way.signal(seed).period, STEP)
     signal, rest = way.signal(seed), len(way.reached) - way.roads
     road = signal if way.hold is None else signal.held(way.hold)
@@ -149,12 +149,12 @@ def check_drive(system: PiecewiseSystem, way: Drive) -> None:
 
 def run(
     system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
-) -> Ran:
+) -> RoadRun:
     """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
     inputs = table(way, seed)
     state = initial_state(system, inputs.value[0], "rest")
     most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
-    return Ran(*steady_squares(system, inputs, outputs, filters, state, most))
+    return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most))
 
 
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:

@@ -62,7 +62,7 @@ def brief_words_of(name: str) -> str:
     return str(getattr(_kind(name), "brief", name))
 
 
-def what_is_seen(name: str) -> NonlinearitySupport:
+def nonlinearities_of(name: str) -> NonlinearitySupport:
     """Nonlinearities that the method models."""
     return NonlinearitySupport(_kind(name).nonlinearity_support)
 
@@ -79,10 +79,10 @@ def without_roads(name: str, *, has_play: bool) -> str:
     return DEFAULT if is_blind(name) or has_play else StatisticalLinearisation.name
 
 
-def deciding(name: str, message: str) -> str:
+def decisive_method_clause(name: str, message: str) -> str:
     """Clause on the method that can decide an uncertain result, to follow the message of its status."""
-    others = [other for other in METHODS if what_is_seen(other) is NonlinearitySupport.BOTH]
-    if what_is_seen(name) is NonlinearitySupport.BOTH or not others or any(other in message for other in others):
+    others = [other for other in METHODS if nonlinearities_of(other) is NonlinearitySupport.BOTH]
+    if nonlinearities_of(name) is NonlinearitySupport.BOTH or not others or any(other in message for other in others):
         return ""
     return f"; {others[0]} simulates it, and can decide"
 
@@ -98,7 +98,7 @@ def with_gradients(conventions: str) -> tuple[Method, ...]:
     They are quick, and so the first look at a search of what is not.
     """
     names = [name for name in METHODS if getattr(_kind(name), "has_gradients", False)]
-    names.sort(key=lambda name: what_is_seen(name).value, reverse=True)
+    names.sort(key=lambda name: nonlinearities_of(name).value, reverse=True)
     return tuple(make_method(name, {"conventions": conventions}, {}) for name in names)
 
 

@@ -36,7 +36,7 @@ class StaticStiffness:
     unit = "N/m"
     response = "force per displacement at rest"
 
-    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+    def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """No question; raises `PerformanceIndexError` if nothing is mounted under the name."""
         self._network(vehicle.mechanism())
         return []
@@ -45,12 +45,12 @@ class StaticStiffness:
         """List of the index alone, as it has a single output."""
         return [self]
 
-    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+    def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values."""
         value = float(_Stiffness(self._network(vehicle.mechanism()), ()).values(np.zeros((1, 0)))[0])
         return Estimate(value, self.unit, error_sources=(ErrorSource(ROUNDING, _ROUNDING),))
 
-    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+    def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values."""
         network = self._network(vehicle.mechanism())
         rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
@@ -88,11 +88,11 @@ class _Stiffness:
 
     def values(self, points: Array) -> Array:
         """The stiffness at each row of `points`."""
-        return np.broadcast_to(self._told(points)[0], (points.shape[0],)).copy()
+        return np.broadcast_to(self._value_and_gradients(points)[0], (points.shape[0],)).copy()
 
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """The stiffness and its gradient at one point."""
-        value, gradient = self._told(point[None])
+        value, gradient = self._value_and_gradients(point[None])
         return float(np.broadcast_to(value, (1,))[0]), np.broadcast_to(gradient, (point.size, 1))[:, 0].copy()
 
     def active(self, point: Array) -> None:
@@ -102,7 +102,7 @@ class _Stiffness:
         """Not available: a static stiffness is one smooth function."""
         raise AssertionError("a static stiffness is one smooth function")
 
-    def _told(self, points: Array) -> tuple[Array, Array]:
+    def _value_and_gradients(self, points: Array) -> tuple[Array, Array]:
         left = linearise(self.network)
         if left.network is None:
             return np.array([np.inf if left.rigid else 0.0]), np.zeros((len(self.names), 1))

@@ -48,8 +48,9 @@ class StatisticalLinearisation:
     conventions: str = "exact"
     name = "statistical-linearisation"
     description = (
-        "norms of a linear model in which each friction is the damper that it resembles most under the motion that "
-        "results; for a peak gain at each frequency under a sinusoidal force"
+        "norms of a linear model in which an equivalent damper replaces each friction, for the motion that results; "
+        "for a "
+        "peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
     nonlinearity_support = NonlinearitySupport.FRICTION
@@ -62,7 +63,7 @@ class StatisticalLinearisation:
         Norm(self.conventions)  # refuses what it does not know
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
-        """The index of a vehicle without free values; `notes` tell what became of each friction."""
+        """The index of a vehicle without free values; `notes` state the treatment of each friction."""
         closure = self._closure(vehicle, index)
         return Norm(self.conventions).estimate(vehicle, index) if closure is None else closure.estimate()
 
@@ -93,7 +94,7 @@ class StatisticalLinearisation:
         if closure is None:
             return Norm(self.conventions).estimate_many(vehicle, [index], points)[:, 0]
         columns = [points[name] for name in vehicle.free_values()]
-        return closure.known(np.column_stack(columns) if columns else np.zeros((1, 0)))
+        return closure.evaluate_points(np.column_stack(columns) if columns else np.zeros((1, 0)))
 
     def _closure(self, vehicle: Vehicle, index: Index) -> GaussianClosure | HarmonicBalance | None:
         """The closure that serves the index; None if no friction acts."""

@@ -12,7 +12,7 @@ from inerter.errors import ErrorSource, Status
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.steady import FEW_PERIODS, mean_squares, settle
+from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
@@ -33,9 +33,9 @@ class Squares(NamedTuple):
     jumps: Array
 
 
-def unsettled(found: Sequence[PeriodicState], peaks: float) -> ErrorSource:
+def steady_state_error(found: Sequence[PeriodicState], peaks: float) -> ErrorSource:
     """Error source of a periodic steady state not fully reached; `peaks` scales it from r.m.s. values."""
-    return ErrorSource("periodic steady state", 3.0 * peaks * max((one.left for one in found), default=0.0))
+    return ErrorSource("periodic steady state", 3.0 * peaks * max((one.remaining_change for one in found), default=0.0))
 
 
 def steady_squares(
@@ -54,13 +54,13 @@ def steady_squares(
     if not any(filters):
         found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
-            return _none(len(outputs), integration.status, steady)
+            return _nan_squares(len(outputs), integration.status, steady)
         return Squares(found, integration.warning, steady, missed_by_samples(integration, outputs, np.sqrt(found)))
     integration, steady = settle(system, table, state, energy=False)
     integration.advance(table.time.size - 1)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
-        return _none(len(outputs), integration.status, steady)
+        return _nan_squares(len(outputs), integration.status, steady)
     count, period = trajectory.time.size - 1, float(table.time[-1] - table.time[0])
     omega = 2.0 * np.pi / period * np.arange(count // 2 + 1)
     lines = np.array([np.abs(np.fft.rfft(trajectory[name][:count])) ** 2 for name in outputs])
@@ -77,7 +77,7 @@ def steady_squares(
     return Squares(power, trajectory.status, steady, jumps)
 
 
-def _none(count: int, status: Status, steady: PeriodicState) -> Squares:
+def _nan_squares(count: int, status: Status, steady: PeriodicState) -> Squares:
     nothing = np.full(count, np.nan)
     return Squares(nothing, status, steady, nothing)
 
@@ -90,7 +90,7 @@ def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
     """
     system, count = integration.system, integration.count
     maps, states = integration.modes.maps[:count], integration.modes.state[:count]
-    rows = np.concatenate([maps[:, integration.seen, -1], maps[:, integration.eta, -1]], axis=1)
+    rows = np.concatenate([maps[:, integration.projected_state, -1], maps[:, integration.eta, -1]], axis=1)
     over = [output_rows(system, system.outputs[name]) for name in outputs]
     pushed = rows @ np.array([np.concatenate([on_x, on_eta]) for on_x, _, on_eta in over]).T
     sizes = np.zeros((states.shape[1], len(outputs)))
@@ -113,7 +113,7 @@ def missed_by_samples(integration: Integration, outputs: Sequence[str], sizes: A
 
     Of an output that passes through a filter, the size is the mean square over the r.m.s. value after a second one.
     """
-    return share_of(jump_scatter(integration, outputs), sizes)
+    return relative_bound(jump_scatter(integration, outputs), sizes)
 
 
 def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
@@ -129,13 +129,13 @@ def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
     return np.asarray(np.sqrt(ends @ jump_sizes(integration, outputs) ** 2 / 12.0) / steps)
 
 
-def together(shares: Sequence[Array]) -> float:
+def mean_bound(shares: Sequence[Array]) -> float:
     """The bound for means over realisations, whose jumps are independent, from that of each (outputs,)."""
     several = np.array(shares)
     return float(np.max(np.sqrt(np.sum(several**2, axis=0)) / len(several), initial=0.0)) if several.size else 0.0
 
 
-def share_of(scatter: Array, sizes: Array) -> Array:
+def relative_bound(scatter: Array, sizes: Array) -> Array:
     """The bound of the error by jumps that scatter so much, relative to r.m.s. values of these sizes."""
     share: Array = np.zeros_like(sizes)
     np.divide(_DEVIATIONS * scatter, sizes, out=share, where=(scatter > 0.0) & (sizes > 0.0))

@@ -1,1 +1,1 @@
-"""H2 and H-infinity norms and frequency responses of linear systems; they know matrices, never a car."""
+"""H2 and H-infinity norms and frequency responses of linear systems, from matrices alone."""

@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade_coefficients
-from inerter.norms.gain_squared import GainSquared
-from inerter.norms.mean_square import Transfer, UnknownError, lasting, mean_square
+from inerter.norms.mean_square import Transfer, UnknownError, axis_frequencies, mean_square
+from inerter.norms.squared_gain import SquaredGain
 from inerter.systems.linear import LinearSystem
-from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirrored, multiply
+from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirror, multiply
 
 Matrix = NDArray[np.float64]
 EXACT = 1e-12  # relative error of what is found here: digits in which results agree, and a few roundings
 
 
-def undamped(frequencies: Sequence[float]) -> Status:
+def undamped_status(frequencies: Sequence[float]) -> Status:
     """Status of an infinite norm due to undamped modes at these frequencies [rad/s]."""
     where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
-    return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {where} rad/s")
+    return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {where} rad/s")
 
 
 def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:
@@ -45,10 +45,10 @@ def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, St
             if response.is_direct:
                 direct.append(name)
             if frequencies:
-                status = undamped(frequencies)
+                status = undamped_status(frequencies)
     if direct and status.kind is not StatusKind.MARGINAL:
         names = ", ".join(dict.fromkeys(direct))
-        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+        status = Status(StatusKind.DIRECT_TERM, f"infinite variance: direct feedthrough from white noise to {names}")
     return np.sqrt(squares), status
 
 
@@ -65,14 +65,14 @@ def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Stat
         for row in functions.numerators
         for source in sources
     ]
-    response = Transfer(functions.denominator, tuple(entries), (0.0,) * len(entries)).reduced()
-    frequencies = lasting(response.denominator)
+    response = Transfer(functions.denominator, tuple(entries), (0.0,) * len(entries)).without_common_roots()
+    frequencies = axis_frequencies(response.denominator)
     if frequencies:
-        return [(frequency, math.inf) for frequency in frequencies], undamped(frequencies)
+        return [(frequency, math.inf) for frequency in frequencies], undamped_status(frequencies)
     if min(len(functions.numerators), len(sources)) > 1:
         return None
     try:
-        found = GainSquared.of(response).peaks()
+        found = SquaredGain.of(response).peaks()
     except UnknownError as error:
         return [(math.nan, math.nan)], Status(StatusKind.FAILED, str(error))
     return sorted(found, key=lambda peak: -peak[1]), OK
@@ -96,16 +96,18 @@ def _by_source(
         times = sorted(arrivals)
         numerators = [arrivals[time] for time in times]
         response = Transfer(denominator, tuple(numerators), tuple(times))
-        found.append((response if pade_order is None else _approximated(response, pade_order)).reduced())
+        found.append(
+            (response if pade_order is None else _with_pade_delays(response, pade_order)).without_common_roots()
+        )
     return [response for response in found if any(response.numerators)]
 
 
-def _approximated(response: Transfer, order: int) -> Transfer:
+def _with_pade_delays(response: Transfer, order: int) -> Transfer:
     """Transfer with Padé approximants of the delays between input paths, combined into one numerator."""
     denominator, total, factor = response.denominator, response.numerators[0], [1]
     for (before, time), numerator in zip(pairwise(response.times), response.numerators[1:], strict=True):
         bottom = _pade(time - before, order)
-        factor = multiply(factor, mirrored(bottom))
+        factor = multiply(factor, mirror(bottom))
         total = add(multiply(total, bottom), multiply(numerator, factor))
         denominator = multiply(denominator, bottom)
     return Transfer(denominator, (total,), (0.0,))

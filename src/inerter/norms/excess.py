@@ -89,7 +89,7 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
         wide = wide[np.argsort(-share[wide], kind="stable")]
         resolved = wide[np.cumsum(1.0 + turns[wide]) <= _MOST_PANELS]
         unsure = unsure + 2.0 * np.abs(more[np.setdiff1d(wide, resolved)]).max(axis=1, initial=0.0).sum(axis=0)
-        finer = [_divided(float(panels[i, 0]), float(panels[i, 1]), 1 + int(turns[i])) for i in np.sort(resolved)]
+        finer = [_equal_panels(float(panels[i, 0]), float(panels[i, 1]), 1 + int(turns[i])) for i in np.sort(resolved)]
         fine = [_on_panels(densities, part)[1] for part in _in_parts(finer)]
         more = np.concatenate([np.delete(more, resolved, axis=0), *fine])
     added = added + (_KRONROD @ more).sum(axis=0)
@@ -101,7 +101,7 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     return added / np.pi, unsure / np.pi
 
 
-def _divided(low: float, high: float, count: int) -> Array:
+def _equal_panels(low: float, high: float, count: int) -> Array:
     """Panels (count, 2) of equal width."""
     edges = np.linspace(low, high, count + 1)
     return np.column_stack([edges[:-1], edges[1:]])

@@ -14,10 +14,10 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.norms.delay import pade, propagate
 from inerter.norms.exact import EXACT, h2_exactly
 from inerter.norms.stability import balance, split
-from inerter.systems.linear import Fine, LinearSystem, check_system
+from inerter.systems.linear import ExtendedMatrices, LinearSystem, check_system
 
 Matrix = NDArray[np.float64]
-_LOST = Status(StatusKind.INACCURATE, "some motions are so much slower than others that rounding hides their damping")
+_LOST = Status(StatusKind.INACCURATE, "damping lost to rounding: some motions are much slower than others")
 _EPS = float(np.finfo(float).eps)
 _SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
@@ -90,12 +90,12 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
     matrices = A, B, C, system.D
-    found = _squares(given, Fine(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
+    found = _squares(given, ExtendedMatrices(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
     if np.any(seen):
         status = parts.status
     elif np.any(direct):
         names = ", ".join(name for name, is_direct in zip(system.outputs, direct, strict=True) if is_direct)
-        status = Status(StatusKind.DIRECT_TERM, f"white noise passes straight to {names}, so its variance is infinite")
+        status = Status(StatusKind.DIRECT_TERM, f"infinite variance: direct feedthrough from white noise to {names}")
     else:
         status = _LOST if found is None else OK
     norms, error = (np.full(len(system.outputs), np.nan), np.nan) if found is None else (np.sqrt(found[0]), found[1])
@@ -111,7 +111,7 @@ def _merged_direct(system: LinearSystem) -> Matrix:
 
 
 def _drifting(A: Matrix) -> NDArray[np.bool_]:
-    """States that nothing but the inputs moves, such as a share of the road's shape that tyres keep."""
+    """States driven by the inputs alone, such as a tyre's share of the road profile."""
     return np.asarray(~np.any(A, axis=1))
 
 
@@ -136,7 +136,7 @@ def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matri
     return result
 
 
-def _squares(system: LinearSystem, fine: Fine, pade_order: int | None) -> tuple[Matrix, float] | None:
+def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | None) -> tuple[Matrix, float] | None:
     """The squared norm of each output and the relative error of any; None where that may be more than `ACCURATE`.
 
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
@@ -192,10 +192,10 @@ def _covariance(
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     follow, noise = A[dw], W.astype(float)
     P[np.ix_(w, w)] = walks
-    P[dw] = _once(A[d], -(follow @ walks + noise[dw]))
+    P[dw] = _solve_or_empty(A[d], -(follow @ walks + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T
-    P[d] = solver.refined(fine_A[d], W[d] + _both(follow @ P[dw].T))
-    rest = np.asarray(_both(fine_A @ P) + W, dtype=float)
+    P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+    rest = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
     rest[np.ix_(w, w)] = 8.0 * _EPS * walks
     enters = np.diag(noise)
     terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
@@ -208,13 +208,13 @@ def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: NDArray[np.bool_]
     decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     Q[d] = solver.solve(goal[d], adjoint=True)
-    Q[dw] = _once(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
+    Q[dw] = _solve_or_empty(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
     Q[np.ix_(w, decays)] = Q[dw].T
-    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _both(Q[dw].T @ A[dw])
+    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _add_transpose(Q[dw].T @ A[dw])
     return Q
 
 
-def _once(A: Matrix, right: Matrix) -> Matrix:
+def _solve_or_empty(A: Matrix, right: Matrix) -> Matrix:
     return np.asarray(np.linalg.solve(A, right)) if right.size else right
 
 
@@ -240,17 +240,17 @@ class _Lyapunov:
         P = self.Z @ (Y / scale) @ self.Z.T
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    def refined(self, A: Matrix, W: Matrix) -> Matrix:
+    def refine(self, A: Matrix, W: Matrix) -> Matrix:
         """P for an A and a W in extended precision, corrected for its residuals while that helps.
 
         Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
         """
         P, before = self.solve(W.astype(float)), np.inf
         for turn in range(20):
-            step = self.solve(np.asarray(_both(A @ P) + W, dtype=float))
+            step = self.solve(np.asarray(_add_transpose(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
             if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
-                raise np.linalg.LinAlgError("rounding damps a motion")
+                raise np.linalg.LinAlgError("damping lost to rounding")
             if not change < 0.5 * before:
                 break
             P, before = P + step, change
@@ -260,10 +260,10 @@ class _Lyapunov:
 def _excitation(
     system: LinearSystem, dynamics: tuple[Matrix, Matrix], entries: tuple[Matrix, Matrix], pade_order: int | None
 ) -> tuple[Matrix, Matrix]:
-    """W of `_squares`, the noise that enters and what of it the state has met before, and its error."""
+    """W of `_squares`: the input covariance with that of delayed inputs, and its error."""
     (A, EA), (B, EB) = dynamics, entries
     size = np.abs(B).astype(float)
-    W, EW = B @ B.T, _both(EB @ size.T) + 2.0 * _LONG * size @ size.T
+    W, EW = B @ B.T, _add_transpose(EB @ size.T) + 2.0 * _LONG * size @ size.T
     for source in dict.fromkeys(system.sources):
         arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
         met = unsure = np.zeros((B.shape[0], 0))
@@ -271,10 +271,12 @@ def _excitation(
             met, unsure = np.hstack([met, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
             time = float(system.delays[now] - system.delays[before])
             met, unsure = propagate(A, EA, met.astype(float), unsure + _EPS * np.abs(met), time, pade_order)
-            W = W + _both(np.outer(met.sum(axis=1), B[:, now]))
-            EW = EW + _both(np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now]))
+            W = W + _add_transpose(np.outer(met.sum(axis=1), B[:, now]))
+            EW = EW + _add_transpose(
+                np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now])
+            )
     return W, EW
 
 
-def _both(matrix: Matrix) -> Matrix:
+def _add_transpose(matrix: Matrix) -> Matrix:
     return np.asarray(matrix + matrix.T)

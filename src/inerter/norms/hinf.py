@@ -63,7 +63,7 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
     parts = split(merged)
     if parts.poles.size and np.any(parts.visible()):
         if exact:  # the transfer functions have no such poles
-            return HInfinity(np.nan, (), _hidden(float(np.abs(parts.poles.imag).max())))
+            return HInfinity(np.nan, (), _lost_damping(float(np.abs(parts.poles.imag).max())))
         frequencies = np.unique(np.abs(parts.poles.imag))
         return HInfinity(np.inf, tuple(GainPeak(float(w), np.inf) for w in frequencies), parts.status)
     stable = LinearSystem(parts.decaying.A, parts.decaying.B, parts.decaying.C, merged.D)
@@ -95,11 +95,11 @@ def _sharpness(A: Matrix, peaks: list[GainPeak]) -> Status:
     nearest = int(np.argmin(np.abs(1j * peaks[0].omega - poles)))
     there = int(np.argmin(np.abs(rates - poles[nearest].real)))
     sharp = abs(poles[nearest].imag) > 1e3 * abs(rates[there]) and errors[there] > 1e-6 * abs(rates[there])
-    return _hidden(peaks[0].omega) if sharp else OK
+    return _lost_damping(peaks[0].omega) if sharp else OK
 
 
-def _hidden(omega: float) -> Status:
-    return Status(StatusKind.INACCURATE, f"rounding hides the damping of the resonance at {omega:.6g} rad/s")
+def _lost_damping(omega: float) -> Status:
+    return Status(StatusKind.INACCURATE, f"damping of the resonance at {omega:.6g} rad/s lost to rounding")
 
 
 def _merge(system: LinearSystem) -> LinearSystem:

@@ -17,14 +17,14 @@ from itertools import zip_longest
 from inerter.systems.polynomials import (
     Polynomial,
     add,
-    mirrored,
+    greatest_common_divisor,
+    mirror,
     multiply,
     on_axis,
     positive_roots,
     quotient,
-    scaled,
-    shared,
-    trimmed,
+    scale_by,
+    trim,
 )
 
 _AGREED = Decimal("1e-13")
@@ -45,9 +45,9 @@ class Transfer:
     numerators: tuple[Polynomial, ...]
     times: tuple[float, ...]
 
-    def reduced(self) -> Transfer:
+    def without_common_roots(self) -> Transfer:
         """Transfer with the roots common to numerators and denominator cancelled."""
-        common = shared(self.denominator, *self.numerators)
+        common = greatest_common_divisor(self.denominator, *self.numerators)
         if len(common) == 1:
             return self
         numerators = tuple(quotient(n, common) if n else n for n in self.numerators)
@@ -59,10 +59,10 @@ class Transfer:
         return max(map(len, self.numerators), default=0) >= len(self.denominator)
 
 
-def lasting(denominator: Polynomial) -> list[float]:
+def axis_frequencies(denominator: Polynomial) -> list[float]:
     """Frequencies [rad/s] of the roots on the imaginary axis, none of which lies to its right."""
     zeros = next(i for i, c in enumerate(denominator) if c)
-    squares = positive_roots(mirrored(on_axis(denominator[zeros:])))
+    squares = positive_roots(mirror(on_axis(denominator[zeros:])))
     return [0.0] * bool(zeros) + [math.sqrt(high) for _, high in squares]
 
 
@@ -72,7 +72,7 @@ def mean_square(response: Transfer) -> tuple[float, list[float]]:
     `response` is reduced and passes no noise straight through. Raises `UnknownError`.
     """
     a, numerators = response.denominator, response.numerators
-    frequencies = lasting(a)
+    frequencies = axis_frequencies(a)
     drifts = frequencies == [0.0] and a[1] != 0 and sum(n[0] for n in numerators if n) == 0
     if frequencies and not drifts:
         return math.inf, frequencies
@@ -107,7 +107,7 @@ def _square(a: Polynomial, numerators: Sequence[Polynomial], times: Sequence[flo
         for j, q in enumerate(numerators):
             gap = times[j] - times[i]
             if p and q and (gap > 0.0 or (gap == 0.0 and i <= j)):
-                f = ring.multiply(ring.reduce(multiply(p, mirrored(q))), inverse)
+                f = ring.multiply(ring.reduce(multiply(p, mirror(q))), inverse)
                 if gap > 0.0:
                     f = ring.multiply(f, ring.exponential(Decimal(times[j]) - Decimal(times[i])))
                 total += (1 if i == j else 2) * ring.residues(f)
@@ -122,7 +122,7 @@ def _drifting(response: Transfer) -> Decimal:
     a, times = response.denominator[1:], response.times
     steps = [n[0] if n else 0 for n in response.numerators]
     rests = [
-        trimmed(add(scaled(n, a[0]), scaled(a, -step))[1:]) for n, step in zip(response.numerators, steps, strict=True)
+        trim(add(scale_by(n, a[0]), scale_by(a, -step))[1:]) for n, step in zip(response.numerators, steps, strict=True)
     ]
     ring = _modulo(tuple(a), getcontext().prec)
     total = _square(a, rests, times) if any(rests) else Decimal(0)
@@ -216,13 +216,13 @@ def _bezout(e: Numbers, o: Numbers) -> tuple[Numbers, Numbers]:
     one, none = [Decimal(1)], [Decimal(0)]
     before, now = [e, one, none], [o, none, one]
     while len(now[0]) > 1:
-        factors, rest = _divided(before[0], now[0])
+        factors, rest = _divide(before[0], now[0])
         before, now = now, [rest, *(_less(x, factors, y) for x, y in zip(before[1:], now[1:], strict=True))]
     scale, u, v = now
     return [c / scale[0] for c in u], [c / scale[0] for c in v]
 
 
-def _divided(p: Numbers, q: Numbers) -> tuple[Numbers, Numbers]:
+def _divide(p: Numbers, q: Numbers) -> tuple[Numbers, Numbers]:
     """Quotient, and remainder of a degree below that of q."""
     rest, factors = list(p), [Decimal(0)] * max(len(p) - len(q) + 1, 1)
     while len(rest) >= len(q):

@@ -57,8 +57,8 @@ class Split:
         """Status of the lasting poles: unstable or marginal."""
         worst = self.poles[int(np.argmax(self.poles.real))]
         if worst.real > 0.0 and not _is_marginal(worst, self.rate):
-            return Status(StatusKind.UNSTABLE, f"the system is unstable: a pole at {_pole(worst)} rad/s")
-        return Status(StatusKind.MARGINAL, f"a motion that nothing damps: a pole at {_pole(worst)} rad/s")
+            return Status(StatusKind.UNSTABLE, f"unstable system: a pole at {_pole(worst)} rad/s")
+        return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {_pole(worst)} rad/s")
 
 
 def split(system: LinearSystem) -> Split:

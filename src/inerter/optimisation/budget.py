@@ -13,9 +13,9 @@ import scipy
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
-from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.method import Averaging, Method, NonlinearitySupport, check_request, evaluate
+from inerter.methods.composite_index import IndexLike
+from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
@@ -73,7 +73,7 @@ class BreakEven:
 def break_even(
     design: Vehicle,
     baseline: Vehicle,
-    index: Asked,
+    index: IndexLike,
     *,
     parameter: str,
     method: Method,
@@ -116,7 +116,7 @@ def break_even(
 def _budget(
     design: Vehicle,
     baseline: Vehicle,
-    index: Asked,
+    index: IndexLike,
     parameter: str,
     method: Method,
     chosen: list[Element],
@@ -222,12 +222,12 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     return present / _REACH, present * _REACH
 
 
-def _as_many_roads(design: Vehicle, index: Asked, method: Method) -> Method:
+def _as_many_roads(design: Vehicle, index: IndexLike, method: Method) -> Method:
     """The method with a fixed number of roads, so that differences are continuous in the parameter."""
-    if not isinstance(method, Averaging):
+    if not isinstance(method, AveragingMethod):
         return method
     found = evaluate(design, index, method)
-    return method.fixed(found.realisations) if found.realisations else method
+    return method.with_realisations(found.realisations) if found.realisations else method
 
 
 def _crossing(

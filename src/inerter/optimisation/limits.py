@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
 from inerter.indices.question import Combination, Index, IndexDefinition, OfIndex
-from inerter.methods.asking import Asked, is_composed, is_index, objective_of
+from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
 from inerter.units import format_quantity
@@ -35,7 +35,7 @@ class Sense(Enum):
 class Limit:
     """A constraint of an optimisation: `of` is an index, `value` is in its SI unit."""
 
-    of: Asked
+    of: IndexLike
     sense: Sense
     value: float
 
@@ -53,17 +53,17 @@ class Limit:
         return f"{self.of.title} {self.sense.value} {format_quantity(self.value, self.of.unit)}"
 
 
-def at_most(index: Asked, value: float) -> Limit:
+def at_most(index: IndexLike, value: float) -> Limit:
     """Constraint that an index is at most `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.AT_MOST, value)
 
 
-def at_least(index: Asked, value: float) -> Limit:
+def at_least(index: IndexLike, value: float) -> Limit:
     """Constraint that an index is at least `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.AT_LEAST, value)
 
 
-def equal(index: Asked, value: float) -> Limit:
+def equal(index: IndexLike, value: float) -> Limit:
     """Constraint that an index equals `value` [its SI unit], separately for each of several struts or tyres."""
     return Limit(index, Sense.EQUAL, value)
 
@@ -106,12 +106,12 @@ def output_of(index: object) -> str:
     return index.output
 
 
-def for_each(index: Asked, vehicle: Vehicle) -> Sequence[Asked]:
+def for_each(index: IndexLike, vehicle: Vehicle) -> Sequence[IndexLike]:
     """Constrained quantities: each output of an index with several, unless it includes motions of coordinates.
 
     The parts of ride comfort are added, but travels of struts are constrained separately.
     """
-    if is_composed(index):
+    if is_composite(index):
         return index.per_output(for_each, vehicle)
     mechanism = vehicle.mechanism()
     question = index.question(mechanism)

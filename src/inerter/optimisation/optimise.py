@@ -13,8 +13,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.methods.asking import Asked, estimate_of, objective_of
 from inerter.methods.compare import Comparison, compare
+from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable, Objective
@@ -106,7 +106,7 @@ class Optimum:
 
 def optimise(
     vehicle: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     *,
     subject_to: Sequence[Limit] = (),
@@ -145,7 +145,7 @@ def optimise(
 
 def _best(
     vehicle: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     free: dict[str, Free],
     limits: tuple[Limit, ...],
@@ -221,7 +221,7 @@ def _closest_design(problem: ConstrainedProblem, first: list[Array]) -> LocalOpt
 
 
 def _linear_optimum(
-    vehicle: Vehicle, index: Asked, method: Method, limits: tuple[Limit, ...], seed: int, starts: int
+    vehicle: Vehicle, index: IndexLike, method: Method, limits: tuple[Limit, ...], seed: int, starts: int
 ) -> Array | None:
     """The best linear design under the conventions of `method`; None if not determined by linear analysis."""
     norm = Norm(getattr(method, "conventions", "exact"))
@@ -234,7 +234,7 @@ def _linear_optimum(
 
 def _quick_optima(
     vehicle: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     limits: tuple[Limit, ...],
     bounds: tuple[Array, Array],

@@ -36,7 +36,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.indices.registry import INDICES
-from inerter.methods.registry import deciding
+from inerter.methods.registry import decisive_method_clause
 from inerter.methods.ties import equally_least
 from inerter.table import Writer
 
@@ -84,7 +84,7 @@ def doubt_of(results: xr.Dataset, index: str) -> str:
     _, message = Status.parts(next(iter(unsure.values()))[0])
     many = len(next(iter(texts.values())))
     of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
-    decided = deciding(methods(results)[0], message) if len(methods(results)) == 1 else ""
+    decided = decisive_method_clause(methods(results)[0], message) if len(methods(results)) == 1 else ""
     return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}{decided}). "
 
 

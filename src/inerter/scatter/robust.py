@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from inerter.checks import is_number
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
-from inerter.methods.asking import Asked, estimate_of, objective_of
-from inerter.methods.method import Estimate, Method, asked_of
+from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
+from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
@@ -46,7 +46,7 @@ class Quantile(OfIndex):
     optimum is slightly overfitted to that sample: `apart` is an independent sample for its evaluation.
     """
 
-    index: Asked
+    index: IndexLike
     scatter: Scatter
     share: float = 0.95
     samples: int = 256
@@ -82,17 +82,17 @@ class Quantile(OfIndex):
         """Weights of the samples in ascending order."""
         return rank_weights(self.samples, self.share)
 
-    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+    def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """Vehicles and indices evaluated for each sample; raises `DesignError` unless only elements have tolerances."""
         if not elements_scatter(vehicle, self.scatter):
             raise DesignError("A search supports tolerances of element values only. Name them by their labels.")
-        return asked_of(vehicle, self.index)
+        return constituents_of(vehicle, self.index)
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[Quantile]:
         """The quantile of each output that is constrained separately."""
         return [replace(self, index=one) for one in split(self.index, vehicle)]
 
-    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+    def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The quantile for a vehicle without free values, with its standard error and interval."""
         values = evaluate_sample(vehicle, self.index, method, self.scatter, self.factors)
         if not np.all(np.isfinite(values)):
@@ -105,7 +105,7 @@ class Quantile(OfIndex):
         status = scatter_left_out(vehicle, method, self.scatter)
         return Estimate(value, self.unit, status, error, interval, values.size, error_sources=sources)
 
-    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+    def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """Quantiles (designs,) at many values of the free values, nan where unknown."""
         rows = np.column_stack([points[name] for name in vehicle.free_values()]) if points else np.zeros((1, 0))
         found = self.as_objective(vehicle, method).values(rows)
@@ -207,7 +207,7 @@ def _gradient(objective: Differentiable, point: Array) -> Array:
 
 def optimise_robust(
     vehicle: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     *,
     spread: Mapping[str, float],

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import DesignError, Status, StatusKind, worst_of
-from inerter.methods.asking import Asked, estimate_of
 from inerter.methods.averages import CONFIDENCE
-from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
+from inerter.methods.composite_index import IndexLike, estimate_of
+from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.renamed import RenamedAttribute
 from inerter.scatter.spread import Scatter, elements_scatter, nominal, scatter_left_out, scatter_of, with_free_scatter
@@ -82,7 +82,7 @@ class Tolerance:
 
 def tolerance_analysis(
     design: Vehicle,
-    index: Asked,
+    index: IndexLike,
     method: Method,
     *,
     spread: Mapping[str, float],
@@ -127,12 +127,12 @@ def tolerance_analysis(
         return replace(found, status=Status(StatusKind.INACCURATE, reason))
 
 
-def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int) -> int:
+def _affordable(design: Vehicle, index: IndexLike, method: Method, scatter: Scatter, samples: int, seed: int) -> int:
     """Number of samples to use: few where most designs require extended precision.
 
     For a composite index, such as one over conditions, this applies to each part.
     """
-    if samples <= _FEW or not isinstance(method, Doubting):
+    if samples <= _FEW or not isinstance(method, MethodWithExactFallback):
         return samples
     unit = scipy.stats.qmc.Sobol(len(scatter.names), rng=np.random.default_rng(seed)).random(_TRIED)
     own = nominal(design, scatter)
@@ -143,13 +143,15 @@ def _affordable(design: Vehicle, index: Asked, method: Method, scatter: Scatter,
         rows = [dict(zip(own, row, strict=True)) for row in table[:: _TRIED // _TRIED_ALONE].tolist()]
         tried = [(replace_values(design, row), {}) for row in rows]
     unsure = [
-        method.share_unsure(vehicle, one, points) for whole, points in tried for vehicle, one in asked_of(whole, index)
+        method.share_unsure(vehicle, one, points)
+        for whole, points in tried
+        for vehicle, one in constituents_of(whole, index)
     ]
     return _FEW if sum(unsure) > 0.5 * len(tried) else samples
 
 
 def _analyse(
-    design: Vehicle, index: Asked, method: Method, scatter: Scatter, samples: int, seed: int, here: Estimate
+    design: Vehicle, index: IndexLike, method: Method, scatter: Scatter, samples: int, seed: int, here: Estimate
 ) -> Tolerance:
     count = len(scatter.names)
     unit = scipy.stats.qmc.Sobol(2 * count, rng=np.random.default_rng(seed)).random(samples)
@@ -220,7 +222,7 @@ def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
     return np.ravel(found.first_order), np.ravel(found.total_order)
 
 
-def evaluate_sample(design: Vehicle, index: Asked, method: Method, scatter: Scatter, factors: Array) -> Array:
+def evaluate_sample(design: Vehicle, index: IndexLike, method: Method, scatter: Scatter, factors: Array) -> Array:
     """The index at the values of a design times these factors; nan where it has no value."""
     own = nominal(design, scatter)
     table = factors * np.array(list(own.values()))
@@ -231,6 +233,6 @@ def evaluate_sample(design: Vehicle, index: Asked, method: Method, scatter: Scat
     return np.array(mapped(partial(_value, design, index, method), rows))
 
 
-def _value(design: Vehicle, index: Asked, method: Method, values: Mapping[str, float]) -> float:
+def _value(design: Vehicle, index: IndexLike, method: Method, values: Mapping[str, float]) -> float:
     found = estimate_of(replace_values(design, values), index, method)
     return found.value if found.status.ok else np.nan

@@ -19,17 +19,17 @@ from inerter.kernels.prepare import prepare_on
 from inerter.renamed import renamed_keywords
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
+from inerter.simulation.initial_state import ending_of, initial_state
 from inerter.simulation.inputs import (
-    DrivenMany,
+    BatchInputs,
     InputTable,
     assign,
-    check_driven,
     check_holds,
-    starting_from,
+    check_keywords,
+    initial_of,
     tabulate,
     whole_steps,
 )
-from inerter.simulation.start import ending_of, initial_state
 from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
@@ -83,7 +83,7 @@ def simulate_many(
     jobs: int | None = None,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[DrivenMany],
+    **driven: Unpack[BatchInputs],
 ) -> Batch:
     """Simulate every vehicle on every signal, and keep the mean squares of `outputs` after the first `discard` [s].
 
@@ -94,14 +94,14 @@ def simulate_many(
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
     """
-    cars = listed("vehicles", vehicles)
-    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
+    cars = as_list("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
     if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
-        raise SimulationError(f"The number of threads is a whole number from 1 on, got jobs = {jobs!r}.")
+        raise SimulationError(f"The number of threads must be a positive integer, got jobs = {jobs!r}.")
     if not is_number(discard):
         raise SimulationError(f"discard: the discarded time must be a number of seconds; got {discard!r}.")
-    check_driven("simulate_many", driven)
-    speed, initial = driven.get("speed"), starting_from(driven)
+    check_keywords("simulate_many", driven)
+    speed, initial = driven.get("speed"), initial_of(driven)
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
@@ -112,7 +112,7 @@ def simulate_many(
         same = {"outputs": names, "duration": duration, "step": step, "discard": discard, "initial": initial}
         with running_on(executor) as there:
             prepare_on(there, event_driven.KERNELS)
-            return _handed_out(cars, groups, count, {**same, "speed": speed}, progress)
+            return _run_on_executor(cars, groups, count, {**same, "speed": speed}, progress)
     squares = np.full((len(cars), count, len(names)), np.nan)
     events, status = np.zeros((len(cars), count), np.int64), np.empty((len(cars), count), dtype=object)
     systems: list[PiecewiseSystem | None] = [None] * len(cars)
@@ -154,21 +154,21 @@ def simulate_many(
     return Batch(tuple(names), units, squares, events, tuple(tuple(row) for row in status))
 
 
-def _handed_out(
+def _run_on_executor(
     cars: Sequence[Vehicle],
     groups: Mapping[str, Any],
     count: int,
     same: Mapping[str, Any],
     progress: Callable[[float], None] | None,
 ) -> Batch:
-    """The runs on what was said to work on: some designs at a time, on one signal."""
+    """Results of all runs on the executor, in tasks of several designs on one signal."""
     firsts = range(0, len(cars), _TOGETHER)
     items = [
         (cars[i : i + _TOGETHER], {name: [group[j]] for name, group in groups.items()})
         for i in firsts
         for j in range(count)
     ]
-    found = mapped(partial(_some, same), items, progress=progress)
+    found = mapped(partial(_run_designs, same), items, progress=progress)
     rows = [found[k * count : (k + 1) * count] for k in range(len(firsts))]
     return Batch(
         found[0].outputs,
@@ -179,7 +179,7 @@ def _handed_out(
     )
 
 
-def _some(same: Mapping[str, Any], item: tuple[Sequence[Vehicle], Mapping[str, Any]]) -> Batch:
+def _run_designs(same: Mapping[str, Any], item: tuple[Sequence[Vehicle], Mapping[str, Any]]) -> Batch:
     cars, driven = item
     return simulate_many(cars, **same, **driven)
 
@@ -215,14 +215,14 @@ def _system(car: Vehicle, outputs: Sequence[str]) -> PiecewiseSystem:
     return system
 
 
-def listed(what: str, given: object) -> list[Any]:
+def as_list(what: str, given: object) -> list[Any]:
     """A list of one or more; raises `SimulationError` for anything else."""
     if not isinstance(given, Sequence) or isinstance(given, str) or not given:
         raise SimulationError(f"There must be one or more {what} in a list, got {given!r}.")
     return list(given)
 
 
-def groups_of(driven: DrivenMany) -> tuple[dict[str, Any], int]:
+def groups_of(driven: BatchInputs) -> tuple[dict[str, Any], int]:
     """The sequences that drive the runs of each vehicle, by keyword, and how many runs that are."""
     groups: dict[str, Any] = {
         name: group for name, group in driven.items() if name not in ("speed", "initial") and group is not None

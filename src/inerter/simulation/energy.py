@@ -23,13 +23,14 @@ def energy_of(integration: Integration) -> Energy:
     knot = integration.segment
     return Energy(
         inputs={name: float(w) for name, w in zip(names, sums, strict=False)},
-        stored=_stored(system, table, integration.state, knot) - _stored(system, table, integration.begun, 0),
+        stored=_stored_energy(system, table, integration.state, knot)
+        - _stored_energy(system, table, integration.begun, 0),
         dampers={b.label: float(w) for b, w in branches if b.element.linear is LinearRole.DAMPING},
         friction={b.label: float(w) for b, w in branches if b.element.switches_by(GuardRole.FORCE)},
     )
 
 
-def _stored(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int) -> float:
+def _stored_energy(system: PiecewiseSystem, table: InputTable, state: Matrix, knot: int) -> float:
     """Kinetic and elastic energy [J] just before a knot."""
     roads, na = len(system.mechanism.roads), system.motions[0].shape[1]
     z, rate = table.value_before[knot, :roads], table.slope_before[knot, :roads]

@@ -34,7 +34,7 @@ from inerter.kernels.arrays import (
 from inerter.kernels.crossing import ORDERS
 from inerter.kernels.discretise import discretise
 from inerter.kernels.events import evaluate, integrate
-from inerter.kernels.march import lines_of, march_of
+from inerter.kernels.integrate import lines_of, march_of
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import GuardRole, LinearRole
@@ -86,12 +86,12 @@ class Integration:
             code = integrate(run, self.knots, self.record, self.account, self.march, self.table.step, until)
             if code == switching.MODE_UNKNOWN:
                 if not self.build(self.motion.watch["trial"]):
-                    self.status = self._failed(_SINGULAR)
+                    self.status = self._failure_status(_SINGULAR)
             elif code == switching.EVENTS_FULL:
                 events = self.record.events
                 self.record = self.record._replace(events=np.concatenate([events, events]))
             elif code not in (switching.DONE, switching.PAUSED):
-                self.status = self._failed(self._too_stiff() if code == switching.STIFF else _FAILURES[code])
+                self.status = self._failure_status(self._too_stiff() if code == switching.STIFF else _FAILURES[code])
 
     def build(self, states: NDArray[np.int64]) -> bool:
         """Add the mode in which the nonlinear elements are in these states."""
@@ -147,9 +147,9 @@ class Integration:
         return slice(self.mechanics.rows.eta, self.mechanics.rows.entry)
 
     @property
-    def seen(self) -> slice:
+    def projected_state(self) -> slice:
         """Rows of the maps with the state after its projection onto the mode."""
-        return slice(self.mechanics.rows.seen, self.mechanics.rows.seen + self.system.order)
+        return slice(self.mechanics.rows.projected_state, self.mechanics.rows.projected_state + self.system.order)
 
     @property
     def guards(self) -> slice:
@@ -163,7 +163,7 @@ class Integration:
         Raises `SimulationError` if their forces are not determined there.
         """
         if self.modes.number[_code(states)] < 0 and not self.build(states):
-            raise SimulationError(f"Cannot go on: {_SINGULAR}.")
+            raise SimulationError(f"Cannot continue: {_SINGULAR}.")
         return np.asarray(self.modes.maps[self.modes.number[_code(states)]])
 
     def mismatch(self, before: Matrix) -> float:
@@ -200,8 +200,8 @@ class Integration:
             "contact, change its value, or take a step of that order"
         )
 
-    def _failed(self, why: str) -> Status:
-        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; nothing comes after that")
+    def _failure_status(self, why: str) -> Status:
+        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; the simulation ends there")
 
 
 def _code(states: NDArray[np.int64]) -> int:
@@ -213,9 +213,9 @@ def _code(states: NDArray[np.int64]) -> int:
 
 
 _FAILURES = {
-    switching.CHATTER: "the elements change their states without end (chattering)",
-    switching.IMPACT: "two inertias meet without compliance between them",
-    switching.NO_MODE: "no combination of slip, stick and contact can go on",
+    switching.CHATTER: "chattering: the elements change their states without end",
+    switching.IMPACT: "impact of two inertias without compliance between them",
+    switching.NO_MODE: "no consistent combination of slip, stick and contact",
     switching.NOT_FINITE: "the motion grows beyond all bounds",
 }
 KERNELS: tuple[Any, ...] = (build, integrate, discretise, evaluate)
@@ -253,7 +253,7 @@ def start(
     check_elements(system)
     rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
     mechanics = _mechanics(system, rows, len(outputs))
-    sizes, used = mechanics.sizes, _used(system, table, bool(rows))
+    sizes, used = mechanics.sizes, _used_knot_numbers(system, table, bool(rows))
     jumps = table.value.shape[1] if table.jumps else 0
     sharp = any(element.switches_by(GuardRole.ELONGATION) for element in system.nonlinear_elements)
     shape = (sizes.states, used.size, sizes.elements, sizes.squares, jumps, sharp)
@@ -309,16 +309,16 @@ def _modes(mechanics: Mechanics, columns: int, rows: int) -> Modes:
         number=np.full(3**k, -1, np.int64),
         state=np.zeros((capacity, k), np.int64),
         conditions=np.zeros((capacity, 3), np.int64),
-        maps=np.zeros((capacity, mechanics.rows.seen + sizes.states, sizes.states + sizes.inputs + 1)),
+        maps=np.zeros((capacity, mechanics.rows.projected_state + sizes.states, sizes.states + sizes.inputs + 1)),
         reaction=np.zeros((capacity, sizes.states + k, sizes.massless + k)),
         limits=np.zeros((capacity, k, 2)),
         entry_limits=np.zeros((capacity, k, 2)),
-        steps=aligned(capacity, columns, rows),
+        steps=aligned_zeros(capacity, columns, rows),
         reach=np.zeros(capacity),
     )
 
 
-def aligned(*shape: int) -> Matrix:
+def aligned_zeros(*shape: int) -> Matrix:
     """Zeros that begin where a cache line does: vectors of four then never lie across two."""
     size, line = prod(shape), 64
     room = np.zeros(size + line // 8)
@@ -343,7 +343,7 @@ def _room(sizes: Sizes, channels: int, line: int) -> Room:
     n, nu, most = sizes.states, sizes.inputs, sizes.massless + sizes.elements
     return Room(
         numbers=np.zeros(4 * channels),
-        line=aligned(line),
+        line=aligned_zeros(line),
         guess=np.zeros(n),
         residual=np.zeros(most),
         given=np.zeros(nu),
@@ -377,7 +377,7 @@ def _account(system: PiecewiseSystem, wanted: bool) -> Account:
     return Account(wanted, through, *_GAUSS)
 
 
-def _used(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
+def _used_knot_numbers(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
     """Numbers of the knot values in use: none of an input at rest, and heights of a road only where needed."""
     n, roads = system.order, len(system.mechanism.roads)
     na, nw = (motion.shape[1] for motion in system.motions[:2])

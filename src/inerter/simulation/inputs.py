@@ -18,7 +18,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:
-    from inerter.simulation.start import Initial
+    from inerter.simulation.initial_state import Initial
 
 Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one
@@ -52,7 +52,7 @@ class InputTable:
         return int(self.sampled.size)
 
 
-class Driven(TypedDict, total=False):
+class RunInputs(TypedDict, total=False):
     """Keywords of `simulate` for the excitation and the initial state."""
 
     road: Signal | Mapping[str, Signal] | None
@@ -62,7 +62,7 @@ class Driven(TypedDict, total=False):
     initial: Initial
 
 
-class DrivenMany(TypedDict, total=False):
+class BatchInputs(TypedDict, total=False):
     """Keywords of `simulate_many` for the excitation: the j-th entry of each sequence excites the j-th run.
 
     All have one speed and one initial state.
@@ -75,16 +75,16 @@ class DrivenMany(TypedDict, total=False):
     initial: Initial
 
 
-def check_driven(caller: str, driven: Mapping[str, object]) -> None:
-    """Raises TypeError for a keyword that says nothing of what drives a run."""
-    unknown = [name for name in driven if name not in Driven.__annotations__]
+def check_keywords(caller: str, driven: Mapping[str, object]) -> None:
+    """Raises TypeError for an unknown keyword of the excitation and the initial state."""
+    unknown = [name for name in driven if name not in RunInputs.__annotations__]
     if unknown:
-        known = ", ".join(Driven.__annotations__)
-        raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (what drives a run: {known}).")
+        known = ", ".join(RunInputs.__annotations__)
+        raise TypeError(f"{caller}() got an unexpected keyword argument {unknown[0]!r} (available: {known}).")
 
 
-def starting_from(driven: Driven | DrivenMany) -> Initial:
-    """The state to start from: at rest, if nothing is said."""
+def initial_of(driven: RunInputs | BatchInputs) -> Initial:
+    """Initial state among the keywords; default: at rest."""
     return driven.get("initial", "rest")
 
 
@@ -95,7 +95,7 @@ def assign(
     displacement: object = None,
     speed: float | None = None,
 ) -> tuple[list[Signal | None], list[float]]:
-    """The signal (None: nothing moves) and the delay [s] of every road and force, from the keywords of `Driven`.
+    """The signal (None: nothing moves) and the delay [s] of every road and force, from the keywords of `RunInputs`.
 
     Raises `SimulationError` for a signal that is missing, that nothing takes, or whose delay is not known.
     """
@@ -114,7 +114,9 @@ def assign(
         )
     by_force = _by_name("forces", forces, names) if isinstance(forces, Mapping) or len(names) == 1 else {}
     if forces is not None and not by_force:
-        raise SimulationError(f"Forces are given by name, forces={{name: signal}} (there are: {_listed(names)}).")
+        raise SimulationError(
+            f"Forces must be given by name, forces={{name: signal}}; available: {_format_names(names)}."
+        )
     signals: list[Signal | None] = [by_road.get(name) for name in roads]
     late = [0.0 if isinstance(moved, Mapping) and not by_track else r.distance for r in mechanism.roads]
     delays = [_delay(d, s, speed, name) for d, s, name in zip(late, signals, roads, strict=True)]
@@ -122,7 +124,7 @@ def assign(
 
 
 def _by_track(mechanism: Mechanism, moved: object) -> dict[str, object]:
-    """The signal of each road, where one is given for the left and one for the right track; else nothing."""
+    """Signal of each road if one is given for each track; else empty."""
     tracks = {road.track for road in mechanism.roads}
     if not isinstance(moved, Mapping) or not {*moved} or not {*moved} <= {"left", "right"} or tracks != {*moved}:
         return {}
@@ -137,7 +139,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
         raise SimulationError(f"The mechanism has nothing that takes {what}=.")
     for name, signal in found.items():
         if name not in names:
-            raise SimulationError(f"There is no input named {name!r} for {what}= (there are: {_listed(names)}).")
+            raise SimulationError(f"Unknown input {name!r} for {what}=; available: {_format_names(names)}.")
         if not isinstance(signal, Signal):
             raise SimulationError(
                 f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got {signal!r}."
@@ -145,7 +147,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
     return dict(found)
 
 
-def _listed(names: Sequence[str]) -> str:
+def _format_names(names: Sequence[str]) -> str:
     return ", ".join(names) or "none"
 
 
@@ -320,7 +322,7 @@ def _check_step(signal: Signal, step: float, end: float) -> None:
         )
     if signal.duration is not None and end > signal.duration * (1.0 + _SAME):
         raise SimulationError(
-            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation goes on until {end:g} s."
+            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation lasts until {end:g} s."
         )
 
 

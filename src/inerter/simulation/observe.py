@@ -38,11 +38,11 @@ def trajectory_of(integration: Integration, steady: PeriodicState | None, label:
         _mechanism=system.mechanism,
         _ending=integration.ending if integration.status.ok else None,
         _evaluate=partial(_evaluate, integration, reached),
-        _list_events=partial(_listed, system, rows),
+        _list_events=partial(_event_list, system, rows),
     )
 
 
-def _named(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
+def _element_labels(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:
     """Labels and state names of the elements of each friction and gap of the kernels.
 
     A friction whose ends are turned slips down when the others slip up.
@@ -60,15 +60,15 @@ def _states(integration: Integration, events: NDArray[Any]) -> dict[str, str]:
     """The state of every element at the start; what changes at once is an event, too."""
     found: dict[str, str] = {}
     first = integration.modes.state[integration.record.visited[0]]
-    for e, elements in enumerate(_named(integration.system)):
+    for e, elements in enumerate(_element_labels(integration.system)):
         own = np.flatnonzero(events["element"] == e)[:1]
         state = int(events["before"][own[0]] if own.size else first[e])
         found |= {label: names[state] for label, names in elements}
     return found
 
 
-def _listed(system: PiecewiseSystem, events: NDArray[Any]) -> tuple[Event, ...]:
-    named = _named(system)
+def _event_list(system: PiecewiseSystem, events: NDArray[Any]) -> tuple[Event, ...]:
+    named = _element_labels(system)
     return tuple(
         Event(time, label, names[before], names[after])
         for time, e, before, after in events.tolist()
@@ -83,7 +83,7 @@ def _evaluate(integration: Integration, reached: int, wanted: Output) -> Matrix:
     n, nu, roads = on_x.size, on_u.size, len(system.mechanism.roads)
     maps = integration.modes.maps[: integration.count]
     weights = np.concatenate([on_x, on_eta])
-    rows = np.concatenate([maps[:, integration.seen], maps[:, integration.eta]], axis=1)
+    rows = np.concatenate([maps[:, integration.projected_state], maps[:, integration.eta]], axis=1)
     direct = np.concatenate([np.zeros(n), on_u, np.zeros(1)])
     over = np.einsum("i,mij->mj", weights, rows) + direct
     terms = np.einsum("i,mij->mj", np.abs(weights), np.abs(rows)) + np.abs(direct)

@@ -1,4 +1,4 @@
-"""The parts of a mechanism as time stepping sees them: rows, inertia, and the reactions of frictions and gaps.
+"""Parts of a mechanism for time stepping: rows, inertia, and the reactions of frictions and gaps.
 
 Every element is a row over nodes and one over roads; its elongation is what they make of displacements. Which motions
 inertia carries, and which nothing does, follows from singular values of such rows, not from `systems.coordinates`, on
@@ -107,7 +107,7 @@ class Parts:
         """Forces on the nodes of branches with forces value x row: sum of E' value row."""
         return (self.E.T * values) @ rows
 
-    def unheld(self, linear: NDArray[np.bool_]) -> Matrix:
+    def unconstrained_directions(self, linear: NDArray[np.bool_]) -> Matrix:
         """Orthonormal directions that neither masses nor the branches in `linear` hold."""
         masses = np.diag(self.masses > 0.0).astype(float)
         return range_and_null(np.vstack([masses, unit_rows(self.E[linear])]))[1]
@@ -182,7 +182,7 @@ def check_gaps(parts: Parts) -> None:
     both = np.hstack([E, R])
     if rigid(gaps, both) > rigid(closed, both):
         raise SimulationError(
-            "A gap has inertia or a given motion on both sides and nothing that gives way: its impacts are undefined. "
+            "A gap has inertia or a given motion on both sides and no compliance: its impacts are undefined. "
             "Put a spring or damper in series with the gap."
         )
     if rigid(closed, both) > rigid(closed, E):

@@ -54,9 +54,9 @@ def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
     count, total = len(found), sum(one.end - one.begin for one in found)
     times = "once" if count == 1 else f"{count} times, {total:.3g} s together"
     return (
-        f"{found[0].tyre} pulls at the road by more than its static load of {static:.4g} N, {times}, first from "
-        f"{found[0].begin:.4g} to {found[0].end:.4g} s: a real tyre would have lifted off there, and from then on the "
-        f"motion would be another one."
+        f"{found[0].tyre} pulls on the road by more than its static load of {static:.4g} N, {times}, first from "
+        f"{found[0].begin:.4g} to {found[0].end:.4g} s: a real tyre would lift off there, so the later motion is not "
+        "valid."
     )
 
 

@@ -95,7 +95,9 @@ def scheme_of(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, h: floa
     if np.any(parts.inertia.B[:, [hold == "zero" for hold in road_hold]]):
         raise SimulationError('A road that jumps (hold "zero") moves an inerter: hold it "linear" or "cubic".')
     E, R = parts.reaction_rows
-    loose = parts.unheld(parts.k + parts.c + parts.b > 0.0)  # only frictions and gaps hold these directions
+    loose = parts.unconstrained_directions(
+        parts.k + parts.c + parts.b > 0.0
+    )  # only frictions and gaps hold these directions
     at = _places(parts, E.shape[0] + loose.shape[1])
     rows = _rows(parts, road_hold, offsets, at, h)
     inverse = _inverse(rows.balance[:, at.w], loose)
@@ -104,7 +106,7 @@ def scheme_of(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, h: floa
     aims, Z, shared = _aims(parts, rows, at, h)
     still = np.zeros((loose.shape[1], at.total))
     predict = np.vstack([w, drift, still, aims, still, shared])[:, : at.w.start]
-    starts, ends = _observed(parts, rows, at, h)
+    starts, ends = _observed_rows(parts, rows, at, h)
     return Scheme(
         at=at,
         predict=np.ascontiguousarray(predict),
@@ -150,7 +152,7 @@ def _relaxation(parts: Parts) -> Matrix:
     Such a node has no memory, but a balance of the mean forces of each step would let its position alternate for ever
     about the balance, once a friction or gap has disturbed it. This is zero where the balance is not disturbed.
     """
-    free = parts.unheld(parts.b + parts.c > 0.0)
+    free = parts.unconstrained_directions(parts.b + parts.c > 0.0)
     toward = parts.k[:, None] * (parts.E @ free)
     stiffness = free.T @ parts.nodal(parts.k, parts.E) @ free
     return 0.5 * CALM * toward @ np.linalg.pinv(stiffness, rcond=1e-12, hermitian=True) @ toward.T
@@ -212,7 +214,7 @@ def _aims(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, 
     return aims, Z, Z @ half
 
 
-def _observed(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix]:
+def _observed_rows(parts: Parts, rows: _Rows, at: StepPlaces, h: float) -> tuple[Matrix, Matrix]:
     """Displacements, velocities, accelerations and forces, from the step after an instant and from that before it.
 
     The mean of both is of second order in h: velocities of massless nodes and all forces are mean values of a step.

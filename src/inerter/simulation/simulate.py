@@ -11,22 +11,22 @@ import numpy as np
 from inerter.checks import is_number
 from inerter.errors import SimulationError
 from inerter.signals.signal import Signal
-from inerter.simulation import event_driven, stepped
+from inerter.simulation import event_driven, time_stepping_run
 from inerter.simulation.event_driven import check_elements
+from inerter.simulation.initial_state import Initial, ending_of, initial_state
 from inerter.simulation.inputs import (
     MEMORY_LIMIT,
-    Driven,
+    RunInputs,
     assign,
-    check_driven,
     check_holds,
+    check_keywords,
     check_steps,
-    starting_from,
+    initial_of,
     tabulate,
     whole_steps,
 )
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.start import Initial, ending_of, initial_state
-from inerter.simulation.steady import common_period, settle
+from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -77,12 +77,12 @@ def simulate(
     energy: bool = False,
     memory_limit: float = MEMORY_LIMIT,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[Driven],
+    **driven: Unpack[RunInputs],
 ) -> Trajectory:
     """Simulate `vehicle` for `duration` [s] with true sticking and Nordin's backlash, sampled every `step` [s].
 
-    What drives it, and from where, is said by the keywords of `Driven`. `road` moves all roads, each after its delay at
-    `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
+    The keywords of `RunInputs` are the excitation and the initial state. `road` moves all roads, each after its delay
+    at `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
     `displacement` moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and
     forces that get no signal are zero.
 
@@ -100,11 +100,11 @@ def simulate(
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
     """
-    check_driven("simulate", driven)
+    check_keywords("simulate", driven)
     plan = _plan(vehicle, driven, RunSettings(duration, step, integrator, every, energy, memory_limit))
     system, signals, delays, initial, length = plan.system, plan.signals, plan.delays, plan.initial, plan.length
     if integrator == "time-stepping":
-        return stepped.run(system, signals, delays, initial, plan.begin, length, step, int(every))
+        return time_stepping_run.run(system, signals, delays, initial, plan.begin, length, step, int(every))
     joined = isinstance(initial, Trajectory)
     table = tabulate(signals, delays, length, step, int(every), plan.begin, joined)
     state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None
@@ -121,7 +121,7 @@ def simulate(
     return trajectory_of(integration, steady, label)
 
 
-def check_simulation(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> int:
+def check_simulation(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> int:
     """The number of steps; raises what `simulate` would raise before it begins to integrate."""
     plan = _plan(vehicle, driven, settings)
     if settings.integrator != "time-stepping":
@@ -135,8 +135,8 @@ def check_simulation(vehicle: Vehicle, driven: Driven, settings: RunSettings) ->
     return whole_steps(plan.length, settings.step)
 
 
-def _plan(vehicle: Vehicle, driven: Driven, settings: RunSettings) -> _Plan:
-    initial = starting_from(driven)
+def _plan(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> _Plan:
+    initial = initial_of(driven)
     moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
     system = piecewise(vehicle)
     signals, delays = assign(system.mechanism, **moved)
@@ -167,7 +167,7 @@ def _length(duration: float | None, period: float | None, periodic: bool) -> flo
 
 def _check_every(every: object) -> None:
     if not is_number(every) or every != int(every) or every < 1:
-        raise SimulationError(f"`every` must be a whole number of steps from 1 on, got {every!r}.")
+        raise SimulationError(f"`every` must be a positive whole number of steps, got {every!r}.")
 
 
 def _check_memory(system: PiecewiseSystem, steps: int, every: int, limit: float) -> None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inerter.errors import SimulationError
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.coordinates import dependencies, null_space
-from inerter.systems.levers import independent_rows
+from inerter.systems.lever_arms import independent_rows
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -54,10 +54,10 @@ def equilibrium(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Equilib
         found = _touching(parts, {int(i): side for i, side in zip(loose, sides, strict=True) if side})
         if found is not None:
             return found
-    way = "Start from a state of your own" if np.any(own_forces(system)) else "Start at rest"
+    way = "Give the initial state as an array" if np.any(own_forces(system)) else "Start at rest"
     raise SimulationError(
         "The static load is not carried by springs: some part of it rests on dampers, inerters or friction alone, "
-        f"which give way. {way}, or add a spring where the load passes."
+        f"which cannot hold it. {way}, or add a spring where the load passes."
     )
 
 
@@ -121,7 +121,7 @@ def _touching(parts: _Parts, closed: dict[int, int]) -> Equilibrium | None:
     displacement = _solution(parts.rows[held], elongation[held] - parts.offset[held])
     ways = null_space(parts.rows[held])
     for branches in (open_, parts.others):
-        displacement, ways = _drawn_in(parts, branches, displacement, ways)
+        displacement, ways = _shorten_branches(parts, branches, displacement, ways)
     elongation[open_] = _sum(parts.rows[open_], displacement, parts.offset[open_])
     lower, upper = parts.ends[open_].T
     if np.any(elongation[open_] < lower - _BALANCED * np.abs(lower)):
@@ -166,7 +166,9 @@ def _forces(parts: _Parts, held: list[int], load: Matrix, given: Matrix) -> Matr
     return np.asarray(force[np.argsort(order)])
 
 
-def _drawn_in(parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix) -> tuple[Matrix, Matrix]:
+def _shorten_branches(
+    parts: _Parts, branches: Sequence[int], displacement: Matrix, ways: Matrix
+) -> tuple[Matrix, Matrix]:
     """Displacements moved within `ways` to where some branches are shortest; and the ways that leave these alone."""
     rows = parts.rows[list(branches)]
     along = _sum(rows, ways)

@@ -36,6 +36,6 @@ def _join(ending: threading.Event) -> None:
 
 
 def check_wanted() -> None:
-    """Raises `CancelledError` in a thread of a pool whose block has failed; long work asks now and then."""
+    """Raises `CancelledError` in a thread of a pool whose block has failed; long work calls it at intervals."""
     if _LOCAL.ending is not None and _LOCAL.ending.is_set():
         raise CancelledError

@@ -30,8 +30,8 @@ Matrix = NDArray[np.float64]
 CHUNK = 1 << 15  # steps whose inputs are laid out at once, if they take no longer than ...
 _PAUSE = 0.1  # [s] between two looks at the keyboard
 _ENDED = {
-    STUCK: "no friction and contact forces that fit were found",
-    INFINITE: "the velocities grew beyond all numbers",
+    STUCK: "the contact solver did not converge",
+    INFINITE: "the velocities overflow",
 }
 
 
@@ -161,12 +161,12 @@ def _initial(parts: Parts, scheme: Scheme, table: StepTable, start: Start | Stop
     if isinstance(start, Stop):
         known[at.d], known[at.p] = start.displacement, start.momentum
     else:
-        known[at.d] = _settled(parts, table, start, offsets)
+        known[at.d] = _balanced_displacements(parts, table, start, offsets)
         known[at.p] = inertia.M @ start.velocity + inertia.B @ known[at.rate0]
     return known
 
 
-def _settled(parts: Parts, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
+def _balanced_displacements(parts: Parts, table: StepTable, start: Start, offsets: Matrix) -> Matrix:
     """Displacements at the start, in which nodes that only springs hold are in balance.
 
     Massless and undamped, they are there at once; the step's mean force would let them swing about that place.
@@ -244,7 +244,7 @@ def _march(scheme: Scheme, table: StepTable, known: Matrix, law: Matrix, every: 
 def _histories(
     parts: Parts, table: StepTable, samples: Matrix, ended: int, reached: int, every: int, stop: Stop
 ) -> Histories:
-    """The columns of `samples`, which hold nothing of value from the step `reached` on if the march ended early."""
+    """Histories from the columns of `samples`; nan after the step `reached` if the march ended early."""
     n, status = parts.nodes, OK
     if ended != DONE:
         samples[-(-reached // every) :] = np.nan

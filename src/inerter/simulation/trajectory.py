@@ -75,7 +75,7 @@ class PeriodicState:
     mismatch: float  # largest change of the state over one period, relative to its largest value
 
     @property
-    def left(self) -> float:
+    def remaining_change(self) -> float:
         """Estimated distance of the state from its limit, relative to its largest value.
 
         Changes that have become so small over so many periods, each as much smaller than the last, add up to that.
@@ -143,11 +143,11 @@ class Trajectory:
 
     @property
     def static_loads(self) -> dict[str, float]:
-        """The weight that each tyre carries at rest [N], by its name; empty where that is not known, as `notes` say."""
-        return self._weighed[0]
+        """Static load of each tyre [N], by name; empty where unknown, with the reason in `notes`."""
+        return self._static_loads[0]
 
     @cached_property
-    def _weighed(self) -> tuple[dict[str, float], str]:
+    def _static_loads(self) -> tuple[dict[str, float], str]:
         """Static loads of the tyres [N], and the reason if they are unknown."""
         try:
             return ({} if self._mechanism is None else static_tyre_loads(self._mechanism)), ""
@@ -177,9 +177,9 @@ class Trajectory:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes on the motion: a sentence for each tyre that would lift off."""
-        static, unknown = self._weighed
+        static, unknown = self._static_loads
         if unknown:
-            return (f"Whether a tyre would lift off cannot be told. {unknown}",)
+            return (f"Wheel lift-off cannot be checked. {unknown}",)
         by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in static}
         return tuple(lift_off_note(found, static[tyre]) for tyre, found in by_tyre.items() if found)
 
@@ -191,11 +191,11 @@ class Trajectory:
     def intervals(self, element: str, state: str) -> list[tuple[float, float]]:
         """The times [s] between which a nonlinear element was in a state.
 
-        Raises `SimulationError` if there is no such element.
+        Raises `SimulationError` for an unknown element.
         """
         if element not in self.states:
             known = ", ".join(self.states) or "none"
-            raise SimulationError(f"There is no friction or gap named {element!r} (there are: {known}).")
+            raise SimulationError(f"Unknown friction or gap {element!r}; available: {known}.")
         found: list[tuple[float, float]] = []
         since, now = float(self.time[0]), self.states[element]
         for event in self.events:

@@ -33,8 +33,10 @@ def state_space(
     inputs = None if inputs is None else check_names("inputs", inputs)
     outputs = None if outputs is None else check_names("outputs", outputs)
     descriptor = describe(mechanism, inputs, outputs)
-    if descriptor.lost:
-        raise LinearSystemError(f"{descriptor.lost} Indices do not need these matrices: evaluate(...) gives them.")
+    if descriptor.precision_warning:
+        raise LinearSystemError(
+            f"{descriptor.precision_warning} Indices do not need these matrices: evaluate(...) gives them."
+        )
     system = close(descriptor, {})
     if system.fine is not None and not np.all(np.isfinite(system.fine.errors[0])):
         raise LinearSystemError(

@@ -24,9 +24,9 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
-from inerter.systems import rationals
-from inerter.systems.levers import RANK_TOLERANCE, BranchRows, independent_rows
-from inerter.systems.rationals import FractionRows
+from inerter.systems import exact_rank
+from inerter.systems.exact_rank import FractionRows
+from inerter.systems.lever_arms import RANK_TOLERANCE, BranchRows, independent_rows
 
 Matrix = NDArray[np.float64]
 
@@ -55,9 +55,9 @@ class Coordinates:
         """The velocity of a combination of nodes over a, u, y and z; what is zero is zero."""
         key = nodes.tobytes()
         if key not in self.known:
-            row = rationals.product(self.span.meant(nodes[None]), self.motions, nodes.size)
+            row = exact_rank.product(self.span.exact_rows(nodes[None]), self.motions, nodes.size)
             edges = np.cumsum([self.R.shape[1], self.U.shape[1], self.Y.shape[1]])
-            self.known[key] = np.split(rationals.rounded(row, nodes.size)[0], edges)
+            self.known[key] = np.split(exact_rank.to_matrix(row, nodes.size)[0], edges)
         return self.known[key]
 
 
@@ -77,10 +77,10 @@ def find_coordinates(
 
     Raises `MechanismError` for a node that is held by nothing.
     """
-    found = _found(span, *((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
+    found = _analyse_graph(span, *((m.shape, m.tobytes()) for m in (inertia, damping, springs, spring_roads, forces)))
     if isinstance(found, int):
         raise MechanismError(
-            f"Node {nodes[found]!r} is held by nothing: no mass, spring, damper or inerter resists its motion."
+            f"Node {nodes[found]!r} is unconstrained: no mass, spring, damper or inerter resists its motion."
         )
     return found
 
@@ -93,65 +93,67 @@ def combination(span: BranchRows, rows: Matrix, target: Matrix) -> Matrix | None
 @lru_cache(maxsize=512)
 def _combination(span: BranchRows, shape: tuple[int, int], rows: bytes, target: bytes) -> Matrix | None:
     matrix, wanted = np.frombuffer(rows).reshape(shape), np.frombuffer(target)[None]
-    found = rationals.weights(span.meant(matrix), span.meant(wanted))[0]
-    return None if found is None else rationals.rounded([found], shape[0])[0]
+    found = exact_rank.weights(span.exact_rows(matrix), span.exact_rows(wanted))[0]
+    return None if found is None else exact_rank.to_matrix([found], shape[0])[0]
 
 
 @lru_cache(maxsize=512)
-def _found(span: BranchRows, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
+def _analyse_graph(span: BranchRows, *matrices: tuple[tuple[int, ...], bytes]) -> Coordinates | int:
     """Coordinates of a graph, or the number of an unconstrained node; cached for all designs of a layout."""
     n, roads = matrices[0][0][1], matrices[3][0][1]
     given = [np.frombuffer(data).reshape(shape) for shape, data in matrices]
-    inertia, damping, forces = rationals.exact(given[0]), span.meant(given[1]), span.meant(given[4])
-    both = span.meant(np.hstack([given[2], given[3]]))
+    inertia, damping, forces = exact_rank.exact(given[0]), span.exact_rows(given[1]), span.exact_rows(given[4])
+    both = span.exact_rows(np.hstack([given[2], given[3]]))
     springs, spring_roads = [row[:n] for row in both], [row[n:] for row in both]
-    loose = rationals.null_space([*inertia, *damping, *springs], n)
+    loose = exact_rank.null_space([*inertia, *damping, *springs], n)
     if loose:
         return max(range(n), key=lambda i: abs(loose[0][i]))
-    eye = rationals.exact(np.eye(n))
-    massless = rationals.null_space(inertia, n)
-    Z = rationals.null_space([*inertia, *damping], n)
-    Y = [massless[i] for i in rationals.independent(massless, Z)]
-    U = rationals.null_space([*damping, *springs], n)
-    pushed = rationals.product(forces, rationals.transposed(U, n), len(U))
-    U = rationals.product(rationals.null_space(pushed, len(U)), U, n)
-    R = [eye[i] for i in rationals.independent(eye, [*U, *massless])]
-    stretched = rationals.transposed(rationals.product(Z, rationals.transposed(springs, n), len(springs)), len(springs))
-    off_Z = _off(stretched, len(Z))
-    over_a, over_y = (rationals.product(springs, rationals.transposed(motions, n), len(motions)) for motions in (R, Y))
+    eye = exact_rank.exact(np.eye(n))
+    massless = exact_rank.null_space(inertia, n)
+    Z = exact_rank.null_space([*inertia, *damping], n)
+    Y = [massless[i] for i in exact_rank.independent(massless, Z)]
+    U = exact_rank.null_space([*damping, *springs], n)
+    pushed = exact_rank.product(forces, exact_rank.transpose(U, n), len(U))
+    U = exact_rank.product(exact_rank.null_space(pushed, len(U)), U, n)
+    R = [eye[i] for i in exact_rank.independent(eye, [*U, *massless])]
+    stretched = exact_rank.transpose(
+        exact_rank.product(Z, exact_rank.transpose(springs, n), len(springs)), len(springs)
+    )
+    off_Z = _project_out(stretched, len(Z))
+    over_a, over_y = (exact_rank.product(springs, exact_rank.transpose(motions, n), len(motions)) for motions in (R, Y))
     stretched_by = [[*a, *y, *u] for a, y, u in zip(over_a, over_y, spring_roads, strict=True)]
     moved, width = len(R) + len(Y), len(R) + len(Y) + roads
-    attainable = rationals.product(off_Z, stretched_by, width)
+    attainable = exact_rank.product(off_Z, stretched_by, width)
     P = _independent_elongations(attainable, off_Z, moved)
-    rates = rationals.product(P, stretched_by, width)
-    whole = rationals.rounded(rates, width)
+    rates = exact_rank.product(P, stretched_by, width)
+    whole = exact_rank.to_matrix(rates, width)
     return Coordinates(
-        R=rationals.rounded(R, n).T,
-        U=rationals.rounded(U, n).T,
-        Y=rationals.rounded(Y, n).T,
-        Z=rationals.rounded(Z, n).T,
-        G=rationals.rounded(_shares(rates, attainable), len(P)),
-        Z_e=rationals.rounded(stretched, len(Z)),
-        P=rationals.rounded(P, len(springs)),
+        R=exact_rank.to_matrix(R, n).T,
+        U=exact_rank.to_matrix(U, n).T,
+        Y=exact_rank.to_matrix(Y, n).T,
+        Z=exact_rank.to_matrix(Z, n).T,
+        G=exact_rank.to_matrix(_shares(rates, attainable), len(P)),
+        Z_e=exact_rank.to_matrix(stretched, len(Z)),
+        P=exact_rank.to_matrix(P, len(springs)),
         rates=(whole[:, : len(R)], whole[:, len(R) : moved], whole[:, moved:]),
-        motions=rationals.transposed([*R, *U, *Y, *Z], n),
+        motions=exact_rank.transpose([*R, *U, *Y, *Z], n),
         span=span,
     )
 
 
 def _shares(rows: FractionRows, targets: FractionRows) -> FractionRows:
-    """`rationals.weights` of targets that lie in the span of the rows."""
-    return [found for found in rationals.weights(rows, targets) if found is not None]
+    """`exact_rank.weights` of targets that lie in the span of the rows."""
+    return [found for found in exact_rank.weights(rows, targets) if found is not None]
 
 
-def _off(columns: FractionRows, count: int) -> FractionRows:
+def _project_out(columns: FractionRows, count: int) -> FractionRows:
     """The projection that takes the span of so many independent columns out."""
     size = len(columns)
-    turned = rationals.transposed(columns, count)
-    square = rationals.product(turned, columns, count)
-    inverse = _shares(square, rationals.exact(np.eye(count)))
-    spanned = rationals.product(rationals.product(columns, inverse, count), turned, size)
-    eye = rationals.exact(np.eye(size))
+    turned = exact_rank.transpose(columns, count)
+    square = exact_rank.product(turned, columns, count)
+    inverse = _shares(square, exact_rank.exact(np.eye(count)))
+    spanned = exact_rank.product(exact_rank.product(columns, inverse, count), turned, size)
+    eye = exact_rank.exact(np.eye(size))
     return [[x - y for x, y in zip(one, other, strict=True)] for one, other in zip(eye, spanned, strict=True)]
 
 
@@ -160,31 +162,31 @@ def _independent_elongations(attainable: FractionRows, off_Z: FractionRows, move
     left of the others when these are taken out, which only roads stretch.
     """
     motions = [row[:moved] for row in attainable]
-    first = rationals.independent(motions)
-    others = rationals.independent(attainable, [attainable[i] for i in first])
+    first = exact_rank.independent(motions)
+    others = exact_rank.independent(attainable, [attainable[i] for i in first])
     taken = _shares([motions[i] for i in first], [motions[i] for i in others])
     P = [off_Z[i] for i in first]
-    away = rationals.product(taken, P, len(off_Z))
+    away = exact_rank.product(taken, P, len(off_Z))
     return P + [[x - y for x, y in zip(off_Z[i], row, strict=True)] for i, row in zip(others, away, strict=True)]
 
 
-def _remembered(function: Callable[..., Matrix]) -> Callable[..., Matrix]:
+def _cache_by_content(function: Callable[..., Matrix]) -> Callable[..., Matrix]:
     """Remember results by what the matrices hold: incidence is the same for all designs of a layout."""
 
     @lru_cache(maxsize=512)
-    def known(*keys: tuple[tuple[int, ...], bytes]) -> Matrix:
+    def evaluate(*keys: tuple[tuple[int, ...], bytes]) -> Matrix:
         result = function(*(np.frombuffer(data).reshape(shape) for shape, data in keys))
         result.flags.writeable = False
         return result
 
     @wraps(function)
-    def remembering(*matrices: Matrix) -> Matrix:
-        return known(*((m.shape, np.asarray(m, dtype=np.float64).tobytes()) for m in matrices))
+    def wrapper(*matrices: Matrix) -> Matrix:
+        return evaluate(*((m.shape, np.asarray(m, dtype=np.float64).tobytes()) for m in matrices))
 
-    return remembering
+    return wrapper
 
 
-@_remembered
+@_cache_by_content
 def null_space(rows: Matrix) -> Matrix:
     """A basis (as columns) of the vectors that every row annihilates, with an identity block in it."""
     size = np.abs(rows).max(axis=1, initial=0.0)
@@ -198,14 +200,14 @@ def null_space(rows: Matrix) -> Matrix:
     return clean(np.linalg.solve(basis[pivots].T, basis.T).T)
 
 
-@_remembered
+@_cache_by_content
 def complete(basis: Matrix, candidates: Matrix) -> Matrix:
     """The first of the columns `candidates` that together with `basis` are independent and span all of them."""
     spanned = scipy.linalg.orth(basis).T if basis.size else np.zeros((0, candidates.shape[0]))
     return candidates[:, independent_rows(candidates.T, spanned)]
 
 
-@_remembered
+@_cache_by_content
 def dependencies(rows: Matrix) -> Matrix:
     """Sums of rows that vanish, as columns: each row that depends on those before it, less what these make of it."""
     first = independent_rows(rows)
@@ -217,7 +219,7 @@ def dependencies(rows: Matrix) -> Matrix:
     return found
 
 
-@_remembered
+@_cache_by_content
 def pseudo_inverse(matrix: Matrix) -> Matrix:
     """The Moore-Penrose inverse."""
     return np.asarray(np.linalg.pinv(matrix))

@@ -26,15 +26,15 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, LinearSystemError
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import LinearRole
-from inerter.systems.balance import balance
+from inerter.systems.coordinate_split import Frame, Long, split
 from inerter.systems.coordinates import combination
 from inerter.systems.filters import Filter
-from inerter.systems.frame import Frame, Long, split
+from inerter.systems.force_balance import balance
 from inerter.systems.graph import Graph, linear_graph
-from inerter.systems.incidence import of_law, stacked
-from inerter.systems.levers import BranchRows
-from inerter.systems.linear import Fine, LinearSystem, Origin
-from inerter.systems.observe import Observed, observe, observed_by_default
+from inerter.systems.incidence import incidence_rows, of_law
+from inerter.systems.lever_arms import BranchRows
+from inerter.systems.linear import ExtendedMatrices, LinearSystem, Origin
+from inerter.systems.observe import StackedOutput, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names
 from inerter.systems.polynomials import Polynomial, TransferFunctions
 from inerter.systems.transfer import transfer_functions
@@ -67,9 +67,9 @@ class Descriptor:
     sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
     mechanism: Mechanism
     graph: Graph
-    filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `filtered`)
+    filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `with_filters`)
     sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
-    lost: str = ""  # why digits of the matrices are not certain, in words; nothing where they are
+    precision_warning: str = ""  # why digits of the matrices are uncertain; empty where they are certain
 
 
 def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
@@ -84,9 +84,9 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
         )
     p = np.array([1.0, *(values[name] for name in descriptor.free)], dtype=np.longdouble)
     d = descriptor
-    S, R, F, Y_eta, Y_x, Y_u = (_summed(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
-    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_summed(p.astype(float), stack) for stack in d.sizes)
-    T, T_error = _solved(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
+    S, R, F, Y_eta, Y_x, Y_u = (_sum_stack(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_sum_stack(p.astype(float), stack) for stack in d.sizes)
+    T, T_error = _solve_extended(S, np.hstack([R, F]), S_size, np.hstack([R_size, F_size]))
     X, Y = np.hstack([d.X_x, d.X_u]), np.hstack([Y_x, Y_u])
     top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
     size = np.abs(T).astype(float)
@@ -98,7 +98,7 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
     for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):
         matrix[np.abs(matrix) <= error] = 0.0  # white noise that reaches an output by rounding only would be infinite
     errors = top_error[:, :n], top_error[:, n:], bottom_error[:, :n], bottom_error[:, n:]
-    fine = Fine((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
+    fine = ExtendedMatrices((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
     A, B, C, D = (matrix.astype(float) for matrix in fine.matrices)
     return LinearSystem(
         A=A,
@@ -113,11 +113,11 @@ def close(descriptor: Descriptor, values: Mapping[str, float]) -> LinearSystem:
     )
 
 
-def _summed(p: NDArray[Any], stack: Matrix) -> Matrix:
+def _sum_stack(p: NDArray[Any], stack: Matrix) -> Matrix:
     return stack[0] if p.size == 1 else np.tensordot(p, stack, 1)
 
 
-def _solved(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
+def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
     """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
     size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
     scaled, right = S / size, right / size
@@ -140,10 +140,10 @@ def _functions(
     moved = list(dict.fromkeys(name for terms in sums for name, _ in terms))
     functions = transfer_functions(descriptor.mechanism, descriptor.graph, values, moved, outputs)
     if descriptor.sums:
-        functions = functions.fed([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
+        functions = functions.with_inputs([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
     filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))
     chosen = [filters.get(name) for name in outputs]
-    return functions.filtered([None if one is None else one.whole for one in chosen]) if any(chosen) else functions
+    return functions.with_filters([None if one is None else one.whole for one in chosen]) if any(chosen) else functions
 
 
 def describe(
@@ -167,20 +167,20 @@ def describe(
     frame = split(mechanism, graph, ordered, outputs or ())
     balanced = balance(frame)
     observed = [observe(frame, name) for name in (observed_by_default(frame) if outputs is None else outputs)]
-    return _joined(frame, balanced, observed, chosen)
+    return _join_arrays(frame, balanced, observed, chosen)
 
 
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
     graph = linear_graph(mechanism)
-    springs, _ = stacked(of_law(graph, LinearRole.STIFFNESS), graph)
+    springs, _ = incidence_rows(of_law(graph, LinearRole.STIFFNESS), graph)
     span = BranchRows.of(graph, [])
     rows = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     return all(combination(span, springs, row) is not None for row in rows)
 
 
-def _joined(
-    frame: Frame, balanced: tuple[Long, Long], observed: Sequence[Observed], order: Sequence[str]
+def _join_arrays(
+    frame: Frame, balanced: tuple[Long, Long], observed: Sequence[StackedOutput], order: Sequence[str]
 ) -> Descriptor:
     """Descriptor from all arrays, with additional output states last and inputs in the order of `order`."""
     columns = [frame.inputs.index(name) for name in order]
@@ -210,11 +210,11 @@ def _joined(
         sizes=tuple(size.astype(float) for size in sizes),
         mechanism=frame.mechanism,
         graph=frame.graph,
-        lost=frame.lost,
+        precision_warning=frame.precision_warning,
     )
 
 
-def _rates(frame: Frame, extra: Sequence[Observed]) -> tuple[Matrix, Matrix, Matrix]:
+def _rates(frame: Frame, extra: Sequence[StackedOutput]) -> tuple[Matrix, Matrix, Matrix]:
     """Rates of the states over eta, all states and inputs."""
     at, n = frame.slots, frame.states + len(extra)
     X_eta, X_x, X_u = np.zeros((n, frame.unknowns)), np.zeros((n, n)), np.zeros((n, len(frame.inputs)))
@@ -234,7 +234,7 @@ def _balance_stacks(frame: Frame, terms: Long, extra: int, columns: Sequence[int
 
 
 def _output_stacks(
-    frame: Frame, observed: Sequence[Observed], extra: int, columns: Sequence[int], sizes: bool = False
+    frame: Frame, observed: Sequence[StackedOutput], extra: int, columns: Sequence[int], sizes: bool = False
 ) -> list[Any]:
     """Stacks of the outputs, or of the sizes of their terms, over eta, over all states and over the inputs."""
     widths = (frame.unknowns, frame.states + extra, len(frame.inputs))
@@ -249,7 +249,7 @@ def _output_stacks(
     return [*stacks[:2], stacks[2][:, :, columns]]
 
 
-def _state_names(frame: Frame, extra: Sequence[Observed]) -> tuple[str, ...]:
+def _state_names(frame: Frame, extra: Sequence[StackedOutput]) -> tuple[str, ...]:
     velocities = [f"{frame.graph.nodes[int(np.argmax(column))]}_velocity" for column in frame.split.R.T]
     elongations = []
     for row in frame.split.P:

@@ -40,7 +40,7 @@ class Filter:
         for name in ("numerator", "denominator"):
             object.__setattr__(self, name, _coefficients(name, getattr(self, name)))
         if not self.numerator:
-            raise LinearSystemError("A filter whose numerator is zero lets nothing through.")
+            raise LinearSystemError("The numerator of a filter must not be zero.")
         if not self.denominator:
             raise LinearSystemError("The denominator of a filter has a coefficient that is not zero.")
         if len(self.numerator) > len(self.denominator):
@@ -55,7 +55,7 @@ class Filter:
                 f"The poles of a filter lie in the open left half plane; of these one lies near {worst:.4g} rad/s."
             )
         try:
-            _ = self.scaled
+            _ = self.scaled_coefficients
         except OverflowError:
             raise LinearSystemError("The coefficients of the filter are beyond the range of numbers.") from None
 
@@ -89,7 +89,7 @@ class Filter:
         return integers[:count][::-1], integers[count:][::-1]
 
     @cached_property
-    def scaled(self) -> tuple[float, Any, Any]:
+    def scaled_coefficients(self) -> tuple[float, Any, Any]:
         """A frequency w, and the coefficients of numerator and denominator over (s / w)^0, ..., (s / w)^order.
 
         Powers of two scale them, so that those of the denominator are near one and none is rounded but to extended
@@ -106,11 +106,11 @@ class Filter:
     def then(self, other: Filter) -> Filter:
         """Filter in series with another one after it, without rounding."""
         pairs = ((self.numerator, other.numerator), (self.denominator, other.denominator))
-        return Filter(*(_convolved(*pair) for pair in pairs))
+        return Filter(*(_convolve(*pair) for pair in pairs))
 
     def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """F(j omega) at angular frequencies [rad/s]."""
-        rate, top, bottom = self.scaled
+        rate, top, bottom = self.scaled_coefficients
         x = 1j * np.asarray(omega, dtype=float) / rate
         low = np.abs(x) <= 1.0
         powers = np.where(low, x, 1.0 / np.where(low, 1.0, x))  # beyond, both are taken over the highest power
@@ -142,7 +142,7 @@ def as_filter(given: object) -> Filter | None:
     raise LinearSystemError(f"A filter is Filter(numerator, denominator) or a LinearSystem, got {given!r}.")
 
 
-def _convolved(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:
+def _convolve(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:
     result = [Fraction(0)] * (len(left) + len(right) - 1)
     for i, x in enumerate(left):
         for j, y in enumerate(right):

@@ -71,20 +71,21 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
 
 def _linear_graph(mechanism: Mechanism) -> Graph:
-    whole, labels = _labelled(mechanism, to_analysis)
+    whole, labels = _collect_labels(mechanism, to_analysis)
     networks: dict[str, Network] = {}
     notes: list[str] = []
     for mount in mechanism.mounts():
         linear = linearise(whole[mount.name])
         if linear.network is None and linear.rigid:
             raise MechanismError(
-                f"{mount.name!r} is rigid in linear analysis, which closes gaps: {linear.gaps[0]!r} joins its two "
+                f"{mount.name!r} is rigid in linear analysis, which treats gaps as closed: {linear.gaps[0]!r} joins "
+                "its two "
                 f"ends with nothing in between. Put a spring or damper in series with the gap."
             )
         if linear.network is None:
             raise MechanismError(
-                f"{mount.name!r} carries no force in linear analysis, which leaves friction out "
-                f"({', '.join(linear.frictions)}): its ends are held by nothing there. Add a spring, damper or inerter."
+                f"{mount.name!r} carries no force in linear analysis, which neglects friction "
+                f"({', '.join(linear.frictions)}): its ends are unconstrained there. Add a spring, damper or inerter."
             )
         networks[mount.name] = linear.network
         notes += [f"{element.key} {element.label!r} in {mount.name!r} left out" for element in linear.left_out]
@@ -98,7 +99,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    return _expand(mechanism, *_labelled(mechanism, _shaped), ())
+    return _expand(mechanism, *_collect_labels(mechanism, _to_piecewise), ())
 
 
 def _other_meanings(linear: Graph, full: Graph) -> frozenset[str]:
@@ -124,10 +125,10 @@ def switching(mechanism: Mechanism) -> Mechanism:
 
 def switching_parts(element: Element) -> Iterator[Element]:
     """Elements that simulation uses in place of one; a free value may be at its upper bound in them."""
-    return expand_elements(element, _shaped).elements()
+    return expand_elements(element, _to_piecewise).elements()
 
 
-def _shaped(element: Element) -> Network:
+def _to_piecewise(element: Element) -> Network:
     """`Element.as_piecewise`, of a free value at its upper bound where need be: the shape does not depend on it."""
     try:
         return element.as_piecewise()
@@ -136,7 +137,9 @@ def _shaped(element: Element) -> Network:
         return element.with_value(element.value.upper).as_piecewise()
 
 
-def _labelled(mechanism: Mechanism, view: Callable[[Element], Network]) -> tuple[dict[str, Network], dict[int, str]]:
+def _collect_labels(
+    mechanism: Mechanism, view: Callable[[Element], Network]
+) -> tuple[dict[str, Network], dict[int, str]]:
     """The mounted networks with groups named by their labels, and the label of each element by its identity.
 
     Each element is an object of its own: one may be mounted several times.

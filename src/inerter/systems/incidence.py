@@ -19,7 +19,7 @@ def of_law(graph: Graph, law: LinearRole) -> list[Branch]:
     return [branch for branch in graph.branches if branch.element.linear is law]
 
 
-def stacked(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
+def incidence_rows(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
     """Rows of some branches over nodes and over roads."""
     nodes, roads = len(graph.nodes), next((b.roads.size for b in graph.branches), 0)
     on_nodes = np.array([b.nodes for b in branches]).reshape(len(branches), nodes)
@@ -28,7 +28,7 @@ def stacked(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Matrix]:
 
 def inertias(mechanism: Mechanism, graph: Graph) -> tuple[Matrix, Matrix]:
     """Rows of what has inertia, coordinates first, then inerters, over nodes and over roads."""
-    nodes, roads = stacked(of_law(graph, LinearRole.MASS), graph)
+    nodes, roads = incidence_rows(of_law(graph, LinearRole.MASS), graph)
     masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     return np.vstack([masses, nodes]), np.vstack([np.zeros((len(masses), roads.shape[1])), roads])
 

@@ -21,8 +21,8 @@ from inerter.networks.elements import Element, Network, Parallel, Series
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
-from inerter.systems.incidence import inertia_values, inertias, ports, stacked
-from inerter.systems.levers import RANK_TOLERANCE, independent_rows, is_lost, lost_in
+from inerter.systems.incidence import incidence_rows, inertia_values, inertias, ports
+from inerter.systems.lever_arms import RANK_TOLERANCE, independent_rows, is_lost, lost_travel_message
 from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
@@ -69,9 +69,9 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
     Raises `MechanismError` as `piecewise` does.
     """
     layout = _Layout(_shape_of(mechanism), mechanism)
-    known = _remembered(layout)
+    known = _cached_analysis(layout)
     if known.weighs:
-        return _found(layout)
+        return _analyse_layout(layout)
     elements = (element for mount in mechanism.mounts() for element in mount.network.elements())
     return replace(known, graph=with_elements(known.graph, list(elements)))
 
@@ -87,7 +87,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
     mounts = []
     for mount in mechanism.mounts():
         ends = (mount.upper, mount.lower) if isinstance(mount, Strut) else (mount.port, {mount.road: None})
-        mounts.append((type(mount), mount.name, _drawn(mount.network), *(tuple(end.items()) for end in ends)))
+        mounts.append((type(mount), mount.name, _network_shape(mount.network), *(tuple(end.items()) for end in ends)))
     return (
         tuple((c.name, c.angle) for c in mechanism.coordinates),
         tuple(mounts),
@@ -97,14 +97,14 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
     )
 
 
-def _drawn(network: Network) -> tuple[Any, ...]:
+def _network_shape(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
         return type(network), network.name, network.role
     assert isinstance(network, Parallel | Series)
-    return (type(network), network.name, *map(_drawn, network.parts))
+    return (type(network), network.name, *map(_network_shape, network.parts))
 
 
-def _found(layout: _Layout) -> Kinematics:
+def _analyse_layout(layout: _Layout) -> Kinematics:
     mechanism = layout.mechanism
     graph = full_graph(mechanism)
     branches = graph.branches
@@ -112,7 +112,7 @@ def _found(layout: _Layout) -> Kinematics:
     pushed = ports(mechanism, graph)
     *motions, weighs = _velocities(graph, inertia, pushed, len(mechanism.roads))
     R, N, V = motions
-    nodes, roads = stacked(branches, graph)
+    nodes, roads = incidence_rows(branches, graph)
     rates = (nodes @ R, nodes @ N, roads + nodes @ V)
     places = _places(mechanism, graph)
     together = _together(branches)
@@ -144,7 +144,7 @@ def _found(layout: _Layout) -> Kinematics:
     return found
 
 
-_remembered = lru_cache(maxsize=256)(_found)
+_cached_analysis = lru_cache(maxsize=256)(_analyse_layout)
 
 
 def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
@@ -152,7 +152,7 @@ def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
     groups: list[dict[int, int]] = []
     for i, branch in enumerate(branches):
         if branch.element.switch is not None:
-            turned = [_turned(branches[next(iter(group))], branch) for group in groups]
+            turned = [_relative_orientation(branches[next(iter(group))], branch) for group in groups]
             if any(turned):
                 at = int(np.flatnonzero(turned)[0])
                 groups[at][i] = turned[at]
@@ -161,7 +161,7 @@ def _together(branches: Sequence[Branch]) -> tuple[dict[int, int], ...]:
     return tuple(groups)
 
 
-def _turned(first: Branch, other: Branch) -> int:
+def _relative_orientation(first: Branch, other: Branch) -> int:
     """1 or -1 if two even frictions that hold are between the same ends, in the same order or the other one; else 0."""
     if not all(b.element.switches_by(GuardRole.FORCE) and b.element.acts and b.element.even for b in (first, other)):
         return 0
@@ -199,18 +199,18 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     Where springs nearly depend on each other, displacements come before them: in these they are no small differences.
     """
     branches = graph.branches
-    nodes, roads = stacked(branches, graph)
+    nodes, roads = incidence_rows(branches, graph)
     gaps = [i for i, b in enumerate(branches) if b.element.switches_by(GuardRole.ELONGATION)]
     placed = gaps + [i for i, b in enumerate(branches) if b.element.linear is LinearRole.STIFFNESS]
     coordinates = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
     choices = np.vstack([nodes[placed], coordinates])
     choices_road = np.vstack([roads[placed], np.zeros((len(coordinates), roads.shape[1]))])
-    chosen, over_g = _chosen(choices, list(range(len(choices))))
+    chosen, over_g = _select_rows(choices, list(range(len(choices))))
     if is_lost(over_g, choices[chosen], _UNCERTAIN):
         springs, last = range(len(gaps), len(placed)), range(len(placed), len(choices))
-        chosen, over_g = _chosen(choices, [*range(len(gaps)), *last, *springs])
+        chosen, over_g = _select_rows(choices, [*range(len(gaps)), *last, *springs])
         if is_lost(over_g, choices[chosen]):
-            raise MechanismError(lost_in(over_g, [*(branches[i].label for i in placed), *graph.nodes]))
+            raise MechanismError(lost_travel_message(over_g, [*(branches[i].label for i in placed), *graph.nodes]))
     P, P_road = choices[chosen], choices_road[chosen]
     over_g[chosen] = np.eye(len(chosen))
     over_z = clean(choices_road - over_g @ P_road)
@@ -221,7 +221,7 @@ def _places(mechanism: Mechanism, graph: Graph) -> Positions:
     return Positions(P, P_road, (e_g, e_z), (over_g[len(placed) :], over_z[len(placed) :]), own)
 
 
-def _chosen(rows: Matrix, order: Sequence[int]) -> tuple[list[int], Matrix]:
+def _select_rows(rows: Matrix, order: Sequence[int]) -> tuple[list[int], Matrix]:
     """Numbers of the first independent rows in an order, and the shares of these in all rows."""
     chosen = [order[i] for i in independent_rows(rows[order])]
     return chosen, clean(rows @ pseudo_inverse(rows[chosen])) if chosen else np.zeros((len(rows), 0))
@@ -250,15 +250,16 @@ def _velocities(graph: Graph, inertia: _Inertia, pushed: Matrix, roads: int) -> 
     count = len(graph.nodes)
     others = [b for b in graph.branches if b.element.linear is not LinearRole.MASS]
     holding = [b for b in others if b.element.switch is None or b.element.always_holds]
-    loose = null_space(np.vstack([inertia.nodes, stacked(holding, graph)[0]]))
+    loose = null_space(np.vstack([inertia.nodes, incidence_rows(holding, graph)[0]]))
     if loose.shape[1]:
         node = graph.nodes[int(np.argmax(np.abs(loose[:, 0])))]
         raise MechanismError(
-            f"Node {node!r} is held by nothing while the gaps beside it are open: no mass, spring, damper, inerter or "
-            f"friction resists its motion. Join the gaps into one, or add what holds the part between them."
+            f"Node {node!r} is unconstrained while the adjacent gaps are open: no mass, spring, damper, inerter or "
+            "friction resists its motion. Join the gaps into one, or add an element that acts on the part between "
+            "them."
         )
     N = null_space(inertia.nodes)
-    U = null_space(stacked(others, graph)[0])
+    U = null_space(incidence_rows(others, graph)[0])
     for row in pushed:
         U = U @ null_space((row @ U)[None])
     R = complete(np.hstack([U, N]), np.eye(count))
@@ -295,8 +296,8 @@ def _check_locks(found: Kinematics) -> None:
         if np.any(np.abs(together @ H_z) > 1e-9):
             which = " and ".join(repr(labels[i]) for i, share in enumerate(together) if abs(share) > 1e-9)
             raise MechanismError(
-                f"The force of {which} is not determined when it does not slip: nothing between given motions gives "
-                f"way. Put the spring of the real part (such as a shaft) in series with it."
+                f"The force of {which} is not determined when it does not slip: nothing between given motions is "
+                f"compliant. Put the spring of the real part (such as a shaft) in series with it."
             )
 
 

@@ -16,7 +16,7 @@ Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Fine:
+class ExtendedMatrices:
     """A, B, C, D in extended precision, and bounds of what rounding has done to each of their entries."""
 
     matrices: tuple[Matrix, Matrix, Matrix, Matrix]
@@ -32,11 +32,11 @@ class Origin:
 
     functions: Callable[[Sequence[str], Sequence[str]], TransferFunctions]
     rounded: tuple[Matrix, Matrix, Matrix, Matrix]
-    fine: Fine
+    fine: ExtendedMatrices
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
 
-    def of(self, system: LinearSystem) -> Fine | None:
+    def of(self, system: LinearSystem) -> ExtendedMatrices | None:
         """The part that a system has of it; None if the system's matrices were changed by hand."""
         if not (set(system.inputs) <= set(self.inputs) and set(system.outputs) <= set(self.outputs)):
             return None
@@ -48,7 +48,7 @@ class Origin:
 
         if not all(map(np.array_equal, (system.A, system.B, system.C, system.D), part(self.rounded))):
             return None
-        return Fine(part(self.fine.matrices), part(self.fine.errors))
+        return ExtendedMatrices(part(self.fine.matrices), part(self.fine.errors))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ class LinearSystem:
         for name, shape in wanted.items():
             if getattr(self, name).shape != shape:
                 raise LinearSystemError(
-                    f"{name} has the shape {getattr(self, name).shape}, but A, B and C ask for {shape}."
+                    f"{name} has the shape {getattr(self, name).shape}, but A, B and C require {shape}."
                 )
         for name, letter, count in (("states", "x", n), ("inputs", "u", m), ("outputs", "y", p)):
             object.__setattr__(self, name, _labels(name, getattr(self, name), letter, count))
@@ -110,7 +110,7 @@ class LinearSystem:
         return int(self.A.shape[0])
 
     @property
-    def fine(self) -> Fine | None:
+    def fine(self) -> ExtendedMatrices | None:
         """The matrices before they were rounded; None where they were given, or changed by hand."""
         return None if self.origin is None else self.origin.of(self)
 
@@ -176,5 +176,5 @@ def _positions(what: str, names: Sequence[str] | str | None, known: tuple[str, .
     wanted = check_names(f"{what}s", names)
     for name in wanted:
         if name not in known:
-            raise LinearSystemError(f"There is no {what} named {name!r} (there are: {', '.join(known) or 'none'}).")
+            raise LinearSystemError(f"Unknown {what} {name!r} (there are: {', '.join(known) or 'none'}).")
     return [known.index(name) for name in wanted]

@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
-from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
+from inerter.systems.coordinate_split import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import Output, find, main_outputs, outputs
 
@@ -41,7 +41,7 @@ def motion(moving: Moving, output: Output, nodes: int) -> RowBlocks:
     """An output's velocities, accelerations and external forces."""
     rows = moving.blank()
     if output.velocity.size or output.road_velocity.size:
-        add(rows, moving.velocity(_or(output.velocity, nodes), output.road_velocity))
+        add(rows, moving.velocity(_row_or_zeros(output.velocity, nodes), output.road_velocity))
     if output.acceleration.size:
         add(rows, moving.acceleration(output.acceleration))
     if output.external.size:
@@ -56,7 +56,7 @@ def add(rows: RowBlocks, more: Iterable[Matrix]) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Observed:
+class StackedOutput:
     """Output as stacks over the free values, with the sizes of their terms, and with its rate if it is a state."""
 
     name: str
@@ -65,13 +65,13 @@ class Observed:
     state: RowBlocks | None  # its rate
 
 
-def observe(frame: Frame, name: str) -> Observed:
+def observe(frame: Frame, name: str) -> StackedOutput:
     """An output by name. Raises `LinearSystemError` for one that linear analysis does not have."""
-    output = _found(frame, name)
+    output = _resolve_output(frame, name)
     if output.displacement.size or output.road.size:
         return _displacement(frame, name, output)
     fixed = motion(frame, output, len(frame.graph.nodes))
-    rows = _stacked(frame, *(row.astype(np.longdouble) for row in fixed))
+    rows = _constant_stacks(frame, *(row.astype(np.longdouble) for row in fixed))
     sizes = _absolute(rows)
     for i in np.flatnonzero(output.forces):
         branch = frame.graph.branches[i]
@@ -79,7 +79,7 @@ def observe(frame: Frame, name: str) -> Observed:
             term = _times_value(frame, branch.element, row)
             stack += term
             size += np.abs(term)
-    return Observed(name, rows, sizes, None)
+    return StackedOutput(name, rows, sizes, None)
 
 
 def observed_by_default(frame: Frame) -> list[str]:
@@ -88,30 +88,30 @@ def observed_by_default(frame: Frame) -> list[str]:
 
 
 def _drifts(frame: Frame, output: Output) -> bool:
-    roads = _or(output.road, len(frame.mechanism.roads))
+    roads = _row_or_zeros(output.road, len(frame.mechanism.roads))
     return bool(output.displacement.size) and frame.displacement(output.displacement, roads) is None
 
 
-def _found(frame: Frame, name: str) -> Output:
+def _resolve_output(frame: Frame, name: str) -> Output:
     if name in frame.known:
         return frame.known[name]
     find(outputs(frame.mechanism, full_graph(frame.mechanism)), name, LinearSystemError)
     raise LinearSystemError(
-        f"There is no output named {name!r} in linear analysis, which leaves friction out and closes gaps. "
+        f"Output {name!r} is unknown in linear analysis, which neglects friction and treats gaps as closed. "
         f"Simulate the design: inerter simulate, or by expected-value or approximate-linear."
     )
 
 
-def _displacement(frame: Frame, name: str, output: Output) -> Observed:
+def _displacement(frame: Frame, name: str, output: Output) -> StackedOutput:
     """A displacement: a combination of spring elongations, or a state that follows its velocity."""
-    nodes = _or(output.displacement, len(frame.graph.nodes))
-    roads = _or(output.road, len(frame.mechanism.roads))
+    nodes = _row_or_zeros(output.displacement, len(frame.graph.nodes))
+    roads = _row_or_zeros(output.road, len(frame.mechanism.roads))
     weights = frame.displacement(nodes, roads)
-    rows = _stacked(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
-    return Observed(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
+    rows = _constant_stacks(frame, *(frame.blank() if weights is None else frame.elongation(weights)))
+    return StackedOutput(name, rows, _absolute(rows), frame.velocity(nodes, roads) if weights is None else None)
 
 
-def _stacked(frame: Frame, *rows: Any) -> OutputStacks:
+def _constant_stacks(frame: Frame, *rows: Any) -> OutputStacks:
     """Rows that no value changes."""
     k = len(frame.free)
     eta, x, u = (np.concatenate([row[None], np.zeros((k, row.size), row.dtype)]) for row in rows)
@@ -131,6 +131,6 @@ def _absolute(rows: OutputStacks) -> OutputStacks:
     return eta, x, u
 
 
-def _or(row: Matrix, count: int) -> Matrix:
+def _row_or_zeros(row: Matrix, count: int) -> Matrix:
     """A row of an output, where an empty one is of zeros."""
     return row if row.size else np.zeros(count)

@@ -101,13 +101,15 @@ def stroke_of(label: str) -> str:
 
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
-    found = [Output(r.name, "m", _said(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
+    found = [
+        Output(r.name, "m", _readable_name(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)
+    ]
     angles = {c.name for c in mechanism.coordinates if c.angle}
     for given, row in zip(mechanism.forces, forces, strict=True):
         unit = "N m" if set(given.port) <= angles else "N"
         if mechanism.ground_moves and given.name == GROUND_ACCELERATION:
             unit = "m/s^2"
-        found.append(Output(given.name, unit, _said(given.name), external=row))
+        found.append(Output(given.name, unit, _readable_name(given.name), external=row))
     return found
 
 
@@ -122,7 +124,7 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
     ground = np.array([float(force.name == GROUND_ACCELERATION) for force in mechanism.forces])
     for coordinate, row in _moving(mechanism, graph):
-        unit, said = "rad" if coordinate.angle else "m", _said(coordinate.name)
+        unit, said = "rad" if coordinate.angle else "m", _readable_name(coordinate.name)
         carried = {"external": ground} if mechanism.ground_moves and not coordinate.angle else {}
         for what in _motions(mechanism, coordinate):
             moved: dict[str, Any] = {what: row, **carried}
@@ -146,7 +148,7 @@ def _over_ground(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for coordinate, row in (one for one in _moving(mechanism, graph) if not one[0].angle):
         for what in _OVER_GROUND:
             moved: dict[str, Any] = {what: row}
-            title = f"{_said(coordinate.name)} {what} over the ground"
+            title = f"{_readable_name(coordinate.name)} {what} over the ground"
             found.append(Output(f"{coordinate.name}_relative_{what}", f"m{_MOTIONS[what]}", title, **moved))
     return found
 
@@ -158,8 +160,8 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
         total = np.zeros(len(graph.branches))
         total[list(mount.carriers)] = 1.0
         found += [
-            Output(force, "N", _said(force), forces=total),
-            Output(travel, "m", _said(travel), displacement=mount.nodes, road=mount.roads),
+            Output(force, "N", _readable_name(force), forces=total),
+            Output(travel, "m", _readable_name(travel), displacement=mount.nodes, road=mount.roads),
         ]
     return found
 
@@ -171,7 +173,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for i, branch in enumerate(graph.branches):
         if branch.label not in graph.silent:
             places.setdefault(branch.label, (branch, (i,)))
-    found, lost = [], ~_placed(mechanism, graph)
+    found, lost = [], ~_positioned_nodes(mechanism, graph)
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
         total[list(carriers)] = 1.0
@@ -186,7 +188,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
-def _placed(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
+def _positioned_nodes(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
     """Nodes whose place is known: coordinates, and what springs and gaps join to them. Others, such as that between a
     damper and an inerter, have velocities only.
     """
@@ -209,7 +211,7 @@ def _of_still(mechanism: Mechanism) -> list[Output]:
     found: list[Output] = []
     for strut in mechanism.still:
         force, travel = of_mount(strut)
-        found += [Output(force, "N", _said(force)), Output(travel, "m", _said(travel))]
+        found += [Output(force, "N", _readable_name(force)), Output(travel, "m", _readable_name(travel))]
         labels = [element.label for element in strut.network.elements()]
         for label in (*(f"{strut.name}.{label}" for label in labels), *labels):
             found += [
@@ -223,11 +225,11 @@ def _of_still(mechanism: Mechanism) -> list[Output]:
 def check_inputs(
     mechanism: Mechanism, names: Sequence[str], error: type[InerterError], also: Sequence[str] = ()
 ) -> None:
-    """Raises `error` for a name that is no input of the mechanism, nor one of those that are allowed here `also`."""
+    """Raises `error` for a name that is neither an input of the mechanism nor in `also`."""
     known = input_names(mechanism)
     for name in names:
         if name not in known and name not in also:
-            raise error(f"There is no input named {name!r} (there are: {', '.join(known) or 'none'}).")
+            raise error(f"Unknown input {name!r}; available: {', '.join(known) or 'none'}.")
 
 
 def unit_of(mechanism: Mechanism, names: Sequence[str]) -> str:
@@ -254,22 +256,23 @@ def check_bounded(mechanism: Mechanism, driven: Mechanism, name: str) -> None:
     if driven.ground_moves and name in main_outputs(mechanism) and name not in main_outputs(driven):
         coordinate, _, what = name.rpartition("_")
         raise PerformanceIndexError(
-            f"Under ground acceleration {name!r} has no bounds, because the ground itself drifts. "
-            f"Ask for {coordinate}_relative_{what}, the motion over the ground."
+            f"Under ground acceleration {name!r} is unbounded, because the ground drifts. "
+            f"Use {coordinate}_relative_{what}, the motion relative to the ground."
         )
 
 
 def check_element(mechanism: Mechanism, label: object, called: Callable[[str], str]) -> None:
-    """Raises `PerformanceIndexError` unless there is an element of this label, and what it is `called` is known."""
+    """Raises `PerformanceIndexError` unless the element and its output, named by `called`, are known."""
     graph = full_graph(mechanism)
     known = outputs(mechanism, graph)
     every = dict.fromkeys((*graph.groups, *(branch.label for branch in graph.branches)))
     labels = [name for name in every if force_of(name) in known]
     if not isinstance(label, str) or label not in labels:
-        raise PerformanceIndexError(f"There is no element named {label!r} (there are: {', '.join(labels) or 'none'}).")
+        raise PerformanceIndexError(f"Unknown element {label!r}; available: {', '.join(labels) or 'none'}.")
     if called(label) not in known:
         raise PerformanceIndexError(
-            f"The stroke of {label!r} is not known, only its velocity: no spring tells where one of its ends is."
+            f"The stroke of {label!r} is undefined, only its velocity is known: no spring determines the position of "
+            "one end."
         )
 
 
@@ -279,9 +282,9 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
         return known[name]
     close = get_close_matches(str(name), known, n=3)
     more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-    hint = f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join([*known][:_LISTED])}{more}."
-    raise error(f"There is no output named {name!r}. {hint}")
+    hint = f"Did you mean {' or '.join(close)}?" if close else f"Available: {', '.join([*known][:_LISTED])}{more}."
+    raise error(f"Unknown output {name!r}. {hint}")
 
 
-def _said(name: str) -> str:
+def _readable_name(name: str) -> str:
     return name.replace("_", " ")

@@ -1,4 +1,4 @@
-"""Piecewise-linear systems: what compiled code needs to know of a mechanism to simulate it in every mode.
+"""Piecewise-linear systems: the matrices of a mechanism from which compiled code builds every mode.
 
 Velocities, positions and all that follows from which elements are where is `systems.kinematics`, found once for a
 layout; what a mode makes of it is `kernels.modes`.
@@ -17,8 +17,8 @@ from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
+from inerter.systems.coordinate_split import RowBlocks
 from inerter.systems.coordinates import clean, pseudo_inverse
-from inerter.systems.frame import RowBlocks
 from inerter.systems.graph import Graph, switching
 from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
@@ -95,7 +95,7 @@ class PiecewiseSystem:
 def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     """The piecewise-linear system of a vehicle or rig.
 
-    Raises `DesignError` if a value is free, `MechanismError` if a node is held by nothing, if closing a gap would be
+    Raises `DesignError` if a value is free, `MechanismError` if a node is unconstrained, if closing a gap would be
     an impact between inertias, or if the force of an element is not determined.
     """
     check_vehicle(vehicle)
@@ -108,7 +108,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     return _system(mechanism, kinematics(mechanism))
 
 
-def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
+def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
     """System with other values of some elements and inertias, by label.
 
     Far quicker than `piecewise`: for those who simulate one layout thousands of times. What was zero must stay zero.
@@ -119,7 +119,7 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
     """
     if system.kinematics.weighs:
         raise DesignError(
-            "A node is between inerters alone, so that its motion depends on values. Take piecewise(...)."
+            "A node lies between inerters alone, so that its motion depends on their values. Use piecewise(...)."
         )
     elements = {b.label: b.element for b in system.graph.branches}
     inertias = {c.name: c for c in system.mechanism.coordinates}
@@ -130,7 +130,7 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
             old, positive = inertias[label].inertia, True
         else:
             listed = ", ".join([*elements, *inertias])
-            raise DesignError(f"There is no element or coordinate labelled {label!r} (there are: {listed}).")
+            raise DesignError(f"Unknown element or coordinate {label!r}; available: {listed}.")
         if not is_number(value) or not (value > 0.0 if positive else value == 0.0):
             allowed = "any positive number" if positive else "nothing else"
             raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
@@ -138,13 +138,13 @@ def revalued(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseS
             changed = elements[label].with_value(value)
             if changed.role != elements[label].role:
                 raise DesignError(
-                    f"With {value!r}, {label!r} holds what it did not, or the reverse. Take piecewise(...)."
+                    f"With {value!r}, {label!r} changes whether it holds against small forces. Use piecewise(...)."
                 )
             elements[label] = changed
         else:
             inertias[label] = replace(inertias[label], inertia=value)
     if system.mechanism.ground_moves and any(label in inertias for label in values):
-        raise DesignError("Every mass feels the ground that moves. Change masses before, and take piecewise(...).")
+        raise DesignError("Moving ground acts on every mass. Change the masses first, then use piecewise(...).")
     mechanism = copy(system.mechanism)  # which was checked when it was made
     object.__setattr__(mechanism, "coordinates", tuple(inertias.values()))
     known = system.kinematics
@@ -157,7 +157,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
     inertia = inertia_values(mechanism, graph)
     kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
     _check_inertia(kinetic, inertia)
-    resistance = _weighted(graph, LinearRole.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
+    resistance = _sum_over_law(graph, LinearRole.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
@@ -174,21 +174,21 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
         inertia=inertia,
         positions=places.nodes,
         heights=places.roads,
-        needs_velocity=tuple(np.any(np.abs(_felt(resistance, R.shape[1])) > 1e-9, axis=0)),
+        needs_velocity=tuple(np.any(np.abs(_condensed_damping(resistance, R.shape[1])) > 1e-9, axis=0)),
         needs_acceleration=known.needs_acceleration,
         moves_elements=known.moves_elements,
     )
 
 
 def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
-    """Raises `MechanismError` if an inertia is lost beside another one that moves with it."""
+    """Raises `MechanismError` if an inertia is lost to rounding against another one that moves with it."""
     if inertia.size and inertia.max() > _LOST * inertia.min():
         M = kinetic.T @ (inertia[:, None] * kinetic)
         size = 1.0 / np.sqrt(np.diag(M))
         if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:
             raise MechanismError(
                 f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits "
-                "cannot hold both. Leave out what is so small, and join rigidly what is so heavy."
+                "cannot resolve both. Leave out the smallest, or join the heaviest rigidly."
             )
 
 
@@ -204,7 +204,7 @@ def _mechanics(
     left[:na, :na] = kinetic.T @ momentum[:, :na]
     right = [
         -resistance[:, :na],
-        -_weighted(known.graph, LinearRole.STIFFNESS, moving, np.hstack(known.places.elongations)),
+        -_sum_over_law(known.graph, LinearRole.STIFFNESS, moving, np.hstack(known.places.elongations)),
         -resistance[:, na + nw :],
         -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
         (known.ports @ np.hstack([R, N])).T,
@@ -231,14 +231,14 @@ def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
     return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
 
 
-def _weighted(graph: Graph, law: LinearRole, left: Matrix, right: Matrix) -> Matrix:
+def _sum_over_law(graph: Graph, law: LinearRole, left: Matrix, right: Matrix) -> Matrix:
     """Sum over the elements of one law of left row x coefficient x right row."""
     values = np.array([b.element.coefficient if b.element.linear is law else 0.0 for b in graph.branches])
     return np.ascontiguousarray(left.T @ (values[:, None] * right))
 
 
-def _felt(damping: Matrix, na: int) -> Matrix:
-    """Damping between inertias and roads once the massless motions between them have given way."""
+def _condensed_damping(damping: Matrix, na: int) -> Matrix:
+    """Damping between inertias and roads, with the massless motions between them eliminated."""
     nv = damping.shape[0]
     if na == nv:
         return damping[:, nv:]
@@ -315,7 +315,9 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     frame, count = _Frame(system), len(system.mechanism.coordinates)
     rows = motion(frame, output, len(system.graph.nodes))
     if output.displacement.size or output.road.size:
-        over_g, over_z = _displaced(system, output.displacement if output.displacement.size else np.zeros(count))
+        over_g, over_z = _displacement_rows(
+            system, output.displacement if output.displacement.size else np.zeros(count)
+        )
         add(rows, frame.displacement(over_g, over_z + output.road if output.road.size else over_z))
     for i in np.flatnonzero(output.forces):
         add(rows, [output.forces[i] * row for row in frame.force(int(i))])
@@ -323,7 +325,7 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     return on_x, on_u, on_eta
 
 
-def _displaced(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
+def _displacement_rows(system: PiecewiseSystem, nodes: Matrix) -> tuple[Matrix, Matrix]:
     """Rows of a displacement over positions and over heights of roads, for massless nodes too."""
     count = len(system.mechanism.coordinates)
     if not np.any(nodes[count:]):

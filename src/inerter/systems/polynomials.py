@@ -1,4 +1,4 @@
-"""Polynomials with whole coefficients, from the constant upwards: nothing here rounds.
+"""Polynomials with whole coefficients, from the constant upwards, without rounding.
 
 Whether two polynomials share a root, whether one has roots on the imaginary axis, and where its positive roots lie, is
 decided by arithmetic alone. Shared roots are rare, and a prime modulus shows nearly always that there are none.
@@ -16,7 +16,7 @@ Polynomial = list[int]
 _PRIME = (1 << 61) - 1
 
 
-def trimmed(p: Sequence[int]) -> Polynomial:
+def trim(p: Sequence[int]) -> Polynomial:
     """`p` without leading zeros; the zero polynomial is empty."""
     size = len(p)
     while size and p[size - 1] == 0:
@@ -37,18 +37,18 @@ def multiply(p: Polynomial, q: Polynomial) -> Polynomial:
         if a:
             for j, b in enumerate(q):
                 result[i + j] += a * b
-    return trimmed(result)
+    return trim(result)
 
 
 def add(p: Polynomial, q: Polynomial) -> Polynomial:
     """Sum of two polynomials."""
     short, long = sorted((p, q), key=len)
-    return trimmed([a + b for a, b in zip(short, long, strict=False)] + long[len(short) :])
+    return trim([a + b for a, b in zip(short, long, strict=False)] + long[len(short) :])
 
 
-def scaled(p: Polynomial, factor: int) -> Polynomial:
+def scale_by(p: Polynomial, factor: int) -> Polynomial:
     """`p` times a number."""
-    return trimmed([factor * c for c in p])
+    return trim([factor * c for c in p])
 
 
 def derivative(p: Polynomial) -> Polynomial:
@@ -56,12 +56,12 @@ def derivative(p: Polynomial) -> Polynomial:
     return [i * c for i, c in enumerate(p)][1:]
 
 
-def mirrored(p: Polynomial) -> Polynomial:
+def mirror(p: Polynomial) -> Polynomial:
     """p(-s)."""
     return [-c if i % 2 else c for i, c in enumerate(p)]
 
 
-def interpolated(values: Sequence[int]) -> Polynomial:
+def interpolate_integers(values: Sequence[int]) -> Polynomial:
     """The polynomial with these values at 1, 2, 3, ..., which has whole coefficients.
 
     Divided differences of such a polynomial are whole too.
@@ -73,11 +73,11 @@ def interpolated(values: Sequence[int]) -> Polynomial:
     result: Polynomial = []
     for i in range(len(values) - 1, -1, -1):  # Horner's scheme in Newton's form: result (s - i - 1) + difference
         result = [(result[j - 1] if j else differences[i]) - (i + 1) * c for j, c in enumerate([*result, 0])]
-    return trimmed(result)
+    return trim(result)
 
 
 def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
-    """P / q up to a constant factor, where q divides p and both are primitive."""
+    """Quotient p / q up to a constant factor, where q divides p and both are primitive."""
     rest, result = list(p), [0] * (len(p) - len(q) + 1)
     for i in range(len(result) - 1, -1, -1):
         result[i] = rest[i + len(q) - 1] // q[-1]
@@ -88,21 +88,21 @@ def quotient(p: Polynomial, q: Polynomial) -> Polynomial:
     return result
 
 
-def shared(p: Polynomial, *others: Polynomial) -> Polynomial:
+def greatest_common_divisor(p: Polynomial, *others: Polynomial) -> Polynomial:
     """The greatest common divisor of all, primitive, with a positive leading coefficient; zeros are passed over."""
-    result = primitive(trimmed(p))
+    result = primitive(trim(p))
     for other in others:
         if len(result) == 1:
             break
         if other:
-            result = _shared(result, primitive(other))
+            result = _gcd_of_two(result, primitive(other))
     return [-c for c in result] if result and result[-1] < 0 else result
 
 
-def _shared(p: Polynomial, q: Polynomial) -> Polynomial:
+def _gcd_of_two(p: Polynomial, q: Polynomial) -> Polynomial:
     if not p or not q:
         return p or q
-    if p[-1] % _PRIME and q[-1] % _PRIME and _degree_of_shared(p, q) == 0:
+    if p[-1] % _PRIME and q[-1] % _PRIME and _degree_of_gcd(p, q) == 0:
         return [1]
     if len(p) < len(q):
         p, q = q, p
@@ -120,20 +120,20 @@ def _remainder(p: Polynomial, q: Polynomial) -> Polynomial:
         rest = [up * c for c in rest]
         for j, c in enumerate(q):
             rest[shift + j] -= down * c
-        rest = trimmed(rest)
+        rest = trim(rest)
     return rest
 
 
-def _degree_of_shared(p: Polynomial, q: Polynomial) -> int:
+def _degree_of_gcd(p: Polynomial, q: Polynomial) -> int:
     """The degree of the greatest common divisor modulo a prime, which is never less than the true one."""
-    a, b = trimmed([c % _PRIME for c in p]), trimmed([c % _PRIME for c in q])
+    a, b = trim([c % _PRIME for c in p]), trim([c % _PRIME for c in q])
     while b:
         inverse = pow(b[-1], -1, _PRIME)
         while len(a) >= len(b):
             factor, shift = a[-1] * inverse % _PRIME, len(a) - len(b)
             for j, c in enumerate(b):
                 a[shift + j] = (a[shift + j] - factor * c) % _PRIME
-            a = trimmed(a)
+            a = trim(a)
         a, b = b, a
     return len(a) - 1
 
@@ -143,7 +143,7 @@ def on_axis(p: Polynomial) -> Polynomial:
 
     If no root lies to the right of the imaginary axis, these are the roots on it.
     """
-    return shared(trimmed(p[0::2]), trimmed(p[1::2])) if any(p[1::2]) else primitive(trimmed(p[0::2]))
+    return greatest_common_divisor(trim(p[0::2]), trim(p[1::2])) if any(p[1::2]) else primitive(trim(p[0::2]))
 
 
 def value(p: Polynomial, x: Fraction) -> int:
@@ -160,12 +160,12 @@ def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
 
     By Descartes' rule of signs and bisection (Collins and Akritas, 1976). A root that is met has its interval (x, x).
     """
-    p = trimmed(p)
+    p = trim(p)
     while p and p[0] == 0:
         p = p[1:]
     if len(p) < 2:
         return []
-    repeated = shared(p, derivative(p))
+    repeated = greatest_common_divisor(p, derivative(p))
     if len(repeated) > 1:
         p = quotient(p, repeated)
     one = Fraction(1)
@@ -175,17 +175,17 @@ def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
     found += [(1 / high, 1 / low) for low, high in reversed(beyond)]
     for i in range(len(found) - 1):
         while found[i][1] >= found[i + 1][0]:
-            found[i], found[i + 1] = _halved(p, *found[i]), _halved(p, *found[i + 1])
+            found[i], found[i + 1] = _bisect_root(p, *found[i]), _bisect_root(p, *found[i + 1])
     return found
 
 
 def _above_zero(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
     while low == 0:
-        low, high = _halved(p, low, high)
+        low, high = _bisect_root(p, low, high)
     return low, high
 
 
-def _halved(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+def _bisect_root(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
     """The half that holds the one root of `p` above `low` and up to `high`; `p` has no double root."""
     middle = (low + high) / 2
     here = value(p, middle)
@@ -204,17 +204,17 @@ def _between_zero_and_one(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
             if place:
                 found.append((Fraction(place, 1 << depth),) * 2)
             q = q[1:]
-        changes = _changes(_shifted(q[::-1]))
+        changes = _changes(_shift_by_one(q[::-1]))
         if changes == 1:
             found.append((Fraction(place, 1 << depth), Fraction(place + 1, 1 << depth)))
         elif changes > 1:
             left = [c << (len(q) - 1 - i) for i, c in enumerate(q)]
-            waiting.append((_shifted(left), 2 * place + 1, depth + 1))
+            waiting.append((_shift_by_one(left), 2 * place + 1, depth + 1))
             waiting.append((left, 2 * place, depth + 1))
     return found
 
 
-def _shifted(p: Polynomial) -> Polynomial:
+def _shift_by_one(p: Polynomial) -> Polynomial:
     """p(x + 1)."""
     result = list(p)
     for i in range(len(p) - 1):
@@ -238,7 +238,7 @@ class TransferFunctions:
     denominator: Polynomial
     numerators: tuple[tuple[Polynomial, ...], ...]
 
-    def filtered(self, filters: Sequence[Fractions]) -> TransferFunctions:
+    def with_filters(self, filters: Sequence[Fractions]) -> TransferFunctions:
         """Transfer functions with each output times a fraction (None for 1), over one common denominator."""
         bottoms = list(dict.fromkeys(tuple(one[1]) for one in filters if one is not None))
         rows = []
@@ -253,12 +253,12 @@ class TransferFunctions:
             denominator = multiply(denominator, list(bottom))
         return TransferFunctions(denominator, tuple(rows))
 
-    def fed(self, sums: Sequence[Sequence[tuple[int, Fractions]]]) -> TransferFunctions:
+    def with_inputs(self, sums: Sequence[Sequence[tuple[int, Fractions]]]) -> TransferFunctions:
         """Transfer functions from new inputs, each a sum of old inputs, by number, times fractions (None for 1)."""
         terms = [term for one in sums for term in one]
         by_input = TransferFunctions(
             self.denominator, tuple(tuple(row[i] for row in self.numerators) for i, _ in terms)
-        ).filtered([factor for _, factor in terms])
+        ).with_filters([factor for _, factor in terms])
         columns = iter(by_input.numerators)
         added = [[next(columns) for _ in one] for one in sums]
         rows = []

@@ -43,9 +43,9 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
             raise MechanismError(f"The static tyre loads are not known: the mass of {coordinate.name!r} is free.")
     moved, touched, weight = _free_ways(mechanism)
     upright = np.concatenate([weight > 0.0, np.ones(touched.shape[0])])
-    if not _reached(np.concatenate([moved[: weight.size], touched]), upright):
+    if not _is_spanned(np.concatenate([moved[: weight.size], touched]), upright):
         raise MechanismError(
-            "The static tyre loads are not known: a spring to the ground, or to a road that is none of a tyre's, "
+            "The static tyre loads are not known: a spring to the ground, or to a road without a tyre, "
             "carries a part of the weight."
         )
     work = moved[: weight.size].T @ weight
@@ -54,7 +54,7 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
         raise MechanismError("The static tyre loads are not known: a part of the weight rests on no spring.")
     if load.min() <= 0.0:
         name = mechanism.tyres[int(np.argmin(load))].name
-        raise MechanismError(f"The static tyre loads are not known: {name!r} would hang, not stand.")
+        raise MechanismError(f"The static tyre loads are not known: {name!r} would carry a negative load.")
     return {tyre.name: float(f"{value:.15g}") for tyre, value in zip(mechanism.tyres, load, strict=True)}
 
 
@@ -74,6 +74,6 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     return ways[: len(graph.nodes)], ways[len(graph.nodes) :], weight
 
 
-def _reached(ways: Matrix, wanted: Matrix) -> bool:
+def _is_spanned(ways: Matrix, wanted: Matrix) -> bool:
     found, *_ = np.linalg.lstsq(ways, wanted, rcond=_BALANCED)
     return bool(np.abs(ways @ found - wanted).max() <= 1e-6)

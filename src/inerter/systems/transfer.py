@@ -1,7 +1,7 @@
 """Transfer functions of a mechanism without any rounding.
 
 A double is a whole number times a power of two, so masses and element values are exact; levers are the fractions that
-they were meant to be (`systems.levers`); and so the matrix M s^2 + C s + K of all nodes, massless ones included, is
+they were meant to be (`systems.lever_arms`); and so the matrix M s^2 + C s + K of all nodes, massless ones included, is
 exact at a whole number s. Its determinant and the solutions for the inputs, times it, are polynomials in s whose values
 at enough such numbers give their coefficients. No states are chosen, and nothing is eliminated by rank.
 """
@@ -19,9 +19,9 @@ import numpy as np
 from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
 from inerter.systems.incidence import Matrix, ports
-from inerter.systems.levers import BranchRows
+from inerter.systems.lever_arms import BranchRows
 from inerter.systems.outputs import Output, force_of, outputs
-from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolated, scaled
+from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolate_integers, scale_by
 from inerter.vehicle.mechanism import Mechanism
 
 Row = dict[int, int]
@@ -43,8 +43,8 @@ def transfer_functions(
     rows = [_OutputRow.of(output, nodal) for output in asked]
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
-    denominator, *numerators = (interpolated(column) for column in zip(*samples, strict=True))
-    return nodal.assembled(denominator, numerators, loads, rows)
+    denominator, *numerators = (interpolate_integers(column) for column in zip(*samples, strict=True))
+    return nodal.to_transfer_functions(denominator, numerators, loads, rows)
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class _Nodal:
         rows = [(branch.nodes, branch.roads) for branch in graph.branches]
         rows += [pair for output in asked for pair in _pairs(output)]
         rows += [(force, np.zeros(0)) for force in pushed.values()]
-        levers = (x for row in rows for x in self._meant(*row))
+        levers = (x for row in rows for x in self._exact_row(*row))
         self.lever_unit = lcm(*{x.denominator for x in levers})
         numbers = [_coefficient(b.element, values) for b in graph.branches]
         masses = [coordinate.element.coefficient for coordinate in mechanism.coordinates]
@@ -112,14 +112,14 @@ class _Nodal:
 
     def whole(self, nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
         """A row over nodes and roads in whole numbers."""
-        found = {i: int(x * self.lever_unit) for i, x in enumerate(self._meant(nodes, roads)) if x}
+        found = {i: int(x * self.lever_unit) for i, x in enumerate(self._exact_row(nodes, roads)) if x}
         n = self.size
         return {i: x for i, x in found.items() if i < n}, {i - n: x for i, x in found.items() if i >= n}
 
-    def _meant(self, nodes: Matrix, roads: Matrix) -> list[Fraction]:
+    def _exact_row(self, nodes: Matrix, roads: Matrix) -> list[Fraction]:
         row = np.zeros(self.size + len(self.roads))
         row[: nodes.size], row[self.size : self.size + roads.size] = nodes, roads
-        return self.span.meant(row[None])[0]
+        return self.span.exact_rows(row[None])[0]
 
     def load(self, name: str) -> Load:
         """An input by name."""
@@ -143,7 +143,7 @@ class _Nodal:
         for j, (_, force, _) in enumerate(loads):
             for i, lever in force.items():
                 F[i][j] += lever
-        determinant, X = solved(P, F)
+        determinant, X = solve_fraction_free(P, F)
         sampled = [determinant]
         for row in rows:
             for j, (road, _, name) in enumerate(loads):
@@ -166,7 +166,7 @@ class _Nodal:
             total += number * powers[order] * elongation
         return total
 
-    def assembled(
+    def to_transfer_functions(
         self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_OutputRow]
     ) -> TransferFunctions:
         """Transfer functions with common factors cancelled, and with 1/s for inputs that are road velocities."""
@@ -177,12 +177,12 @@ class _Nodal:
             for road, *_ in loads
         ]
         velocities = any(road is not None for road, *_ in loads)
-        whole = [scaled(n, factor) for n, factor in zip(numerators, factors, strict=True)]
+        whole = [scale_by(n, factor) for n, factor in zip(numerators, factors, strict=True)]
         whole = [
             [0, *n] if velocities and road is None else n
             for n, (road, *_) in zip(whole, loads * len(rows), strict=True)
         ]
-        bottom = scaled([0, *denominator] if velocities else denominator, force)
+        bottom = scale_by([0, *denominator] if velocities else denominator, force)
         while bottom[0] == 0 and all(n[0] == 0 for n in whole if n):
             bottom, whole = bottom[1:], [n[1:] for n in whole]
         content = common(*bottom, *(c for n in whole for c in n))
@@ -194,7 +194,7 @@ class _Nodal:
         )
 
 
-def solved(P: list[list[int]], F: list[list[int]]) -> tuple[int, list[list[int]]]:
+def solve_fraction_free(P: list[list[int]], F: list[list[int]]) -> tuple[int, list[list[int]]]:
     """The determinant of P, and P^-1 F times it, without fractions (Bareiss, 1968); all leading minors are positive."""
     n, before = len(P), 1
     rows = [[*p, *f] for p, f in zip(P, F, strict=True)]

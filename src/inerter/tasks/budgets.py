@@ -17,7 +17,7 @@ from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.methods.registry import brief_words_of, deciding, is_blind
+from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.findings import best_layouts
@@ -61,7 +61,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         )
         said = found.status.message
         sure = found.status.kind in (StatusKind.OK, StatusKind.UNBOUNDED)
-        more = "" if sure else deciding(budget_method(study), said)
+        more = "" if sure else decisive_method_clause(budget_method(study), said)
         return self._answer(study, found, found.status.kind.value, said + more)
 
     def failure_answer(self, study: Study, message: str) -> BudgetAnswer:

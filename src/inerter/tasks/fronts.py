@@ -25,7 +25,7 @@ from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
-from inerter.methods.registry import deciding
+from inerter.methods.registry import decisive_method_clause
 from inerter.report.question import key_in_words
 from inerter.table import Cell, Row, Table, Writer
 from inerter.trade_off.front import ParetoFront
@@ -241,7 +241,8 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
         status=found.status.kind.value,
-        message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
+        message=found.status.message
+        + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),
     )
 
 

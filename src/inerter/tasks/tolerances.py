@@ -15,7 +15,7 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.methods.registry import deciding
+from inerter.methods.registry import decisive_method_clause
 from inerter.scatter.tolerance import tolerance_analysis
 from inerter.table import Cell, Row, Table, Writer
 
@@ -59,7 +59,8 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             status=found.status.kind.value,
-            message=found.status.message + ("" if found.status.ok else deciding(method, found.status.message)),
+            message=found.status.message
+            + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),
         )
 
     def failure_answer(self, study: Study, message: str) -> ToleranceAnswer:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.checks import is_number
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import IndexLike
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.vehicle.vehicle import Vehicle
 
@@ -27,7 +27,7 @@ class ParetoFront:
     the constraints at each point. `status` gives the reason for a front without points.
     """
 
-    indices: tuple[Asked, ...]
+    indices: tuple[IndexLike, ...]
     values: Array
     parameters: tuple[dict[str, float], ...]
     designs: tuple[Vehicle, ...]

@@ -20,8 +20,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, InerterError, PerformanceIndexError, Status, StatusKind, worst_of
-from inerter.methods.asking import Asked, estimate_of, objective_of
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combine_objectives
+from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import with_gradients
@@ -49,7 +49,7 @@ _RESTARTS = 4  # with improved ends
 
 def pareto_front(
     vehicle: Vehicle,
-    indices: Sequence[Asked],
+    indices: Sequence[IndexLike],
     method: Method,
     *,
     points: int = 25,
@@ -93,7 +93,7 @@ def pareto_front(
         return _front(trade, found, int(seed))
 
 
-def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[Asked, ...]:
+def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[IndexLike, ...]:
     if not isinstance(indices, Sequence) or isinstance(indices, str) or len(indices) not in (2, 3):
         raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {indices!r}.")
     for one in indices:
@@ -111,7 +111,7 @@ class _Trade:
     """Criteria of a vehicle as functions of its free values, normalised by the single optima."""
 
     vehicle: Vehicle
-    indices: tuple[Asked, ...]
+    indices: tuple[IndexLike, ...]
     method: Method
     objectives: tuple[Any, ...]
     bounds: tuple[Bound, ...]
@@ -171,7 +171,7 @@ class _Trade:
         parts = [
             ObjectivePart(self.objectives[i], None, 1.0 / size[i], _SHIFT - ideal[i] / size[i] - aim[i]) for i in which
         ]
-        return ConstrainedProblem(combined(parts, worst=True), self.bounds, self.lower, self.upper)
+        return ConstrainedProblem(combine_objectives(parts, worst=True), self.bounds, self.lower, self.upper)
 
     def starts(self, aim: Array, which: Sequence[int]) -> list[Array]:
         """The lowest local minima of the sample."""
@@ -209,7 +209,9 @@ class _Trade:
             Bound(Limit(index, Sense.AT_MOST, float(value)), objective)
             for index, value, objective in zip(self.indices, found.values, self.objectives, strict=True)
         )
-        problem = ConstrainedProblem(combined(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper)
+        problem = ConstrainedProblem(
+            combine_objectives(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper
+        )
         if not self._quick:
             return found
         start = problem.at(found.point, 0)
@@ -322,7 +324,7 @@ def _costly(problem: ConstrainedProblem, first: Sequence[Array]) -> LocalOptimum
 
 def _trade(
     vehicle: Vehicle,
-    indices: tuple[Asked, ...],
+    indices: tuple[IndexLike, ...],
     method: Method,
     limits: tuple[Limit, ...],
     free: dict[str, Free],
@@ -345,7 +347,7 @@ def _trade(
 
 
 def _hints(
-    vehicle: Vehicle, indices: tuple[Asked, ...], method: Method, limits: tuple[Limit, ...], seed: int
+    vehicle: Vehicle, indices: tuple[IndexLike, ...], method: Method, limits: tuple[Limit, ...], seed: int
 ) -> list[Array]:
     """Points of the front of a quick method, for a method without gradients."""
     if isinstance(objective_of(vehicle, indices[0], method), Differentiable):
@@ -361,7 +363,7 @@ def _hints(
     return []
 
 
-def _empty(indices: tuple[Asked, ...], seed: int, status: Status) -> ParetoFront:
+def _empty(indices: tuple[IndexLike, ...], seed: int, status: Status) -> ParetoFront:
     return ParetoFront(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
 
 

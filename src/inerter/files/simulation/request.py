@@ -15,7 +15,7 @@ from inerter.files.common.toml import as_toml
 from inerter.files.simulation.sections import SimulationSettings, simulation_codec
 from inerter.networks.elements import Element
 from inerter.signals.signal import Signal
-from inerter.simulation.inputs import Driven
+from inerter.simulation.inputs import RunInputs
 from inerter.simulation.simulate import RunSettings, check_simulation, simulate
 from inerter.simulation.trajectory import Trajectory
 from inerter.vehicle.vehicle import Vehicle
@@ -96,13 +96,13 @@ class SimulationRequest(SimulationSettings):
     def _settings(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("duration", "step", "integrator", "every", "energy")}
 
-    def _input_arguments(self) -> Driven:
+    def _input_arguments(self) -> RunInputs:
         signals = self.signals()
         signal = signals.get("", signals)
         moved: Any = {"road": signal} if self.signal.input == "road" else {"forces": {self.signal.input: signal}}
         if self.signal.input == "displacement":
             moved = {"displacement": signal}
-        return cast(Driven, {**moved, "speed": self.speed, "initial": self.initial})
+        return cast(RunInputs, {**moved, "speed": self.speed, "initial": self.initial})
 
     def to_tables(self) -> dict[str, Any]:
         """The request as a simulation file says it: every default filled in, every quantity in SI units."""

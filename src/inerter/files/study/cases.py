@@ -17,7 +17,7 @@ from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
 from inerter.methods.method import Estimate, evaluate
-from inerter.methods.note import after, parts_of
+from inerter.methods.notes import parts_of, with_prefix
 from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.systems.descriptor import is_held_by_springs
@@ -215,7 +215,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     worst = worst_of((*(e.status for e in own.values()), *((found.status,) if found else ())))
     bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if e.status == worst and len(own) > 1), "")
     left_out = design_notes(study, vehicle.mechanism())
-    notes = [after(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
+    notes = [with_prefix(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
     notes += [parts_of(note) for note in left_out]
     speeds: dict[str, list[float]] = {}
     speed_message = ""

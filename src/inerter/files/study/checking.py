@@ -21,9 +21,9 @@ from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import tasks
-from inerter.methods.asking import objective_of, without_tied_values
+from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.method import Compiled, Refusing, asked_of
+from inerter.methods.method import MethodWithChecks, MethodWithKernels, constituents_of
 from inerter.methods.registry import is_blind
 from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
@@ -96,7 +96,7 @@ def _check_design(study: Study, layout: str) -> None:
     vehicle = study.design(layout)
     loose = without_tied_values(vehicle)
     over = [study.over_conditions(name) for name in study.indices]
-    each = [one for index in over for one in asked_of(loose.vehicle if loose else vehicle, index)]
+    each = [one for index in over for one in constituents_of(loose.vehicle if loose else vehicle, index)]
     questions = [(case.mechanism(), index.question(case.mechanism())) for case, index in each]
     if any(map(is_blind, study.methods)):
         for mechanism, question in questions:
@@ -105,9 +105,9 @@ def _check_design(study: Study, layout: str) -> None:
     if not all(map(is_blind, study.methods)):
         piecewise(vehicle.with_values(halfway))
     for method in map(study.method, study.evaluate):
-        if isinstance(method, Refusing):
+        if isinstance(method, MethodWithChecks):
             for index in over:
-                for case, one in asked_of(vehicle.with_values(halfway), index):
+                for case, one in constituents_of(vehicle.with_values(halfway), index):
                     method.check(case, one)
     if study.optimise is not None and vehicle.free_values():
         check_free(vehicle)
@@ -138,7 +138,7 @@ def kernels(study: Study) -> list[Any]:
     design = study.design(next(iter(study.layouts)))
     for name in study.methods:
         method = study.method(name)
-        if isinstance(method, Compiled):
+        if isinstance(method, MethodWithKernels):
             questions = [study.index(index).question(design.mechanism()) for index in study.indices]
             for question in [*questions, *questions_limited(study, design)]:
                 found += method.kernels(question, search=name == study.optimise)

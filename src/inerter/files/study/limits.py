@@ -15,8 +15,8 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.indices.names import index_names
-from inerter.methods.asking import Asked
-from inerter.methods.method import asked_of
+from inerter.methods.composite_index import IndexLike
+from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 _STIFFNESS = "static-stiffness"
-_SENSES: dict[str, Callable[[Asked, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
+_SENSES: dict[str, Callable[[IndexLike, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
 _PLACE = ("study", "subject_to")
 
 
@@ -158,7 +158,7 @@ def _unit(study: Study, of: str) -> str:
     return study.unit(of)
 
 
-def quantity_limited(study: Study, of: str) -> Asked:
+def quantity_limited(study: Study, of: str) -> IndexLike:
     """Quantity to which a limit applies: static stiffness of a mount, or an index."""
     section, _, mount = of.partition(".")
     return static_stiffness(mount) if section == _STIFFNESS else study.index(of)
@@ -217,5 +217,5 @@ def questions_limited(study: Study, vehicle: Vehicle) -> list[Any]:
         index.question(case.mechanism())
         for several in limits_in(study)
         for limit in several
-        for case, index in asked_of(vehicle, limit.of)
+        for case, index in constituents_of(vehicle, limit.of)
     ]

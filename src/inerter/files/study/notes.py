@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.study import Study
-from inerter.methods.note import text_of
+from inerter.methods.notes import text_of
 
 Part = str | float
 _Words = tuple[str | None, ...]  # of a note, with None for its numbers

@@ -46,7 +46,7 @@ def _of_name(
     place: Sequence[str], named: NameReference, mechanism: Mechanism, question: IndexDefinition
 ) -> Problem | None:
     """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
-    driven = question.drive.driven(mechanism)
+    driven = question.drive.excited_mechanism(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     told: Sequence[str]
     if named.what == "output":

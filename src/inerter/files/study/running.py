@@ -29,7 +29,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_rows import TASKS
 from inerter.files.study.tasks import Answer, Designs, by_task, journal_entry, parts_of
-from inerter.kernels.prepare import Told, prepare_on
+from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.work.journal import Journal
 from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
@@ -86,7 +86,7 @@ def run_study(
     resume: bool = False,
     force: bool = False,
     progress: Progress = lambda done, total, last, not_ok: None,
-    compiling: Told | None = None,
+    compiling: ProgressCallback | None = None,
     finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
     """Run `study` into `folder`, and write the resolved study, the summary and the dataset.
@@ -164,7 +164,7 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 
 def _compute_outcomes(
-    study: Study, results: Results, pool: Pool, progress: Progress, compiling: Told | None
+    study: Study, results: Results, pool: Pool, progress: Progress, compiling: ProgressCallback | None
 ) -> tuple[DatasetBuilder, _Done, int]:
     """All cases and parts of tasks, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
@@ -238,7 +238,7 @@ def _resumed_result(
     return result
 
 
-def _prepare(pool: Pool, study: Study, compiling: Told | None) -> None:
+def _prepare(pool: Pool, study: Study, compiling: ProgressCallback | None) -> None:
     """Compile the kernels that the work needs, where it runs, before several processes would do so at once."""
     if pool.is_cluster and compiling is not None:
         compiling("those that machines of the cluster lack", 1, 1)

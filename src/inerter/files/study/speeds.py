@@ -9,10 +9,10 @@ import numpy as np
 from inerter.errors import InerterError
 from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
-from inerter.methods.asking import Asked
-from inerter.methods.counterpart import has_play
+from inerter.methods.composite_index import IndexLike
 from inerter.methods.equivalent import has_friction
-from inerter.methods.method import Doubting, asked_of, evaluate
+from inerter.methods.equivalent_linear import has_play
+from inerter.methods.method import MethodWithExactFallback, constituents_of, evaluate
 from inerter.methods.registry import averages, is_blind, without_roads
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -58,7 +58,9 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
     there = with_numbers(study, [(place_of(SPEED), speed)])
     question, way = there.resolve_index(index, layout), there.method(method)
     try:
-        if isinstance(way, Doubting) and any(way.share_unsure(*one, {}) for one in asked_of(vehicle, question)):
+        if isinstance(way, MethodWithExactFallback) and any(
+            way.share_unsure(*one, {}) for one in constituents_of(vehicle, question)
+        ):
             return np.nan, "it takes more digits than double precision has"
         found = evaluate(vehicle, question, way)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
@@ -79,12 +81,12 @@ def _rubs(vehicle: Vehicle) -> bool:
     return has_friction(vehicle.mechanism())
 
 
-def _is_late(vehicle: Vehicle, asked: Asked) -> bool:
+def _is_late(vehicle: Vehicle, asked: IndexLike) -> bool:
     """Whether random inputs act with different delays, or through a filter that depends on the speed."""
-    for one, index in asked_of(vehicle, asked):
+    for one, index in constituents_of(vehicle, asked):
         mechanism = one.mechanism()
         question = index.question(mechanism)
-        arrivals = question.arrivals(question.drive.driven(mechanism)) if question.drive.is_random else ()
+        arrivals = question.arrivals(question.drive.excited_mechanism(mechanism)) if question.drive.is_random else ()
         coherence = getattr(getattr(question.drive, "road", None), "coherence", None)
         if len({arrival.delay for arrival in arrivals}) > 1 or (arrivals and coherence is not None):
             return True

@@ -23,7 +23,7 @@ from inerter.files.study.sections import OVER, Settings, study_codec
 from inerter.indices.names import index_names
 from inerter.indices.question import Index
 from inerter.indices.registry import INDICES, excitation_of, make_index
-from inerter.methods.asking import Asked
+from inerter.methods.composite_index import IndexLike
 from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import make_method
@@ -87,7 +87,7 @@ class Study(Settings):
         own = self.own_indices.get(name)
         return own.needs_road if own else excitation_of(self.symbol(name)) is not None
 
-    def resolve_index(self, name: str, layout: str) -> Asked:
+    def resolve_index(self, name: str, layout: str) -> IndexLike:
         """Objective of a layout for an index: over the conditions, and at the quantile, if the study has them."""
         index = self.over_conditions(name)
         if self.quantile is None or not (spread := self.spread(layout)):
@@ -106,7 +106,7 @@ class Study(Settings):
                 found[known[1]] = part
         return found
 
-    def over_conditions(self, name: str) -> Asked:
+    def over_conditions(self, name: str) -> IndexLike:
         """Index of that name, combined over the conditions of the study if it has any."""
         index = self.index(name)
         if not self.conditions:
@@ -114,7 +114,7 @@ class Study(Settings):
         use = Conditions(condition_of(self, condition) for condition in self.conditions)
         return use.mean(index) if self.over == OVER[0] else use.worst(index)
 
-    def in_each(self, index: Asked) -> list[Asked]:
+    def in_each(self, index: IndexLike) -> list[IndexLike]:
         """List of an index in each condition separately; of the index alone without conditions."""
         return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]
 

@@ -6,7 +6,7 @@ from collections import Counter
 
 from inerter.files.study.study import Study, elements_used
 from inerter.methods.method import NonlinearitySupport
-from inerter.methods.registry import brief_words_of, what_is_seen
+from inerter.methods.registry import brief_words_of, nonlinearities_of
 from inerter.networks.elements.roles import GuardRole
 from inerter.systems.graph import switching_parts
 
@@ -23,7 +23,7 @@ def ways(study: Study) -> dict[str, str]:
     Two methods that see the same are told apart by what they are.
     """
     there = _losses(study)
-    told = {method: _describe_guards(there, _SEEN[what_is_seen(method)]) for method in study.evaluate}
+    told = {method: _describe_guards(there, _SEEN[nonlinearities_of(method)]) for method in study.evaluate}
     count = Counter(told.values())
     return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
 

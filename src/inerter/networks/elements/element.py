@@ -79,7 +79,7 @@ class Element(Network):
 
     @classmethod
     def fields(cls) -> tuple[Field, ...]:
-        """All numbers of the element, the value first."""
+        """Fields of the numbers of the element, the value first."""
         return (Field(cls.quantity, cls.unit, cls.sentence), *cls.more)
 
     @classmethod
@@ -175,14 +175,14 @@ class Element(Network):
 
     @property
     def label(self) -> str:
-        """Its name, else the name of its free value, else its symbol."""
+        """Name of the element, else the name of its free value, else its symbol."""
         if self.name is not None:
             return self.name
         value = self.value
         return value.name if isinstance(value, Free) and value.name is not None else self.symbol
 
     def with_value(self, value: Value) -> Element:
-        """The same element with another value."""
+        """Copy of the element with another value."""
         more = [getattr(self, field.name) for field in self.more] if self.more else []
         return type(self)(value, *more, self.name)  # type: ignore[call-arg]  # thrice as quick as `replace`
 

@@ -35,7 +35,7 @@ class Quadrature:
         if question.combination is not it.Combination.SUM_OF_RMS:
             raise it.InerterError(f"Quadrature is for r.m.s. values, and {index.symbol} is none.")
         names = [weighted.output for weighted in question.outputs]
-        mechanism = question.drive.driven(mechanism)
+        mechanism = question.drive.excited_mechanism(mechanism)
         arrivals = question.arrivals(mechanism)
         system = it.state_space(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
         omega, weights = _nodes(self.points, self.middle)

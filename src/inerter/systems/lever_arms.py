@@ -18,10 +18,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.systems import rationals
+from inerter.systems import exact_rank
+from inerter.systems.exact_rank import FractionRows, Row
 from inerter.systems.graph import Graph
-from inerter.systems.incidence import stacked
-from inerter.systems.rationals import FractionRows, Row
+from inerter.systems.incidence import incidence_rows
 
 Matrix = NDArray[np.float64]
 RANK_TOLERANCE = 1e-9  # incidence rows are scaled to one, and levers of a vehicle lie within a few decades
@@ -40,13 +40,15 @@ class BranchRows:
     @staticmethod
     def of(graph: Graph, roads: Sequence[int]) -> BranchRows:
         """Branch rows of a graph over its nodes and the roads of these numbers."""
-        on_nodes, on_roads = stacked(sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph)
+        on_nodes, on_roads = incidence_rows(
+            sorted(graph.branches, key=lambda branch: branch.element.linear.order), graph
+        )
         rows = np.hstack([on_nodes, on_roads[:, list(roads)]])
         return BranchRows(rows.shape, rows.tobytes(), len(graph.nodes))
 
-    def meant(self, rows: Matrix) -> FractionRows:
-        """Rows over nodes, or over nodes and roads, as they were meant to be."""
-        return [list(_meant(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
+    def exact_rows(self, rows: Matrix) -> FractionRows:
+        """Rows over nodes, or over nodes and roads, with nearly dependent levers replaced by exact ones."""
+        return [list(_snap_row(self, row.tobytes())) for row in np.asarray(rows, dtype=np.float64)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +62,12 @@ class _Basis:
 
 
 @lru_cache(maxsize=4096)
-def _meant(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
-    given, basis = rationals.exact(np.frombuffer(data)[None])[0], _basis(span)
+def _snap_row(span: BranchRows, data: bytes) -> tuple[Fraction, ...]:
+    given, basis = exact_rank.exact(np.frombuffer(data)[None])[0], _basis(span)
     if basis is None:
         return tuple(given)
-    shares = rationals.product([[given[i] for i in basis.columns]], basis.inverse, len(basis.rows))[0]
-    made = rationals.product([[_simple(share) for share in shares]], basis.rows, span.shape[1])[0]
+    shares = exact_rank.product([[given[i] for i in basis.columns]], basis.inverse, len(basis.rows))[0]
+    made = exact_rank.product([[_simple(share) for share in shares]], basis.rows, span.shape[1])[0]
     near = [abs(x - z) <= reach for x, z, reach in zip(given, made, basis.reach, strict=False)]
     if not all(near[: span.nodes]):
         return tuple(given)
@@ -89,11 +91,11 @@ def _basis(span: BranchRows) -> _Basis | None:
     scaled = nodes / np.where(sizes > 0.0, sizes, 1.0)
     chosen = independent_rows(scaled)
     columns = scipy.linalg.qr(scaled[chosen], mode="r", pivoting=True)[1][: len(chosen)]
-    square = rationals.exact(nodes[chosen][:, columns])
-    inverse = rationals.weights(square, rationals.exact(np.eye(len(chosen))))
+    square = exact_rank.exact(nodes[chosen][:, columns])
+    inverse = exact_rank.weights(square, exact_rank.exact(np.eye(len(chosen))))
     found = [row for row in inverse if row is not None]
-    reach = rationals.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
-    return _Basis(rationals.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
+    reach = exact_rank.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
+    return _Basis(exact_rank.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
 
 
 def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
@@ -107,13 +109,12 @@ def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
     return bool(np.finfo(float).eps * terms.max() > most * size)
 
 
-def lost_in(shares: Matrix, labels: Sequence[str]) -> str:
+def lost_travel_message(shares: Matrix, labels: Sequence[str]) -> str:
     """Message on travels for which `is_lost` holds; `labels` are those of the elements."""
     worst = int(np.argmax(np.abs(shares).max(axis=1)))
     return (
-        f"The travel of {labels[worst]!r} depends on those of others but for a billionth to a millionth of its size, "
-        f"and what differs is lost in rounding. Write levers that are meant to be one alike, to all digits, or let "
-        f"them differ by more."
+        f"The travel of {labels[worst]!r} depends on those of others up to a relative difference of 1e-9 to 1e-6, "
+        f"which is lost to rounding. Give equal levers to all digits, or let them differ by more."
     )
 
 

@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from inerter.networks.elements.roles import LinearRole
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.symmetry import alike_half, opposed_half
 
 
 def on_one_side(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> tuple[Mechanism, tuple[InputPath, ...]] | None:
-    """Half model that moves as the whole does, and its input paths; None if there is none.
+    """Half model with the motion of the whole, and its input paths; None if there is none.
 
     The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
     """

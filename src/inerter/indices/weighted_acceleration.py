@@ -51,13 +51,13 @@ def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = 
     (1.04, 1.04)
     """
     system = iso2631_weighting(weighting)
-    times, given = _checked(time, acceleration)
+    times, given = _check_samples(time, acceleration)
     mean = float(given.mean())
     is_offset = abs(given[0] - mean) < abs(given[0])  # else taking it away would make the step that it is to spare
     constant = mean if is_offset and abs(mean) > _CONSTANT * float(given.std()) else 0.0
     given = given - constant if constant else given
     step = float(times[-1] - times[0]) / (times.size - 1)
-    values = _passed(system, given, step)
+    values = _filter_samples(system, given, step)
     energy = np.concatenate([[0.0], np.cumsum(0.5 * step * (values[1:] ** 2 + values[:-1] ** 2))])
     since = times - times[0]
     late = since >= _RUNNING * (1.0 - _EVEN)
@@ -72,7 +72,7 @@ def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = 
     )
 
 
-def _passed(system: LinearSystem, given: Array, step: float) -> Array:
+def _filter_samples(system: LinearSystem, given: Array, step: float) -> Array:
     """The output for an input that is linear between even samples, mode by mode: the poles of weightings differ."""
     matrices = (system.A, system.B, system.C, system.D)
     A, B, C, D, _ = scipy.signal.cont2discrete(matrices, step, method="foh")
@@ -84,21 +84,21 @@ def _passed(system: LinearSystem, given: Array, step: float) -> Array:
     return np.asarray(result)
 
 
-def _checked(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
+def _check_samples(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
     try:
         times, given = np.asarray(time, dtype=float), np.asarray(acceleration, dtype=float)
     except (TypeError, ValueError):
-        raise PerformanceIndexError(
-            "A weighted motion is made of two lists of numbers, time and acceleration."
-        ) from None
+        raise PerformanceIndexError("A weighted motion requires two lists of numbers, time and acceleration.") from None
     if times.ndim != 1 or times.shape != given.shape or not (np.all(np.isfinite(times)) and np.all(np.isfinite(given))):
         raise PerformanceIndexError(
-            f"Time and acceleration are two lists of as many finite numbers, got shapes {times.shape} and "
+            f"Time and acceleration must be two equally long lists of finite numbers, got shapes {times.shape} and "
             f"{given.shape}."
         )
     steps = np.diff(times)
     if not steps.size or not steps.min() > 0.0 or np.ptp(steps) > _EVEN * steps.max():
-        raise PerformanceIndexError("The time of a weighted motion goes on in even steps. Interpolate it first.")
+        raise PerformanceIndexError("The time of a weighted motion must be equally spaced. Interpolate it first.")
     if times[-1] - times[0] < _RUNNING * (1.0 - _EVEN):
-        raise PerformanceIndexError(f"A weighted motion lasts {_RUNNING:g} s at least, got {times[-1] - times[0]:g} s.")
+        raise PerformanceIndexError(
+            f"A weighted motion must last at least {_RUNNING:g} s, got {times[-1] - times[0]:g} s."
+        )
     return times, given

@@ -1,9 +1,9 @@
-"""The energy account: what roads, forces and branches did along a piece of the motion."""
+"""Energy account: work of roads, forces and branches along a piece of the motion."""
 
 from __future__ import annotations
 
 from inerter.kernels.arrays import Account, Run
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
 from inerter.kernels.flow import over_columns, polynomial
 
 

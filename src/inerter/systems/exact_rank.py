@@ -21,12 +21,12 @@ def exact(matrix: NDArray[np.float64]) -> FractionRows:
     return [[known.setdefault(x, Fraction(x)) for x in row] for row in matrix.tolist()]
 
 
-def rounded(rows: FractionRows, columns: int) -> NDArray[np.float64]:
+def to_matrix(rows: FractionRows, columns: int) -> NDArray[np.float64]:
     """Rows of fractions as a matrix of so many columns."""
     return np.array([[float(x) for x in row] for row in rows]).reshape(len(rows), columns)
 
 
-def transposed(rows: FractionRows, columns: int) -> FractionRows:
+def transpose(rows: FractionRows, columns: int) -> FractionRows:
     """The transpose of rows of so many columns."""
     return [[row[j] for row in rows] for j in range(columns)]
 

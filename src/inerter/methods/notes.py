@@ -29,7 +29,7 @@ def parts_of(note: str) -> Parts:
     return note.parts if isinstance(note, Note) else (note,)
 
 
-def after(prefix: str, note: str) -> Parts:
+def with_prefix(prefix: str, note: str) -> Parts:
     """The parts of a note with a word before it.
 
     >>> after("norm: ", "friction left out"), after("c = ", Note(2.0, " N s/m"))

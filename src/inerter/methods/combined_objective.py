@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 _MOST_OF_EACH, _MOST_SUMS = 4, 24  # peaks of each part that a sum combines, and combinations that it tells
 
 
-class Follow(Protocol):
+class ValueMap(Protocol):
     """Map from our values to those of a part of the objective."""
 
     def values(self, points: Array) -> Array:
@@ -36,7 +36,7 @@ class ObjectivePart:
     """An objective over values that follow from ours (over ours, without), times `scale`, plus `offset`."""
 
     objective: Any
-    follow: Follow | None = None
+    follow: ValueMap | None = None
     scale: float = 1.0
     offset: float = 0.0
 
@@ -72,7 +72,7 @@ class ObjectivePart:
         if all(one is None for one in which):
             value, gradient = self.value_and_gradient(point)
             return np.full(len(which), value), np.tile(gradient, (len(which), 1))
-        values, gradients = self.objective.components(inner, _listed(list(which)))
+        values, gradients = self.objective.components(inner, _to_array(list(which)))
         return self.scale * values + self.offset, self.scale * (gradients if slopes is None else gradients @ slopes)
 
     def _inner(self, point: Array) -> tuple[Array | None, Array | None]:
@@ -86,16 +86,16 @@ def _possible(values: Array) -> NDArray[np.bool_]:
     return np.asarray(np.all((values > 0.0) & np.isfinite(values), axis=1))
 
 
-def combined(parts: Sequence[ObjectivePart], *, worst: bool) -> Objective:
+def combine_objectives(parts: Sequence[ObjectivePart], *, worst: bool) -> Objective:
     """The sum of the parts or the largest of them; with gradients if all of them have some."""
-    values = CombinedValues(tuple(parts), worst)
+    values = CombinedObjective(tuple(parts), worst)
     known = all(isinstance(part.objective, Differentiable) for part in parts)
-    found: Differentiable | CombinedValues = Combined(values) if known else values
+    found: Differentiable | CombinedObjective = DifferentiableCombination(values) if known else values
     return found
 
 
 @dataclass(frozen=True, eq=False)
-class CombinedValues:
+class CombinedObjective:
     """Parts of which no gradient is known: an `Objective`."""
 
     parts: tuple[ObjectivePart, ...]
@@ -108,14 +108,14 @@ class CombinedValues:
 
 
 @dataclass(frozen=True, eq=False)
-class Combined:
+class DifferentiableCombination:
     """Parts with gradients: a `Differentiable`.
 
     One of the smooth functions of a maximum is (the number of a part, which of its own), of a sum one of each part;
     None stands for that of a part that is smooth.
     """
 
-    plain: CombinedValues
+    plain: CombinedObjective
 
     @property
     def _parts(self) -> tuple[ObjectivePart, ...]:
@@ -147,7 +147,7 @@ class Combined:
             several = [(i, one) for i, which in enumerate(each) for one in which]
         else:
             several = list(product(*(which[:_MOST_OF_EACH] for which in each)))
-        chosen = _listed(several)
+        chosen = _to_array(several)
         if not several:
             return chosen
         order = np.argsort(-self.components(point, chosen)[0], kind="stable")
@@ -171,7 +171,7 @@ class Combined:
         return values, gradients
 
 
-def _listed(several: list[Any]) -> Any:
+def _to_array(several: list[Any]) -> Any:
     """Array of the entries: of floats if all are, else of objects."""
     if all(isinstance(one, float) for one in several):
         return np.array(several, dtype=float)

@@ -9,7 +9,7 @@ import numpy as np
 from inerter.errors import LinearSystemError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
-from inerter.systems.frame import Frame, Long, Matrix, RowBlocks
+from inerter.systems.coordinate_split import Frame, Long, Matrix, RowBlocks
 from inerter.systems.graph import Branch
 from inerter.vehicle.mechanism import GROUND_ACCELERATION
 
@@ -31,14 +31,14 @@ def balance(frame: Frame) -> tuple[Long, Long]:
         sizes[place] += np.abs(term)
     for j, (name, row) in enumerate(zip(frame.inputs[frame.roads :], frame.force_rows, strict=True)):
         column = e + frame.states + frame.roads + j
-        for place, factor, part in _pushed(frame, name, row):
+        for place, factor, part in _force_terms(frame, name, row):
             force = factor * _on_forces(frame, part).astype(np.longdouble)
             terms[place, :, column] -= force
             sizes[place, :, column] += np.abs(force)
     return terms, sizes
 
 
-def _pushed(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, float, Matrix]]:
+def _force_terms(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, float, Matrix]]:
     """Slices, factors and rows of a force; ground acceleration acts on each mass in proportion to the mass."""
     if name != GROUND_ACCELERATION or not frame.mechanism.ground_moves:
         yield 0, 1.0, row

@@ -50,10 +50,10 @@ def road_errors(
 def _change_of(question: IndexDefinition, norms: Array) -> Callable[[Array], float]:
     """Function from relative changes of the mean squares to the relative change of the index."""
     weights = np.array([abs(output.weight) for output in question.outputs])
-    value = float(question.combined(norms, weights))
+    value = float(question.combine(norms, weights))
 
     def change(shares: Array) -> float:
-        other = float(question.combined(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
+        other = float(question.combine(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
         return abs(other / value - 1.0) if value > 0.0 else 0.0
 
     return change

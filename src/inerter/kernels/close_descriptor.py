@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.declare import part
+from inerter.kernels.decorators import part
+from inerter.kernels.double_double import add_multiple
 from inerter.kernels.linalg import copy, factor, solve, solve_rows, solve_transposed
-from inerter.kernels.twofold import add_multiple
 
 Array = Any
 DESCRIPTOR = f"Tuple(({3 * 'float64[:,:,::1], '}{3 * 'float64[:,::1], '}{3 * 'float64[:,:,::1], '}))"  # its type
@@ -67,8 +67,8 @@ def split_up(values: Array, e: int, n: int, m: int, o: int) -> Any:
 
 
 @part()
-def twofold_space(descriptor: Array) -> Any:
-    """Room for `close_twofold`: that of `close_in`, what rounding takes from A, B, C, D, and sums in two numbers."""
+def extended_space(descriptor: Array) -> Any:
+    """Room for `close_extended`: that of `close_in`, what rounding takes from A, B, C, D, and sums in two numbers."""
     S, R, F, _, _, _, _, Y_x, _ = descriptor
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
     count = e * e + e * (n + m) + o * e + o * (n + m)
@@ -79,17 +79,17 @@ def twofold_space(descriptor: Array) -> Any:
 
 
 @part(borrowing=True)
-def close_twofold(room: Array, p: Array, descriptor: Array, twofold: Array) -> bool:
-    """As `close_in`, and what rounding has taken from A, B, C and D.
+def close_extended(room: Array, p: Array, descriptor: Array, extended: Array) -> bool:
+    """Fill A, B, C and D as `close_in` does, and the rounding errors of their entries; False if S is singular.
 
-    `twofold` holds S, [R F], Y_eta and [Y_x Y_u] in a row, as a stack (1 + values, entries), and what rounding has
+    `extended` holds S, [R F], Y_eta and [Y_x Y_u] in a row, as a stack (1 + values, entries), and what rounding has
     taken from that: an array without entries where it is nothing.
     """
     space, (lost_A, lost_B, lost_C, lost_D), high, low, (whole, rest), (sum_high, sum_low) = room
     _, _, _, X_eta, X_x, X_u, _, _, _ = descriptor
     A, B, C, D, T, (LU, pivots, size), _, _ = space
     (S, right, Y, over), (S_low, right_low, Y_low, over_low) = whole, rest
-    stack, fine = twofold
+    stack, fine = extended
     e, n, m, o = S.shape[0], A.shape[0], B.shape[1], C.shape[0]
     for q in range(high.size):
         high[q], low[q] = stack[0, q], 0.0

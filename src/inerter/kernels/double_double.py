@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.declare import instruction, part
+from inerter.kernels.decorators import instruction, part
 
 Array = Any
 
@@ -13,16 +13,16 @@ _SPLIT = 134217729.0  # 2^27 + 1: parts a number into two of half its digits
 
 
 @part()
-def fused_by_halves(a: float, b: float, product: float) -> float:
-    """What rounding has taken from `-product`, the product of a and b (Dekker, 1971)."""
+def multiply_add_by_halves(a: float, b: float, product: float) -> float:
+    """Error a b + product of a rounded `-product` of a and b, by splitting both (Dekker, 1971)."""
     more, further = _SPLIT * a, _SPLIT * b
     a_high, b_high = more - (more - a), further - (further - b)
     a_low, b_low = a - a_high, b - b_high
     return ((a_high * b_high + product) + a_high * b_low + a_low * b_high) + a_low * b_low
 
 
-@instruction(fused_by_halves)
-def fused(typing: Any, a: Any, b: Any, c: Any) -> Any:
+@instruction(multiply_add_by_halves)
+def fused_multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Compile a b + c with one rounding."""
     from numba import types  # noqa: PLC0415 - heavy
 
@@ -40,7 +40,7 @@ def add_multiple(high: Array, low: Array, factor: float, row: Array, count: int)
         before = high[j]
         total = before + product
         came = total - before
-        low[j] += (before - (total - came)) + (product - came) + fused(factor, row[j], -product)
+        low[j] += (before - (total - came)) + (product - came) + fused_multiply_add(factor, row[j], -product)
         high[j] = total
 
 
@@ -50,4 +50,4 @@ def add_product(high: float, low: float, a: float, b: float) -> Any:
     product = a * b
     total = high + product
     came = total - high
-    return total, low + ((high - (total - came)) + (product - came) + fused(a, b, -product))
+    return total, low + ((high - (total - came)) + (product - came) + fused_multiply_add(a, b, -product))

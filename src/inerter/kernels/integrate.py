@@ -7,23 +7,23 @@ from functools import cache
 import numpy as np
 
 from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
-from inerter.kernels.declare import function_at, kernel, part
+from inerter.kernels.decorators import function_at, kernel, part
 
 
-def padded(rows: int) -> int:
-    """So many rows, in whole vectors of four."""
+def round_up_to_four(rows: int) -> int:
+    """Smallest multiple of four that is at least `rows`."""
     return -(-rows // 4) * 4
 
 
 def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp: bool) -> tuple[int, int, int]:
     """Columns of a step, and its rows: of what follows from them, and of the guards' sway."""
     rows = n + 2 * elements + outputs * (2 if jumps else 1) + (SHARP * elements if sharp else 0)
-    return n + inputs + 1, padded(rows), padded(elements)
+    return n + inputs + 1, round_up_to_four(rows), round_up_to_four(elements)
 
 
 @part(inside=True, borrowing=True, fused=True)
-def leap(lines: MarchLines, knots: Knots, k: int, shape: MarchShape, v: Array, before: Array) -> bool:
-    """Have positions follow inputs that jump at knot k, and keep the state before; whether one jumps."""
+def apply_jumps(lines: MarchLines, knots: Knots, k: int, shape: MarchShape, v: Array, before: Array) -> bool:
+    """Apply the jumps of inputs at knot k to the positions, and keep the state before; True if an input jumps."""
     leaps, columns = False, shape.states + shape.inputs + 1
     for c in range(shape.jumps):
         leaps = leaps or knots.value[k, c] != knots.value_before[k, c]
@@ -38,8 +38,8 @@ def leap(lines: MarchLines, knots: Knots, k: int, shape: MarchShape, v: Array, b
 
 
 @part(inside=True, borrowing=True, fused=True)
-def feed(knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, v: Array) -> None:
-    """What the inputs do over the step after knot k, in those of `flow.knot_numbers` that are used."""
+def fill_inputs(knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, v: Array) -> None:
+    """Fill `v` with the used `flow.knot_numbers` of the inputs over the step after knot k."""
     for j in range(shape.inputs):
         c, number, at = numbers[j] // 4, numbers[j] % 4, shape.states + j
         if number == 0:
@@ -53,8 +53,8 @@ def feed(knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, v
 
 
 @part(inside=True, borrowing=True, fused=True)
-def follow(steps: Array, v: Array, shape: MarchShape, y: Array) -> None:
-    """All that follows from the state and the inputs, and last how far each guard may sway."""
+def evaluate_step(steps: Array, v: Array, shape: MarchShape, y: Array) -> None:
+    """State, guards and outputs at the end of the step, and last the largest sway of each guard."""
     columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
     for i in range(0, shape.rows, 4):  # four rows at once, which one instruction does
         y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
@@ -91,8 +91,8 @@ def is_safe(limits: Array, shape: MarchShape, y: Array) -> bool:
 
 
 @part(inside=True, borrowing=True, fused=True)
-def renew(record: History, slot: int, counts: bool, shape: MarchShape, v: Array, y: Array) -> None:
-    """The sample at a jump, and its squares if that `counts`, are those after it."""
+def record_jump(record: History, slot: int, counts: bool, shape: MarchShape, v: Array, y: Array) -> None:
+    """Replace the sample at a jump, and its squares if it `counts`, by those after the jump."""
     if slot < record.states.shape[0]:
         for i in range(shape.states):
             record.states[slot, i] = v[i]
@@ -103,8 +103,8 @@ def renew(record: History, slot: int, counts: bool, shape: MarchShape, v: Array,
 
 
 @part(inside=True, borrowing=True, fused=True)
-def keep(record: History, slots: Array, k: int, span: Span, shape: MarchShape, v: Array, y: Array) -> None:
-    """Go over to the end of the step, and keep what is to be kept of it."""
+def record_step(record: History, slots: Array, k: int, span: Span, shape: MarchShape, v: Array, y: Array) -> None:
+    """Advance the state to the end of the step, and record its sample and squares."""
     if k >= span.settled and slots[k + 1] >= 0:
         for o in range(shape.squares):
             record.last[o] = y[shape.states + 2 * shape.elements + o] ** 2
@@ -119,10 +119,10 @@ def keep(record: History, slots: Array, k: int, span: Span, shape: MarchShape, v
 
 
 @part(typed=True, borrowing=True, inside=True, fused=True)
-def go_on(
+def march_steps(
     lines: MarchLines, knots: Knots, record: History, span: Span, shape: MarchShape, numbers: ConstantInts
 ) -> int:
-    """Go on while no guard can be crossed within the step; the first segment that needs more care."""
+    """Step while no guard can be crossed within the step; returns the first segment that needs event detection."""
     columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
     v, y = lines.work[:columns], lines.work[columns : columns + shape.rows + sways]
     before = lines.work[columns + shape.rows + sways :]
@@ -131,17 +131,17 @@ def go_on(
     v[columns - 1] = 1.0
     k = span.first
     while k < span.stop:
-        leaps = leap(lines, knots, k, shape, v, before)
-        feed(knots, k, span.step, shape, numbers, v)
-        follow(lines.steps, v, shape, y)
+        leaps = apply_jumps(lines, knots, k, shape, v, before)
+        fill_inputs(knots, k, span.step, shape, numbers, v)
+        evaluate_step(lines.steps, v, shape, y)
         if not is_safe(lines.limits, shape, y):
             if leaps:
                 for i in range(shape.states):
                     v[i] = before[i]
             break
         if leaps and knots.slot[k] >= 0:
-            renew(record, knots.slot[k], k > span.settled, shape, v, y)
-        keep(record, knots.slot, k, span, shape, v, y)
+            record_jump(record, knots.slot[k], k > span.settled, shape, v, y)
+        record_step(record, knots.slot, k, span, shape, v, y)
         k += 1
     for i in range(shape.states):
         lines.state[i] = v[i]
@@ -157,14 +157,14 @@ march_at = function_at(march_type)
 
 
 @part(borrowing=True)
-def by_sizes(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
-    """`go_on` with sizes that are read as it runs: the same numbers, at half the speed."""
-    return go_on(lines, knots, record, span, march.shape, march.numbers)
+def march_with_sizes(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
+    """Whole steps by `march_steps` with sizes read at run time: the same numbers, at half the speed."""
+    return march_steps(lines, knots, record, span, march.shape, march.numbers)
 
 
-@part(borrowing=True, plain=by_sizes)
+@part(borrowing=True, plain=march_with_sizes)
 def whole_steps(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
-    """`go_on` by the code for this shape.
+    """Whole steps by the `march_steps` compiled for this shape.
 
     Its address is handed over, not the function: that would run Python code within the call, which Ctrl-C can break.
     """
@@ -175,9 +175,9 @@ def whole_steps(march: March, lines: MarchLines, knots: Knots, record: History, 
 def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int, sharp: bool) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
 
-    It goes on while no guard can be crossed within the step, and returns the first segment that needs more care. Where
-    signals are held, the first `jumps` inputs may jump at every knot: positions follow at once. `sharp`: the first
-    terms of the guards' sway are values, not sums of sizes, which sees that large motions cancel in them.
+    It steps while no guard can be crossed within the step, and returns the first segment that needs event detection.
+    Where signals are held, the first `jumps` inputs may jump at every knot: positions follow at once. `sharp`: the
+    first terms of the guards' sway are values, not sums of sizes, so that large motions cancel in them.
     """
     _, rows, _ = lines_of(n, len(used), elements, outputs, jumps, sharp)
     shape = MarchShape(n, len(used), elements, outputs, jumps, rows, sharp)
@@ -185,6 +185,6 @@ def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: 
 
     @kernel("march", typed=True, fused=True, borrowing=True, by_address=True)
     def march(lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
-        return go_on(lines, knots, record, span, shape, numbers)
+        return march_steps(lines, knots, record, span, shape, numbers)
 
     return March(march_at.address_of(march), shape, numbers)

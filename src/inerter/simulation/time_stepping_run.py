@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.signals.signal import Signal
+from inerter.simulation.initial_state import Initial, initial_state
 from inerter.simulation.inputs import check_steps, just_before, whole_steps
-from inerter.simulation.start import Initial, initial_state
 from inerter.simulation.time_stepping import Histories, Start, StepTable, Stop, step_through
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import Output
@@ -25,7 +25,7 @@ Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Stepped:
+class TimeSteppingState:
     """Final state of a run by time stepping, from which another run of the same mechanism continues."""
 
     mechanism: Mechanism
@@ -53,7 +53,7 @@ def run(
     ending = initial._ending if isinstance(initial, Trajectory) else None
     start = (
         ending.stop
-        if isinstance(ending, Stepped) and ending.mechanism == system.mechanism
+        if isinstance(ending, TimeSteppingState) and ending.mechanism == system.mechanism
         else _start(system, table, state, before[0][:roads])
     )
     history = step_through(system.mechanism, system.graph, table, start, every)
@@ -61,7 +61,7 @@ def run(
         np.sum(np.all(np.isfinite(history.displacement), axis=1) & np.all(np.isfinite(history.forces), axis=1))
     )
     end = float(history.time[reached - 1])
-    given = _sampled(table, just_before(signals, delays, end, step), every, reached)
+    given = _inputs_at_samples(table, just_before(signals, delays, end, step), every, reached)
     return Trajectory(
         time=history.time[:reached],
         status=history.status,
@@ -71,7 +71,7 @@ def run(
         end=end,
         label="; ".join(dict.fromkeys(s.label for s in signals if s is not None)),
         _mechanism=system.mechanism,
-        _ending=Stepped(system.mechanism, history.stop) if history.status.ok else None,
+        _ending=TimeSteppingState(system.mechanism, history.stop) if history.status.ok else None,
         _evaluate=partial(_evaluate, given, roads, history),
     )
 
@@ -129,7 +129,7 @@ def _start(system: PiecewiseSystem, table: StepTable, state: Matrix, before: Mat
     )
 
 
-def _sampled(table: StepTable, last: Matrix, every: int, reached: int) -> Matrix:
+def _inputs_at_samples(table: StepTable, last: Matrix, every: int, reached: int) -> Matrix:
     """(2, inputs, samples): values and slopes of all inputs at the samples, at the last one from the left."""
     given = np.array([np.vstack(pair)[:, ::every][:, :reached] for pair in _pairs(table)])
     given[:, :, -1] = last

@@ -1,8 +1,8 @@
 """Evaluation of an index by a method, for simple and composed indices, and for dependent values of a design.
 
-A method answers one question about a mechanism of numbers and free values. An index that is made of several answers, or
-of none, is `Composed`: it asks by itself. Values that are tied to others are free ones to a method, and what it says of
-them is put together here. So no method knows of either.
+A method evaluates one index definition of a mechanism of numbers and free values. An index that combines several
+values, or needs no method, is a `CompositeIndex`, which calls the method itself. Values that are tied to others are
+free values to a method, and are resolved here. So no method depends on either.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.question import Index
-from inerter.methods.combined import ObjectivePart, combined
+from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.networks.elements import Element, Free, Tied, middle
 from inerter.vehicle.replace_values import mounted_elements, with_elements
 from inerter.vehicle.vehicle import Vehicle
@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 
 @runtime_checkable
-class Composed(Protocol):
+class CompositeIndex(Protocol):
     """Composed index: combines several indices, or computes its value without a method."""
 
     @property
@@ -55,19 +55,19 @@ class Composed(Protocol):
         """Frequency response of the index, in words."""
         ...
 
-    def asks(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
+    def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """Constituent indices, each with its vehicle; raises `InerterError` if the vehicle has no answer."""
         ...
 
-    def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> Sequence[Composed]:
+    def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> Sequence[CompositeIndex]:
         """Composed indices of the single outputs that `split` separates, for constraints on each."""
         ...
 
-    def estimated(self, vehicle: Vehicle, method: Method) -> Estimate:
+    def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values."""
         ...
 
-    def estimated_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
+    def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values, nan where one is not ok."""
         ...
 
@@ -76,43 +76,45 @@ class Composed(Protocol):
         ...
 
 
-Asked = Index | Composed
+IndexLike = Index | CompositeIndex
 
 
 def is_index(given: object) -> bool:
     """Whether an object is an index or a composed index, not its class."""
-    return not isinstance(given, type) and (hasattr(given, "question") or is_composed(given))
+    return not isinstance(given, type) and (hasattr(given, "question") or is_composite(given))
 
 
-def is_composed(index: object) -> TypeIs[Composed]:
+def is_composite(index: object) -> TypeIs[CompositeIndex]:
     """Whether an index is composed."""
-    return not isinstance(index, type) and isinstance(index, Composed)
+    return not isinstance(index, type) and isinstance(index, CompositeIndex)
 
 
-def estimate_of(vehicle: Vehicle, index: Asked, method: Method) -> Estimate:
+def estimate_of(vehicle: Vehicle, index: IndexLike, method: Method) -> Estimate:
     """The index of a vehicle without free values."""
-    return index.estimated(vehicle, method) if is_composed(index) else method.estimate(vehicle, index)
+    return index.estimate(vehicle, method) if is_composite(index) else method.estimate(vehicle, index)
 
 
-def estimates_of(vehicle: Vehicle, indices: Sequence[Asked], method: Method, points: Mapping[str, Array]) -> Array:
+def estimates_of(vehicle: Vehicle, indices: Sequence[IndexLike], method: Method, points: Mapping[str, Array]) -> Array:
     """The indices (designs, indices) of a vehicle at many values of its free values."""
     loose = without_tied_values(vehicle)
     if loose is not None:
-        return _many_followed(loose, indices, method, points)
-    plain = [index for index in indices if not is_composed(index)]
+        return _estimates_untied(loose, indices, method, points)
+    plain = [index for index in indices if not is_composite(index)]
     together = method.estimate_many(vehicle, plain, points) if plain else np.empty((0, 0))
     columns = iter(together.T)
     return np.column_stack(
-        [index.estimated_many(vehicle, method, points) if is_composed(index) else next(columns) for index in indices]
+        [index.estimate_many(vehicle, method, points) if is_composite(index) else next(columns) for index in indices]
     )
 
 
-def objective_of(vehicle: Vehicle, index: Asked, method: Method) -> Objective:
+def objective_of(vehicle: Vehicle, index: IndexLike, method: Method) -> Objective:
     """The index as a function of the free values."""
     loose = without_tied_values(vehicle)
     if loose is not None:
-        return combined([ObjectivePart(objective_of(loose.vehicle, index, method), loose.follow)], worst=False)
-    return index.as_objective(vehicle, method) if is_composed(index) else method.objective(vehicle, index)
+        return combine_objectives(
+            [ObjectivePart(objective_of(loose.vehicle, index, method), loose.follow)], worst=False
+        )
+    return index.as_objective(vehicle, method) if is_composite(index) else method.objective(vehicle, index)
 
 
 @dataclass(frozen=True)
@@ -136,14 +138,14 @@ class Ties:
 
 
 @dataclass(frozen=True)
-class Loose:
+class UntiedDesign:
     """Design whose tied values are design variables, and the map that gives them."""
 
     vehicle: Vehicle
     follow: Ties
 
 
-def without_tied_values(vehicle: Vehicle) -> Loose | None:
+def without_tied_values(vehicle: Vehicle) -> UntiedDesign | None:
     """Design with design variables in place of tied values, and their map; None if there are no tied values.
 
     What they lie between is half to twice the value in the middle of what they follow from.
@@ -155,7 +157,7 @@ def without_tied_values(vehicle: Vehicle) -> Loose | None:
     names = (name for i in count(1) if (name := f"tied{i}") not in free)
     halfway = {name: middle(value) for name, value in free.items()}
 
-    def loosened(element: Element) -> Element:
+    def free_element(element: Element) -> Element:
         if not isinstance(element.value, Tied):
             return element
         size = float(element.value.slopes(halfway)[0])
@@ -166,12 +168,14 @@ def without_tied_values(vehicle: Vehicle) -> Loose | None:
             like, element.label, **{field.name: getattr(element, field.name) for field in element.more}
         )
 
-    loose = with_elements(vehicle, loosened)
+    loose = with_elements(vehicle, free_element)
     inner = tuple(found.get(name, Tied((name,))) for name in loose.free_values())
-    return Loose(loose, Ties(tuple(free), inner))
+    return UntiedDesign(loose, Ties(tuple(free), inner))
 
 
-def _many_followed(loose: Loose, indices: Sequence[Asked], method: Method, points: Mapping[str, Array]) -> Array:
+def _estimates_untied(
+    loose: UntiedDesign, indices: Sequence[IndexLike], method: Method, points: Mapping[str, Array]
+) -> Array:
     rows = np.column_stack([points[name] for name in loose.follow.names])
     inner = loose.follow.values(rows)
     good = np.all((inner > 0.0) & np.isfinite(inner), axis=1)

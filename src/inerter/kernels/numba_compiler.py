@@ -1,6 +1,6 @@
-"""What rests on private parts of Numba: a cache that may fail, parts without a life of their own, calls by address.
+"""Compilation by private parts of Numba: a cache that may fail, parts compiled within callers, calls by address.
 
-It is used where `declare.way` says so, and only there; `pyproject.toml` bounds the versions of Numba for its sake.
+It is used only where `decorators.compiler_mode` selects it; `pyproject.toml` bounds the versions of Numba for its sake.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import CPUDispatcher, cpu_target
 from numba.experimental import function_type
 
-from inerter.kernels.cache import tell, tell_of_damage, tell_of_no_cache
+from inerter.kernels.cache import announce, warn_of_damage, warn_of_no_cache
 from inerter.kernels.compiler import FUSED
-from inerter.kernels.declare import Signature
+from inerter.kernels.decorators import Signature
 
 _SUM = hashlib.sha256().digest_size
 
 
-def tuned(
+def compile_tuned(
     function: Callable[..., Any],
     signature: Signature,
     folder: Path | None,
@@ -40,12 +40,12 @@ def tuned(
     borrowing: bool,
     by_address: bool,
 ) -> Callable[..., Any]:
-    """Compiled at once for a given signature, and kept in a cache that may fail."""
+    """Compile a function at once for a given signature, and keep it in a cache that may fail."""
     settings: Any = numba.config
     empty = folder is not None and not any(folder.iterdir())
     kept = _cache_in(folder, function)
     if empty and kept:
-        tell()
+        announce()
     options: dict[str, Any] = {"error_model": "numpy", "nogil": True, "no_cpython_wrapper": by_address}
     if fused:  # a product and a sum in one instruction, with one rounding, and four of them side by side
         options["fastmath"] = FUSED
@@ -67,7 +67,7 @@ def _types(signature: Signature) -> Any:
 
 
 def signature_of(function: Callable[..., Any]) -> Any:
-    """The signature that a function's annotations tell."""
+    """Signature from a function's annotations, in the compiler's types."""
     hints = get_type_hints(function, include_extras=True)
     returned = _type_of(hints.pop("return"))
     return returned(*(_type_of(hint) for hint in hints.values()))
@@ -77,18 +77,18 @@ _NUMBERS: dict[Any, Any] = {int: numba.int64, float: numba.float64, bool: numba.
 
 
 def _type_of(hint: Any) -> Any:
-    """A number, a `NamedTuple` of types, or what `Annotated` says: in words, a record, or (a record,) for arrays."""
+    """Compiler type of a hint: a number, a `NamedTuple` of types, or that in `Annotated` (text, record, array)."""
     if hint in _NUMBERS:
         return _NUMBERS[hint]
     if isinstance(hint, type) and issubclass(hint, tuple):
         fields = [_type_of(field) for field in get_type_hints(hint, include_extras=True).values()]
-        alike = all(field == fields[0] for field in fields)
+        uniform = all(field == fields[0] for field in fields)
         types: Any = numba.types
-        return types.NamedUniTuple(fields[0], len(fields), hint) if alike else types.NamedTuple(tuple(fields), hint)
-    (said,) = hint.__metadata__
-    if isinstance(said, np.dtype):
-        return numba.from_dtype(said)
-    return numba.from_dtype(said[0])[::1] if isinstance(said, tuple) else eval(said, {}, vars(numba.types))
+        return types.NamedUniTuple(fields[0], len(fields), hint) if uniform else types.NamedTuple(tuple(fields), hint)
+    (given,) = hint.__metadata__
+    if isinstance(given, np.dtype):
+        return numba.from_dtype(given)
+    return numba.from_dtype(given[0])[::1] if isinstance(given, tuple) else eval(given, {}, vars(numba.types))
 
 
 class _CheckedFiles(IndexDataCacheFile):
@@ -129,7 +129,7 @@ class _Cache(FunctionCache):
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception:  # a file cut short may raise anything
-            tell_of_damage(Path(self.cache_path).parents[1])
+            warn_of_damage(Path(self.cache_path).parents[1])
             self._forget()
             return None
 
@@ -138,7 +138,7 @@ class _Cache(FunctionCache):
             super().save_overload(sig, data)  # type: ignore[no-untyped-call]
         except OSError as error:
             self._forget()
-            tell_of_no_cache(Path(self.cache_path).parents[1], error)
+            warn_of_no_cache(Path(self.cache_path).parents[1], error)
         except RuntimeError:  # no code: Ctrl-C came while LLVM handed it over to Python, which can only ignore it there
             raise KeyboardInterrupt from None
 
@@ -157,7 +157,7 @@ def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | Non
         found = None
     if found is not None and Path(found.cache_path).is_relative_to(folder):
         return cast("_Cache", found)
-    tell_of_no_cache(folder.parent, OSError(errno.EACCES, os.strerror(errno.EACCES)))
+    warn_of_no_cache(folder.parent, OSError(errno.EACCES, os.strerror(errno.EACCES)))
     return None
 
 
@@ -171,11 +171,11 @@ def _compile(function: Any, signature: Any) -> None:
     finally:
         if collecting:
             gc.enable()
-    if not isinstance(parsed(signature), tuple):
+    if not isinstance(parse_signature(signature), tuple):
         function.disable_compile()
 
 
-def parsed(signature: Any) -> Any:
+def parse_signature(signature: Any) -> Any:
     """A signature as types; without one that is returned, only those of the arguments."""
     arguments, returned = sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
     return arguments if returned is None else returned(*arguments)
@@ -190,12 +190,12 @@ def entry_of(function: Any) -> Any:
 def address_of(function: Any, signature: Signature) -> int:
     """The address of a compiled function, for other compiled code that is handed it."""
     wrapper_address: Any = function_type._get_wrapper_address
-    return int(wrapper_address(function, parsed(_types(signature))))
+    return int(wrapper_address(function, parse_signature(_types(signature))))
 
 
 def function_at_type(signature: Signature) -> Any:
     """The compiler's type of what makes a function of an address."""
-    kind: Any = numba.types.FunctionType(parsed(_types(signature)))
+    kind: Any = numba.types.FunctionType(parse_signature(_types(signature)))
 
     def definition(typing: Any, address: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -218,7 +218,7 @@ def instruction_type(definition: Callable[..., Any]) -> Any:
 
 
 class PartDispatcher(CPUDispatcher):
-    """What makes a part of compiled code: see `declare.part`."""
+    """Dispatcher of a part of compiled code, see `decorators.part`."""
 
     def __init__(
         self, function: Callable[..., Any], signature: Signature, borrowing: bool, fused: bool, place: str
@@ -244,7 +244,7 @@ class PartDispatcher(CPUDispatcher):
 
 
 class _Within(JITCodeLibrary):
-    """Code that others contain: they optimise it, and it never becomes machine code by itself."""
+    """Code that others contain: they optimise it, and it never becomes machine code alone."""
 
     codegen = SimpleNamespace(set_env=lambda name, environment: None)
 
@@ -259,8 +259,8 @@ class _Within(JITCodeLibrary):
         self._finalized = True
 
 
-class _Marked(_Within):
-    """Code whose functions carry an attribute that tells the optimiser what to do with calls of them."""
+class _AttributeLibrary(_Within):
+    """Code whose functions carry an attribute for the optimiser, on the inlining of their calls."""
 
     attribute: str
 
@@ -271,9 +271,9 @@ class _Marked(_Within):
         super().add_llvm_module(module)  # type: ignore[no-untyped-call]
 
 
-class _Inside(_Marked):
+class _Inside(_AttributeLibrary):
     attribute = "alwaysinline"
 
 
-class _Apart(_Marked):
+class _Apart(_AttributeLibrary):
     attribute = "noinline"

@@ -11,8 +11,8 @@ from typing import Any, Unpack
 from inerter.errors import SimulationError, WorkError
 from inerter.kernels.prepare import prepare_on
 from inerter.simulation import event_driven
-from inerter.simulation.batch import groups_of, listed
-from inerter.simulation.inputs import DrivenMany, check_driven, starting_from
+from inerter.simulation.batch import as_list, groups_of
+from inerter.simulation.inputs import BatchInputs, check_keywords, initial_of
 from inerter.simulation.simulate import simulate
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
@@ -31,7 +31,7 @@ def simulate_to_files(
     every: int = 1,
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
-    **driven: Unpack[DrivenMany],
+    **driven: Unpack[BatchInputs],
 ) -> list[list[Path]]:
     """Simulate every vehicle on every signal, and write the history of `outputs` of each run to a file in `folder`.
 
@@ -43,9 +43,9 @@ def simulate_to_files(
     Raises `SimulationError` as `simulate_many` does, and if the folder holds something or cannot be written;
     `WorkError` if what was written elsewhere is not seen here, or the disk is full.
     """
-    cars = listed("vehicles", vehicles)
-    names = [outputs] if isinstance(outputs, str) else listed("outputs", outputs)
-    check_driven("simulate_to_files", driven)
+    cars = as_list("vehicles", vehicles)
+    names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)
+    check_keywords("simulate_to_files", driven)
     groups, count = groups_of(driven)
     for car in cars:
         known = piecewise(car).outputs
@@ -53,7 +53,7 @@ def simulate_to_files(
             find(known, name, SimulationError)
     place = _empty(folder)
     files = [[place / f"design-{i:05d}-signal-{j:03d}.nc" for j in range(count)] for i in range(len(cars))]
-    shared = {"speed": driven.get("speed"), "initial": starting_from(driven)}
+    shared = {"speed": driven.get("speed"), "initial": initial_of(driven)}
     same = {"duration": duration, "step": step, "every": every, **shared}
     items = [
         (car, {name: group[j] for name, group in groups.items()}, str(files[i][j]))

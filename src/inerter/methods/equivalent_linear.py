@@ -19,10 +19,10 @@ from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slippin
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
-from inerter.systems.arrivals import inputs_of
 from inerter.systems.descriptor import close, describe
-from inerter.systems.filtered import filtered
+from inerter.systems.input_paths import inputs_of
 from inerter.systems.linear import LinearSystem
+from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
@@ -50,7 +50,7 @@ def has_play(system: PiecewiseSystem) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Counterpart:
+class EquivalentLinearModel:
     """A question put to a mechanism whose frictions are dampers still to be chosen."""
 
     problem: LinearProblem
@@ -64,7 +64,9 @@ class Counterpart:
         """Equivalent linear model with the inputs of the mechanism instead of the sources."""
         names = [output.output for output in self.problem.question.outputs]
         arrivals = self.problem.question.arrivals(self.mechanism)
-        descriptor = filtered(describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters)
+        descriptor = with_output_filters(
+            describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters
+        )
         return close(descriptor, self._dampers(speeds))
 
     def is_road(self, name: str) -> bool:
@@ -74,7 +76,7 @@ class Counterpart:
     @property
     def mechanism(self) -> Mechanism:
         """The mechanism with dampers that is driven."""
-        return self.problem.question.drive.driven(self.parts.mechanism)
+        return self.problem.question.drive.excited_mechanism(self.parts.mechanism)
 
     def _dampers(self, speeds: Array) -> dict[str, float]:
         forces = GAUSSIAN * np.array(self.parts.forces, dtype=float)
@@ -85,7 +87,7 @@ class Counterpart:
     def unlike(self, speeds: Array, norms: Array) -> float:
         """Relative change of the mean squares if all slip velocities double; `norms` are those at `speeds`."""
         system = self.system(2.0 * speeds)
-        other = self.problem.corrected(system, h2(system, self.problem.pade_order).outputs)[0]
+        other = self.problem.correct_norms(system, h2(system, self.problem.pade_order).outputs)[0]
         return relative_change(other**2, norms**2)
 
 
@@ -95,16 +97,18 @@ def relative_change(values: Array, references: Array) -> float:
     return float(np.nanmax(np.abs(values[moving] / references[moving] - 1.0), initial=0.0))
 
 
-def counterpart(mechanism: Mechanism, question: IndexDefinition, conventions: Conventions) -> Counterpart | None:
+def equivalent_linear_model(
+    mechanism: Mechanism, question: IndexDefinition, conventions: Conventions
+) -> EquivalentLinearModel | None:
     """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:
         parts = equivalent(mechanism, slipping_freely(mechanism, question))
-        return Counterpart(linear_problem(parts.mechanism, question, conventions), parts)
+        return EquivalentLinearModel(linear_problem(parts.mechanism, question, conventions), parts)
     except (MechanismError, LinearSystemError):
         return None
 
 
-def memory(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
+def remaining_share(system: LinearSystem, norms: Array, time: float) -> tuple[float, complex]:
     """Largest share of an r.m.s. value due to the motion `time` [s] ago, and the pole that carries most of it [rad/s].
 
     Each mode's share of the outputs, which have these H2 `norms`, is taken by itself and decays at its own rate. The

@@ -18,10 +18,10 @@ from inerter.systems.descriptor import Descriptor
 from inerter.systems.filters import Filter
 
 EquationStacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
-Filtered = list[tuple[int, Filter, slice]]  # output, filter, its states
+FilteredOutputs = list[tuple[int, Filter, slice]]  # output, filter, its states
 
 
-def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descriptor:
+def with_output_filters(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descriptor:
     """`descriptor` with a filter, or none, on each output."""
     d, n = descriptor, descriptor.X_x.shape[0]
     chosen = [(i, f) for i, f in enumerate(filters) if f is not None]
@@ -34,8 +34,8 @@ def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descri
     X_eta[:n, :e], X_x[:n, :n], X_u[:n] = d.X_eta, d.X_x, d.X_u
     for unknown, (_, one, at) in enumerate(places, start=e):
         rows = np.arange(at.start, at.stop)
-        X_x[rows[:-1], rows[1:]] = one.scaled[0]
-        X_eta[rows[-1:], unknown] = one.scaled[0]
+        X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
+        X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
     S, R, F, Y_eta, Y_x, Y_u = _with_equations((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), places, states)
     names = [f"{d.outputs[i]}_filter_{k + 1}" for i, f, _ in places for k in range(f.order)]
     return replace(
@@ -55,15 +55,17 @@ def filtered(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descri
     )
 
 
-def _with_equations(stacks: EquationStacks, places: Filtered, states: int, sizes: bool = False) -> EquationStacks:
+def _with_equations(
+    stacks: EquationStacks, places: FilteredOutputs, states: int, sizes: bool = False
+) -> EquationStacks:
     """Stacks with an equation a(d/dt) z = y for each filter, and output b(d/dt) z in place of y; or their sizes."""
     S, R, F, Y_eta, Y_x, Y_u = stacks
     _, e, n = R.shape
     both, q = (1.0, len(places)) if sizes else (-1.0, len(places))
-    S2, R2, F2 = (_grown(s, e + q, width) for s, width in ((S, e + q), (R, states), (F, F.shape[2])))
-    Y_eta2, Y_x2, Y_u2 = _grown(Y_eta, Y_eta.shape[1], e + q), _grown(Y_x, Y_x.shape[1], states), Y_u.copy()
+    S2, R2, F2 = (_enlarge(s, e + q, width) for s, width in ((S, e + q), (R, states), (F, F.shape[2])))
+    Y_eta2, Y_x2, Y_u2 = _enlarge(Y_eta, Y_eta.shape[1], e + q), _enlarge(Y_x, Y_x.shape[1], states), Y_u.copy()
     for unknown, (output, one, at) in enumerate(places, start=e):
-        _, top, bottom = (abs(c) for c in one.scaled) if sizes else one.scaled
+        _, top, bottom = (abs(c) for c in one.scaled_coefficients) if sizes else one.scaled_coefficients
         S2[:, unknown, :e], R2[:, unknown, :n], F2[:, unknown] = both * Y_eta[:, output], Y_x[:, output], Y_u[:, output]
         S2[0, unknown, unknown], R2[0, unknown, at] = bottom[-1], both * bottom[:-1]
         Y_eta2[:, output], Y_x2[:, output], Y_u2[:, output] = 0.0, 0.0, 0.0
@@ -71,7 +73,7 @@ def _with_equations(stacks: EquationStacks, places: Filtered, states: int, sizes
     return S2, R2, F2, Y_eta2, Y_x2, Y_u2
 
 
-def _grown(stack: Any, rows: int, columns: int) -> Any:
+def _enlarge(stack: Any, rows: int, columns: int) -> Any:
     result = np.zeros((stack.shape[0], rows, columns), stack.dtype)
     result[:, : stack.shape[1], : stack.shape[2]] = stack
     return result

@@ -12,8 +12,8 @@ from inerter.errors import SimulationError, Status, StatusKind
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.start import initial_state
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.piecewise import PiecewiseSystem
 
@@ -84,11 +84,11 @@ def settle(
 ) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
     again = repeating(table)
-    quick, settled = _repeated(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
+    quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
     recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:
-        recorded.warning = _unsettled(settled)
+        recorded.warning = _steady_state_warning(settled)
     return recorded, settled
 
 
@@ -106,16 +106,16 @@ def mean_squares(
     integration's `status` or `warning` say holds for the squares.
     """
     begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeated(begun, repeating(table), repeats, most)
+    integration, settled = _repeat_period(begun, repeating(table), repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
-        integration.warning = _unsettled(settled)
+        integration.warning = _steady_state_warning(settled)
     return integration.record.squares / (table.samples - 1), integration, settled
 
 
-def _repeated(
+def _repeat_period(
     integration: Integration, again: InputTable, repeats: float, most: int
 ) -> tuple[Integration, PeriodicState]:
-    """Go through the same period until the state changes by less than `repeats` of its size; sums are of the last."""
+    """Repeat the period until the relative change of state is below `repeats`; sums are those of the last period."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
     integration.knots = event_driven.knots(again)
@@ -131,6 +131,9 @@ def _repeated(
     return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch)
 
 
-def _unsettled(found: PeriodicState) -> Status:
-    message = f"after {found.periods} periods the state still changes by {found.mismatch:.1e} of its size"
+def _steady_state_warning(found: PeriodicState) -> Status:
+    message = (
+        f"periodic steady state not reached after {found.periods} periods: relative change of state per period "
+        f"{found.mismatch:.1e}"
+    )
     return Status(StatusKind.INACCURATE, message)

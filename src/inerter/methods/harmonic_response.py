@@ -12,13 +12,13 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, Status
-from inerter.methods.steady_squares import Squares, steady_squares, unsettled
+from inerter.methods.steady_squares import Squares, steady_squares, steady_state_error
 from inerter.norms.hinf import GainPeak
 from inerter.signals.harmonics import sine
+from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import tabulate
-from inerter.simulation.start import initial_state
-from inerter.systems.arrivals import InputPath
 from inerter.systems.filters import Filter
+from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ _STEPPED = 1e-5  # relative error of a ratio by the time step
 
 
 @dataclass(frozen=True, eq=False)
-class Forced:
+class ForcedResponse:
     """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
 
     system: PiecewiseSystem
@@ -75,10 +75,10 @@ class Summit:
         """Error sources of the height of the peak."""
         missed = ErrorSource("search for the peak", self.missed)
         stepped = ErrorSource("time step", _STEPPED + float(self.found.jumps[0]))
-        return stepped, unsettled([self.found.steady], sqrt(2.0)), missed
+        return stepped, steady_state_error([self.found.steady], sqrt(2.0)), missed
 
 
-def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
+def local_maxima(forced: ForcedResponse, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
     """Local maxima of the ratio near the expected frequencies [rad/s], the highest first.
 
     One that is expected at zero is the ratio at `lowest`.
@@ -96,7 +96,7 @@ def local_maxima(forced: Forced, expected: Array, lowest: float, pool: Executor)
     return sorted(peaks, key=lambda summit: -summit.peak.gain)
 
 
-def _summit(forced: Forced, lower: float, upper: float) -> Summit | None:
+def _summit(forced: ForcedResponse, lower: float, upper: float) -> Summit | None:
     """Local maximum of the ratio between two frequencies; None if the search ends at one of them."""
     visited: dict[float, tuple[float, Squares]] = {}
 
@@ -127,7 +127,7 @@ def _above(visited: Mapping[float, tuple[float, Squares]], at: float) -> float:
     return float(-0.5 * slope**2 / curvature) if curvature < 0.0 else 0.0
 
 
-def coarse_maxima(forced: Forced, poles: Array, pool: Executor) -> Array:
+def coarse_maxima(forced: ForcedResponse, poles: Array, pool: Executor) -> Array:
     """Approximate frequencies of the local maxima [rad/s], on a grid around the `poles` [rad/s] of the linear motion.
 
     Zero stands for one below the grid.

@@ -1,4 +1,4 @@
-"""How compiled code is declared: as plain functions, which are compiled, or read from the cache, at the first call.
+"""Declaration of compiled code: plain functions, compiled, or read from the cache, at the first call.
 
 The compiler itself is behind `inerter.kernels.compiler`, which is loaded by that first call and by nothing else.
 """
@@ -21,26 +21,26 @@ TUNED, PLAIN, NONE = "tuned", "plain", "none"
 SWITCH = "INERTER_COMPILER"
 
 
-def way() -> str:
-    """How kernels are compiled: TUNED, PLAIN, by what the compiler documents alone, or NONE, by Python.
+def compiler_mode() -> str:
+    """Mode of compilation: TUNED, PLAIN (documented features of the compiler alone) or NONE (kernels run as Python).
 
-    Raises `InerterError` if the environment asks for something else.
+    Raises `InerterError` if the environment names another one.
     """
     chosen = os.environ.get(SWITCH) or TUNED
     if chosen not in (TUNED, PLAIN, NONE):
-        raise InerterError(f'{SWITCH} is "{TUNED}", "{PLAIN}" or "{NONE}", got {chosen!r}.')
+        raise InerterError(f'{SWITCH}: unknown mode; got {chosen!r}, expected "{TUNED}", "{PLAIN}" or "{NONE}".')
     return chosen
 
 
-def private() -> Any:
-    """All that rests on private parts of the compiler; asked for by code that is being compiled."""
-    from inerter.kernels import tuned  # noqa: PLC0415 - heavy
+def numba_internals() -> Any:
+    """The module that rests on private parts of the compiler; imported only while code is compiled."""
+    from inerter.kernels import numba_compiler  # noqa: PLC0415 - heavy
 
-    return tuned
+    return numba_compiler
 
 
 class Kernel:
-    """A compiled function that Python calls, or other compiled code by its address. `title` tells what it computes."""
+    """A compiled function that Python calls, or other compiled code by its address; `title` names the result."""
 
     def __init__(
         self,
@@ -82,22 +82,22 @@ class Kernel:
             raise
 
     def _callable(self) -> Callable[..., Any]:
-        """What is called: of a typed kernel the machine code itself, since to look at its structures takes longer."""
+        """Function to call: of a typed kernel its machine code, since inspection of the structures takes longer."""
         compiled = self.ready()
         self._called = compiled
-        if self.typed and way() == TUNED:
-            self._called = private().entry_of(compiled)
+        if self.typed and compiler_mode() == TUNED:
+            self._called = numba_internals().entry_of(compiled)
         return self._called
 
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
-        if self._compiled is None and way() == NONE:
-            self._compiled = _quiet(self.function)
+        if self._compiled is None and compiler_mode() == NONE:
+            self._compiled = _without_warnings(self.function)
         if self._compiled is None:
             with told_if_long(f"compiling a numerical kernel ({self.title})"):
-                from inerter.kernels.compiler import compiled  # noqa: PLC0415 - heavy
+                from inerter.kernels.compiler import compile_function  # noqa: PLC0415 - heavy
 
-                self._compiled = compiled(self.function, self.signature, **self.options)
+                self._compiled = compile_function(self.function, self.signature, **self.options)
         return self._compiled
 
     @property
@@ -105,8 +105,8 @@ class Kernel:
         return self.ready()._numba_type_
 
 
-def _quiet(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function as Python, in which a quotient by zero is as quiet as in compiled code."""
+def _without_warnings(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Python function without warnings of division by zero, as in compiled code."""
     return np.errstate(all="ignore")(function)
 
 
@@ -128,20 +128,20 @@ def kernel(
     a short one.
     """
 
-    def declared(function: F) -> F:
-        given = _annotated(function) if typed else signature
+    def decorate(function: F) -> F:
+        given = _signature_from_annotations(function) if typed else signature
         made = Kernel(function, title, given, fused=fused, borrowing=borrowing, by_address=by_address)
         made.typed = typed
         return cast("F", made)
 
-    return declared
+    return decorate
 
 
-def _annotated(function: Callable[..., Any]) -> Signature:
-    """The signature that a function's annotations tell: numbers, and what `kernels.arrays` names."""
+def _signature_from_annotations(function: Callable[..., Any]) -> Signature:
+    """Signature from a function's annotations: numbers and the types of `kernels.arrays`."""
 
     def signature(types: Any) -> Any:
-        return private().signature_of(function)
+        return numba_internals().signature_of(function)
 
     return signature
 
@@ -167,7 +167,7 @@ class Part:
 
     @cached_property
     def _dispatcher(self) -> Any:
-        return private().PartDispatcher(self.function, self.signature, self.borrowing, self.fused, self.place)
+        return numba_internals().PartDispatcher(self.function, self.signature, self.borrowing, self.fused, self.place)
 
     @property
     def _numba_type_(self) -> Any:
@@ -190,21 +190,20 @@ def part(
     and once more in everything that calls it; that took half of the time. `apart` parts are not copied into what calls
     them: right for long ones that are called in many places. `inside` ones always are: what calls them with
     constants becomes code for these, and yet they are read and typed only once, and structures cost nothing to hand
-    over. Calls with constants share the one `signature` given, or told by annotations if it is `typed`. `fused` is as
-    in `kernel`. `plain` is what does the same without private parts of
-    the compiler, where the function needs them.
+    over. Calls with constants share the one `signature` given, or that of the annotations if it is `typed`. `fused` is
+    as in `kernel`. `plain` does the same without private parts of the compiler, where the function needs them.
     """
     place = "apart" if apart else "inside" if inside else "within"
 
-    def declared(function: F) -> F:
-        given = _annotated(function) if typed else signature
+    def decorate(function: F) -> F:
+        given = _signature_from_annotations(function) if typed else signature
         return cast("F", Part(function, given, borrowing, fused, place, plain))
 
-    return declared
+    return decorate
 
 
 class Instruction:
-    """What the compiler is told to generate, as in `numba.extending.intrinsic`, and what does the same elsewhere."""
+    """Instruction for the compiler, as in `numba.extending.intrinsic`, with an equivalent plain function."""
 
     def __init__(self, definition: Callable[..., Any], plain: Callable[..., Any]) -> None:
         self.definition, self.plain = definition, getattr(plain, "function", plain)
@@ -214,7 +213,7 @@ class Instruction:
 
     @cached_property
     def _numba_type_(self) -> Any:
-        return private().instruction_type(self.definition)
+        return numba_internals().instruction_type(self.definition)
 
 
 def instruction(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
@@ -226,21 +225,21 @@ class FunctionAt:
     """Compiled code that calls other compiled code of one type by its address; see `Part.plain` for code without."""
 
     def __init__(self, kind: Callable[..., Any]) -> None:
-        self.signature, self._alive = _annotated(kind), list[Any]()
+        self.signature, self._alive = _signature_from_annotations(kind), list[Any]()
 
     @cached_property
     def _numba_type_(self) -> Any:
-        return private().function_at_type(self.signature)
+        return numba_internals().function_at_type(self.signature)
 
     def address_of(self, function: Any) -> int:
         """The address of a kernel of this type, compiled by now; 0 where none is needed."""
-        if way() != TUNED:
+        if compiler_mode() != TUNED:
             return 0
         self._alive.append(function)  # its code goes with it
-        address: int = private().address_of(function.ready(), self.signature)
+        address: int = numba_internals().address_of(function.ready(), self.signature)
         return address
 
 
 def function_at(kind: Callable[..., Any]) -> Any:
-    """In compiled code, the function of the type of `kind` at an address."""
+    """Function of the type of `kind` at an address, for calls from compiled code."""
     return FunctionAt(kind)

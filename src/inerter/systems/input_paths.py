@@ -76,10 +76,10 @@ def columns_of(arrivals: Sequence[InputPath]) -> list[Column]:
     return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
 
 
-def fed(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
+def apply_excitation(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
-    Raises `LinearSystemError` for the displacement of a road whose velocity is felt at once.
+    Raises `LinearSystemError` for the displacement of a road whose velocity acts on a damper directly.
     """
     if _plain(arrivals):
         return descriptor
@@ -91,7 +91,7 @@ def fed(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
         for number, (name, *_) in enumerate(columns)
     }
     if all(a.filter is None or a.filter.order == 0 for a in arrivals):
-        return _levered(d, list(zip(at, arrivals, strict=True)), sums)
+        return _scale_inputs(d, list(zip(at, arrivals, strict=True)), sums)
     chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, arrivals, strict=True) if a.filter is not None))
     old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
     edges = np.cumsum([old, *(one.order for _, one in chains)])
@@ -101,10 +101,10 @@ def fed(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
     X_eta[:old, :e], X_eta[:old, e : e + inputs], X_x[:old, :old] = d.X_eta, d.X_u, d.X_x
     for unknown, ((_, one), place) in enumerate(zip(chains, places, strict=True), start=e + inputs):
         rows = np.arange(place.start, place.stop)
-        X_x[rows[:-1], rows[1:]] = one.scaled[0]
-        X_eta[rows[-1:], unknown] = one.scaled[0]
+        X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
+        X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
     reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, arrivals, strict=True)]
-    wired = _Wired(reached, chains, places, len(columns), n)
+    wired = _FilterChains(reached, chains, places, len(columns), n)
     S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
     return replace(
         d,
@@ -124,11 +124,15 @@ def fed(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
     )
 
 
-def _levered(d: Descriptor, reached: Sequence[tuple[int, InputPath]], sums: Mapping[str, Sum]) -> Descriptor:
+def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, InputPath]], sums: Mapping[str, Sum]) -> Descriptor:
     """The descriptor whose inputs are columns times numbers."""
     levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
     for column, arrival in reached:
-        gain = 1.0 if arrival.filter is None else arrival.filter.scaled[1][0] / arrival.filter.scaled[2][0]
+        gain = (
+            1.0
+            if arrival.filter is None
+            else arrival.filter.scaled_coefficients[1][0] / arrival.filter.scaled_coefficients[2][0]
+        )
         lever = np.longdouble(arrival.lever) * gain
         levers[:, d.inputs.index(arrival.input), column] += lever, abs(lever)
     F, Y_u, X_u = d.F @ levers[0], d.Y_u @ levers[0], (d.X_u @ levers[0]).astype(float)
@@ -142,7 +146,7 @@ def _plain(arrivals: Sequence[InputPath]) -> bool:
 
 
 @dataclass(frozen=True)
-class _Wired:
+class _FilterChains:
     """Arrivals with the numbers of their columns and inputs, the chains of filters, and where their states are."""
 
     reached: list[tuple[int, int, InputPath]]
@@ -152,7 +156,7 @@ class _Wired:
     states: int
 
     def stacks(self, stacks: Any, sizes: bool = False) -> Any:
-        """The stacks with an unknown for each input and each chain, and the equations that say what these are."""
+        """The stacks with an unknown and its equation for each input and each filter chain."""
         S, R, F, Y_eta, Y_x, Y_u = stacks
         _, e, n = R.shape
         q, both = e + F.shape[2], 1.0 if sizes else -1.0
@@ -163,7 +167,7 @@ class _Wired:
         Y_eta2[:, :, :e], Y_eta2[:, :, e:q], Y_x2[:, :, :n] = Y_eta, Y_u, Y_x
         S2[0, range(e, q), range(e, q)] = 1.0
         for unknown, ((column, one), place) in enumerate(zip(self.chains, self.places, strict=True), start=q):
-            bottom = np.abs(one.scaled[2]) if sizes else one.scaled[2]
+            bottom = np.abs(one.scaled_coefficients[2]) if sizes else one.scaled_coefficients[2]
             S2[0, unknown, unknown], R2[0, unknown, place] = bottom[-1], both * bottom[:-1]
             F2[0, unknown, column] = 1.0
         for column, number, arrival in self.reached:
@@ -172,7 +176,9 @@ class _Wired:
                 F2[0, e + number, column] += lever
                 continue
             chain = self.chains.index((column, arrival.filter))
-            top = lever * (np.abs(arrival.filter.scaled[1]) if sizes else arrival.filter.scaled[1])
+            top = lever * (
+                np.abs(arrival.filter.scaled_coefficients[1]) if sizes else arrival.filter.scaled_coefficients[1]
+            )
             S2[0, e + number, q + chain] += both * top[-1]
             R2[0, e + number, self.places[chain]] += top[:-1]
         return S2, R2, F2, Y_eta2, Y_x2, Y_u2
@@ -189,8 +195,9 @@ def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
     if np.any(d.F[:, :, columns]) or np.any(d.Y_u[:, :, columns]):
         words = " and ".join(d.inputs[i] for i in columns)
         raise LinearSystemError(
-            f"A damper feels the velocity of {words} at once, so that its displacement is no input of a linear system. "
-            f"Ask for the response to the velocity, {d.inputs[columns[0]]}_velocity."
+            f"A damper acts directly on the velocity of {words}, so that its displacement cannot be an input of a "
+            "linear system. "
+            f"Use the response to the velocity, {d.inputs[columns[0]]}_velocity."
         )
     F, Y_u, X_u = d.F.copy(), d.Y_u.copy(), d.X_u.copy()
     F_size, Y_u_size = d.sizes[2].copy(), d.sizes[5].copy()

@@ -20,8 +20,8 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinates import Coordinates, combination, find_coordinates
 from inerter.systems.graph import Branch, Graph
-from inerter.systems.incidence import inertias, of_law, ports, stacked
-from inerter.systems.levers import BranchRows, is_lost, lost_in
+from inerter.systems.incidence import incidence_rows, inertias, of_law, ports
+from inerter.systems.lever_arms import BranchRows, is_lost, lost_travel_message
 from inerter.systems.outputs import Output, force_of, outputs
 from inerter.vehicle.mechanism import Mechanism
 
@@ -88,11 +88,11 @@ class Frame:
         return int(self.slots.g.stop)
 
     @property
-    def lost(self) -> str:
+    def precision_warning(self) -> str:
         """Message on elongations lost to rounding; empty if none is."""
         shares = self.split.G
         lost = is_lost(shares, np.hstack(self.split.rates))
-        return lost_in(shares, [branch.label for branch in self.springs]) if lost else ""
+        return lost_travel_message(shares, [branch.label for branch in self.springs]) if lost else ""
 
     @cached_property
     def free(self) -> dict[str, Free]:
@@ -179,12 +179,12 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
     columns = [i for i, road in enumerate(mechanism.roads) if road.name in inputs]
     forces = _forces(mechanism, graph, inputs[len(columns) :])
     springs = of_law(graph, LinearRole.STIFFNESS)
-    spring_rows, spring_roads = stacked(springs, graph)
+    spring_rows, spring_roads = incidence_rows(springs, graph)
     spring_roads = np.array([b.roads[columns] for b in springs]).reshape(len(springs), len(columns))
     found = find_coordinates(
         graph.nodes,
         inertia=inertias(mechanism, graph)[0],
-        damping=stacked(of_law(graph, LinearRole.DAMPING), graph)[0],
+        damping=incidence_rows(of_law(graph, LinearRole.DAMPING), graph)[0],
         springs=spring_rows,
         spring_roads=spring_roads,
         forces=forces,

@@ -14,29 +14,29 @@ from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import IndexDefinition
 from inerter.methods.averages import interval_of, mean_and_error
-from inerter.methods.counterpart import (
-    Counterpart,
-    counterpart,
+from inerter.methods.equivalent_linear import (
+    EquivalentLinearModel,
+    equivalent_linear_model,
     has_play,
-    memory,
     relative_change,
+    remaining_share,
     with_velocities,
 )
-from inerter.methods.error_bounds import checked
+from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import Conventions
-from inerter.methods.measured import road_errors
+from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
     STEP,
     Drive,
-    Ran,
+    RoadRun,
     check_drive,
     drive,
     factor_of,
     realisation_seeds,
     run,
 )
-from inerter.methods.steady_squares import together, unsettled
+from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
@@ -54,7 +54,7 @@ _LOST = 1e-2  # the same, beyond which nothing is known
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
-_UNLIKE = "no linear design resembles the motion with play: nothing is added for the road outside 0.1 to 1000 Hz"
+_UNLIKE = "no equivalent linear model of backlash: nothing is added for the road outside 0.1 to 1000 Hz"
 _STEPPED = 2e-6  # relative error of a value by the time step
 _PEAKS = 4.0  # the largest of a random motion over its r.m.s. value
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
@@ -68,7 +68,7 @@ class OnRoads:
     frictions: tuple[str, ...]
     question: IndexDefinition
     way: Drive
-    linear: Counterpart | None
+    linear: EquivalentLinearModel | None
     seed: int
     longest: int  # road that may be taken [s]
 
@@ -82,7 +82,7 @@ class OnRoads:
         """Factor of each output's r.m.s. value in the index."""
         return np.array([abs(output.weight) for output in self.question.outputs])
 
-    def runs(self, first: int, stop: int, pool: Executor) -> list[Ran]:
+    def runs(self, first: int, stop: int, pool: Executor) -> list[RoadRun]:
         """Results of the realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
@@ -110,13 +110,13 @@ def on_roads(
     check_drive(system, way)
     if way.hold is not None:
         return OnRoads(system, (), question, way, None, seed, LONGEST)
-    linear = counterpart(system.mechanism, question, conventions)
+    linear = equivalent_linear_model(system.mechanism, question, conventions)
     longest = LONGEST if period is None else way.period
     return OnRoads(*with_velocities(system), question, way, linear, seed, longest)
 
 
-def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Rest]:
-    """The design on roads so long that their lines tell what it does, the first runs there, and what they lack.
+def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], Rest]:
+    """The design on roads long enough to resolve its response, the first runs there, and the out-of-band rest.
 
     On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
     is tried even if the motion is out of reach as it is.
@@ -134,7 +134,7 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Ran], Re
     return longer, found, lacking
 
 
-def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
+def _is_resolved(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> bool:
     """Whether the period is long enough for the motion, or no period would be."""
     if design.way.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
         return True
@@ -144,7 +144,7 @@ def _is_resolved(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> bool:
     return bool(np.any(np.isinf(lacking.power))) or (settled and lacking.unseen <= _UNSEEN)
 
 
-def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
+def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
     """Contribution missing from the lines of these roads, by the equivalent linear model of the motion `found`.
 
     Its squared norms less its mean squares on the lines.
@@ -162,14 +162,14 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     whole = h2(system, pade_order)
     if not whole.status.ok:
         return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
-    norms, _ = linear.problem.corrected(system, whole.outputs)
+    norms, _ = linear.problem.correct_norms(system, whole.outputs)
     lines = way.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
     gains, sampled = _squared_gains(design, speeds, omega)
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
     added = (design.question.drive.size * norms) ** 2 - seen
-    (left, pole), (at_last, _) = (memory(system, norms, time) for time in (way.period, design.longest))
+    (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (way.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + linear.unlike(speeds, norms), 1.0)  # once the lines tell more
@@ -179,7 +179,7 @@ def rest_of(design: OnRoads, found: Sequence[Ran]) -> Rest:
     if has_play(design.system) and unseen > _UNSEEN:
         return Rest(np.zeros(count), unseen, beyond=share, notes=(_UNLIKE,))
     if unseen > _LOST:
-        return Rest(np.full(count, np.nan), unseen, share, within_reach, _undamped(pole, design.longest))
+        return Rest(np.full(count, np.nan), unseen, share, within_reach, _almost_undamped(pole, design.longest))
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
@@ -229,16 +229,17 @@ def _cubic(angle: Array, there: Array) -> Array:
     return np.where(near, 1.0 - there**4 / 720.0 + there**6 / 25200.0, 2.0 * values + 2.0 * angle * slopes)
 
 
-def _undamped(pole: complex, longest: float) -> Status:
+def _almost_undamped(pole: complex, longest: float) -> Status:
     return Status(
         StatusKind.MARGINAL,
-        f"next to nothing damps the motion at {abs(pole.imag):.3g} rad/s, friction neither (it decays by "
-        f"{-pole.real:.1e} 1/s): roads of up to {longest:g} s show no steady state",
+        f"almost undamped mode at {abs(pole.imag):.3g} rad/s, with friction included (decay rate {-pole.real:.1e} "
+        "1/s): "
+        f"no steady state on roads of up to {longest:g} s",
     )
 
 
 def _mostly_beyond(share: float) -> Status:
-    message = f"{100.0 * share:.0f} % of a mean square lie outside 0.1 to 1000 Hz, which is not simulated"
+    message = f"out-of-band contribution to a mean square: {100.0 * share:.0f} %, outside 0.1 to 1000 Hz"
     return Status(StatusKind.INACCURATE, message)
 
 
@@ -246,7 +247,7 @@ def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, po
     """Estimate over `wanted` roads, or over as many as the relative standard error requires."""
     design, found, lacking = long_enough(design, pool)
     while True:
-        estimate = _averaged(design, found, lacking)
+        estimate = _average_index(design, found, lacking)
         if relative_error is not None and len(found) >= wanted and np.isfinite(estimate.value):
             wanted = _enough(np.array(estimate.samples), relative_error)
         if len(found) >= wanted or not np.all(np.isfinite(lacking.power)):
@@ -254,32 +255,32 @@ def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, po
         found += design.runs(len(found), wanted, pool)
 
 
-def _averaged(design: OnRoads, found: Sequence[Ran], lacking: Rest) -> Estimate:
+def _average_index(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
     status, unit = worst_of([lacking.status, *(ran.status for ran in found)]), design.question.unit
     question, weights = design.question, design.weights
-    samples = question.combined(np.sqrt(np.maximum(power, 0.0)), weights)
+    samples = question.combine(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        found_none = Estimate(float(question.combined(sizes, weights)), unit, status, notes=lacking.notes)
-        return checked(found_none, (), PROMISE)
+        found_none = Estimate(float(question.combine(sizes, weights)), unit, status, notes=lacking.notes)
+        return with_error_sources(found_none, (), PROMISE)
     mean, scatter, _ = mean_and_error(samples)
-    value = mean if design.way.hold is not None else float(question.combined(sizes, weights))
+    value = mean if design.way.hold is not None else float(question.combine(sizes, weights))
     estimate = Estimate(
         value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=lacking.notes,
         samples=tuple(samples.tolist()), period=design.way.period,
         error_sources=(*stand_ins_of(question.drive, design.system.mechanism), *lacking.measured),
     )  # fmt: skip
-    return checked(estimate, _errors(lacking, found, len(design.outputs)), PROMISE)
+    return with_error_sources(estimate, _errors(lacking, found, len(design.outputs)), PROMISE)
 
 
-def _errors(lacking: Rest, found: Sequence[Ran], outputs: int) -> list[ErrorSource]:
+def _errors(lacking: Rest, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
-    jumps = together([ran.jumps[:outputs] for ran in found])
+    jumps = mean_bound([ran.jumps[:outputs] for ran in found])
     return [
         ErrorSource("time step", _STEPPED + jumps),
-        unsettled([ran.steady for ran in found], _PEAKS),
+        steady_state_error([ran.steady for ran in found], _PEAKS),
         ErrorSource("lines of the road", 0.5 * lacking.unseen),
         ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * lacking.beyond),
     ]

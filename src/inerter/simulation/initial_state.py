@@ -33,7 +33,7 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
             )
         force = inputs[roads:] if initial == "preload" else np.zeros_like(inputs[roads:])
         moving = np.zeros(roads) if rates is None else rates[:roads]
-        given = np.concatenate([_set_off(system, moving), _positions(system, inputs[:roads], force)])
+        given = np.concatenate([_starting_velocities(system, moving), _positions(system, inputs[:roads], force)])
     else:
         try:
             given = np.array(initial, dtype=float)
@@ -52,7 +52,7 @@ def ending_of(initial: Initial) -> FinalState | None:
     return ending if isinstance(ending, FinalState) else None
 
 
-def _set_off(system: PiecewiseSystem, rates: Matrix) -> Matrix:
+def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:
     """Velocities when roads have just set off at these rates, with everything at rest before.
 
     What inertia alone ties to a road goes with it at once: of all motions a blow leaves that of least kinetic energy.

@@ -8,24 +8,24 @@ from fractions import Fraction
 from itertools import pairwise
 
 from inerter.norms.mean_square import Transfer, UnknownError
-from inerter.systems.polynomials import Polynomial, add, derivative, mirrored, multiply, positive_roots, scaled, value
+from inerter.systems.polynomials import Polynomial, add, derivative, mirror, multiply, positive_roots, scale_by, value
 
 _FLAT = 1e-13  # relative difference of gains over a peak that ends its refinement
 
 
 @dataclass(frozen=True)
-class GainSquared:
+class SquaredGain:
     """|G(j w)|^2 = top(w^2) / bottom(w^2), summed up over all numerators; the denominator has no root on the axis."""
 
     top: Polynomial
     bottom: Polynomial
 
     @staticmethod
-    def of(response: Transfer) -> GainSquared:
+    def of(response: Transfer) -> SquaredGain:
         top: Polynomial = []
         for numerator in response.numerators:
             top = add(top, _on_axis_squared(numerator))
-        return GainSquared(top, _on_axis_squared(response.denominator))
+        return SquaredGain(top, _on_axis_squared(response.denominator))
 
     def gain(self, x: Fraction) -> float:
         """The gain where the squared frequency is x."""
@@ -34,7 +34,7 @@ class GainSquared:
 
     def peaks(self) -> list[tuple[float, float]]:
         """Frequencies [rad/s] and gains of all local maxima; one at infinity where the gain rises for good."""
-        falling = scaled(multiply(self.top, derivative(self.bottom)), -1)
+        falling = scale_by(multiply(self.top, derivative(self.bottom)), -1)
         slope = add(multiply(derivative(self.top), self.bottom), falling)
         if not slope:
             return [(0.0, self.gain(Fraction(0)))] if self.top else []
@@ -61,7 +61,7 @@ class GainSquared:
 
 def _on_axis_squared(p: Polynomial) -> Polynomial:
     """|p(j w)|^2 as a polynomial in w^2."""
-    square = multiply(p, mirrored(p))
+    square = multiply(p, mirror(p))
     return [-c if i % 2 else c for i, c in enumerate(square[0::2])]
 
 

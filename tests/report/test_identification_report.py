@@ -20,10 +20,10 @@ from inerter.files.identification.running import IdentificationResult, Reading, 
 from inerter.identification.choice import Candidate
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, Misfit
+from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.initial_estimate import chain_of
-from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import Linear
 from inerter.networks.parser import format_expression
@@ -143,7 +143,7 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: IdentificationRes
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
     poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
     assert value_and_interval(poor, "b") == ("withheld", "113 kg to 113 kg if explained so")
-    assert "not to be relied on" in elements_block(poor)
+    assert "unreliable estimates" in elements_block(poor)
 
 
 @pytest.mark.parametrize("verdict", [Verdict.WITHHELD, Verdict.CONDITIONAL, Verdict.UNPREDICTABLE])
@@ -241,7 +241,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
     left = Misfit(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
     proposed = [
         Explanation(h.name, 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.details(middle(h)))
-        for h in laws(chain, 0.02, 1e-3)
+        for h in law_hypotheses(chain, 0.02, 1e-3)
         if h.device is None
     ]
     status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")

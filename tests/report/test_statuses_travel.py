@@ -22,7 +22,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, answer_part, by_task, parts_of
 from inerter.methods.compare import compare
-from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, statement, within
+from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
 from inerter.report.answers import answers
 from inerter.report.page import report
 from inerter.report.study_data import as_text
@@ -185,9 +185,14 @@ def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path
 
 
 def test_a_claim_that_rests_on_a_doubtful_estimate_is_undetermined_and_says_why_first():
-    sure, doubtful = Measured(5.0, 0.1), Measured(5.0, 0.1, doubt="inaccurate: it is so so")
+    sure, doubtful = EstimatedQuantity(5.0, 0.1), EstimatedQuantity(5.0, 0.1, doubt="inaccurate: it is so so")
     for measured, verdict in ((sure, ClaimVerdict.SHOWN), (doubtful, ClaimVerdict.UNDETERMINED)):
-        for one in (measured, measured.minus(Measured(0.5)), Measured(9.0).minus(measured), measured.times(1.0)):
+        for one in (
+            measured,
+            measured.minus(EstimatedQuantity(0.5)),
+            EstimatedQuantity(9.0).minus(measured),
+            measured.times(1.0),
+        ):
             assert within(one, 1.0, 9.0) is verdict
     said = statement("5 %", within(doubtful, 1.0, 9.0), by=[doubtful])
     assert said.found == "unreliable (inaccurate: it is so so): 5 %"

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, Misfit
+from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis, Values, sensors
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
-from inerter.identification.laws import laws
 from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.possible_causes import Suspect
 from inerter.identification.problem import FitProblem, map_problems
@@ -122,7 +122,7 @@ def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     peak = max(float(np.abs(e.record.force[e.kept]).max()) for e in problem.experiments)
     found = [*sensors(problem.offset), *recording_faults(problem, places)]
-    found += [] if chain is None else laws(chain, fastest, stroke, peak)
+    found += [] if chain is None else law_hypotheses(chain, fastest, stroke, peak)
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
 

@@ -40,17 +40,17 @@ def identification_text(found: IdentificationResult) -> str:
 
 
 def _warning(found: IdentificationResult) -> Iterator[str]:
-    """A wrong model or sensor, before anything else, and what explains it."""
+    """Warning of a wrong model or sensor, with possible causes, most likely first."""
     if found.fit.status.ok:
         return
-    yield from wrap(f"Not to be relied on: {unreliable(found)}.", WIDTH)
+    yield from wrap(f"Unreliable estimates: {unreliable(found)}.", WIDTH)
     for place in found.fit.localisations:
         of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
         yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
     said = list(likely_causes(found))
     if said:
         yield ""
-        yield "what may be wrong, the likeliest first"
+        yield "possible causes, most likely first"
     for number, (sentence, share, values, remedy) in enumerate(said, 1):
         yield from wrap(
             f"{sentence}: explains {share}.", WIDTH, initial_indent=f"  {number}. ", subsequent_indent="     "
@@ -62,7 +62,7 @@ def _warning(found: IdentificationResult) -> Iterator[str]:
 def unreliable(found: IdentificationResult) -> str:
     """Reason why the estimates of a fit are unreliable; empty if they are reliable.
 
-    Where no hypothesis explains the misfit, what the records were warned of before is the first thing to look at.
+    Where no hypothesis accounts for the residual, the warnings about the records are named first.
     """
     status = found.fit.status
     if status.ok:

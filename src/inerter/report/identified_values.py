@@ -18,8 +18,8 @@ class ResultKind(Enum):
     """Kind of result available for a parameter."""
 
     VALUE = auto()
-    BOUNDS = auto()  # at most: it is not identifiable
-    NOTHING = auto()  # the fit is not to be relied on: its values are withheld
+    BOUNDS = auto()  # bounds at most: not identifiable
+    NOTHING = auto()  # unreliable fit: values withheld
 
 
 _WORDS = {ResultKind.BOUNDS: "not identifiable", ResultKind.NOTHING: "withheld"}
@@ -57,13 +57,13 @@ def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str
 def elements_block(found: IdentificationResult) -> str:
     """The identified device as sections of a study or simulation file: elements with their best values, one layout.
 
-    What is not identifiable has its best value too, so that the layout can be computed, and says so. Of a fit that is
-    not to be relied on there is a comment only.
+    Parameters that are not identifiable have their best values too, so that the layout can be computed, and a remark.
+    Only a comment for unreliable estimates.
     """
     if not found.explains:
         return (
             f"# {found.name}, fitted to {_sources(found)}\n"
-            f"# not to be relied on ({found.fit.status.kind}): its values are withheld"
+            f"# unreliable estimates ({found.fit.status.kind}): values withheld"
         )
     rows, expression = _rows(found)
     keys = max(len(name) for name in rows)

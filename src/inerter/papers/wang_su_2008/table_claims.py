@@ -5,8 +5,8 @@ from __future__ import annotations
 from inerter.papers.wang_su_2008.between import WORSE
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    EstimatedQuantity,
     Evidence,
-    Measured,
     Statement,
     about,
     exact_value,
@@ -25,13 +25,13 @@ def quarter_car_claims(evidence: Evidence) -> list[Claim]:
     return [claim(evidence) for claim in (_claim_6, _claim_7, _claim_11)]
 
 
-def _loss(what: str, cost: Measured, low: float, high: float) -> Statement:
+def _loss(what: str, cost: EstimatedQuantity, low: float, high: float) -> Statement:
     """The statement that something costs an improvement anything, with the printed range of how much."""
     text = f"{what} loses {_points(cost)} {_POINTS}"
     return statement(text, within(cost, low=0.0), within(cost, low, high), by=[cost], unit=_POINTS)
 
 
-def _points(cost: Measured) -> str:
+def _points(cost: EstimatedQuantity) -> str:
     return f"{cost.value:.2f}" + (f" ± {cost.half_width():.2f}" if cost.error else "")
 
 
@@ -63,11 +63,11 @@ def _claim_7(evidence: Evidence) -> Claim:
             verdict = within(change, low=100.0 * WORSE) if layout == "S2" else within(change, high=-100.0 * WORSE)
             text = f"{layout} with {force} N: {change.value:+.2f} % over all frequencies"
             parts.append(statement(text, verdict, by=[change]))
-            followed.append(_followed(layout, force, row, reference))
+            followed.append(_nearest_peak_text(layout, force, row, reference))
     return Claim(7, CLAIMS[7], tuple(parts), note=f"At the peak nearest to the printed value: {'; '.join(followed)}.")
 
 
-def _followed(layout: str, force: int, row: SimulatedRow, reference: SimulatedRow) -> str:
+def _nearest_peak_text(layout: str, force: int, row: SimulatedRow, reference: SimulatedRow) -> str:
     peak = row.nearest
     assert peak is not None
     return f"{layout} with {force} N {100.0 * (peak.gain / reference.exact - 1.0):+.2f} % ({peak.omega:.1f} rad/s)"

@@ -13,7 +13,7 @@ from inerter import units
 from inerter.errors import UnitError
 from inerter.frequent_units import FREQUENT
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, shown
+from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, quote_value
 
 UNITS = (*kinds_by_unit(), "kg m^2", "m/s", "m^3/cycle", "rad/s")
 
@@ -285,8 +285,8 @@ def test_an_interval_through_decades_has_a_unit_at_each_end():
 
 @pytest.mark.parametrize("value", ["x" * 500, 10**400, "a\nb\x7f\x85\u2028", '"' * 500])
 def test_shown_is_one_short_line(value):
-    assert len(shown(value)) < 70
-    assert len(shown(value).splitlines()) == 1
+    assert len(quote_value(value)) < 70
+    assert len(quote_value(value).splitlines()) == 1
 
 
 def test_pint_is_loaded_by_the_first_unit_that_is_not_frequent():

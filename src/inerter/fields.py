@@ -1,7 +1,7 @@
-"""What something is made of, stated where it is: quantities with their units, texts, and what has a form of its own.
+"""Metadata of dataclass fields: quantities with units, choices of text, typed settings and mounted networks.
 
-A frozen dataclass gives them to its own fields as `field(metadata=quantity(...))`. The keys of files, the rows of
-reports and the checks are made of them; the tables of the docs are checked against them.
+A frozen dataclass declares them as `field(metadata=quantity(...))`. Keys of files, rows of reports and validation are
+derived from them; the tables of the documentation are checked against them.
 """
 
 from __future__ import annotations
@@ -16,49 +16,49 @@ _QUANTITY, _MOUNT, _CHOICE, _FORMED = "inerter quantity", "inerter mount", "iner
 
 @dataclasses.dataclass(frozen=True)
 class Field:
-    """A positive number of `unit`; one with a `default` may be left out, and may be zero if that is."""
+    """Positive quantity in `unit`; optional with a `default`, and possibly zero if the default is."""
 
     name: str
     unit: str  # SI
     sentence: str
-    example: str = ""  # of a value with its unit
-    key: str = ""  # in files, if that is not the name
-    words: str = ""  # to go before "of ...", if that is not the name
+    example: str = ""  # value with its unit
+    key: str = ""  # in files, if it differs from the name
+    words: str = ""  # before "of ..." in sentences, if they differ from the name
     default: float | None = None  # in `unit`
-    may_be_free: bool = False  # whether an optimiser may choose it
-    usual: tuple[float, float] | None = None  # least and largest [SI] beyond which a value is doubted, not refused
+    may_be_free: bool = False  # whether it may be a design variable
+    usual: tuple[float, float] | None = None  # smallest and largest [SI] without a warning
 
     @property
     def in_words(self) -> str:
-        """What it is called in sentences."""
+        """Name for use in sentences."""
         return self.words or self.name.replace("_", " ")
 
 
 @dataclasses.dataclass(frozen=True)
 class TextChoice:
-    """A text: one of the `options`, or any name if there are none."""
+    """Text setting: one of the `options`, or any name if there are none."""
 
     name: str
     options: tuple[str, ...]
     sentence: str
     example: str = ""
-    key: str = ""  # in files, if that is not the name
-    needed: bool = False  # whether it must be given
+    key: str = ""  # in files, if it differs from the name
+    needed: bool = False  # whether it is required
 
 
 @dataclasses.dataclass(frozen=True)
-class Formed:
-    """A value of a form that files know by its name, such as a filter."""
+class TypedField:
+    """Setting of a value type that files know by name, such as a filter."""
 
     name: str
     form: str
     sentence: str
-    example: str  # as TOML writes it
-    key: str = ""  # in files, if that is not the name
-    needed: bool = False  # whether it must be given
+    example: str  # in TOML
+    key: str = ""  # in files, if it differs from the name
+    needed: bool = False  # whether it is required
 
 
-Stated = TypeVar("Stated", TextChoice, Formed)
+Declared = TypeVar("Declared", TextChoice, TypedField)
 
 
 def quantity(
@@ -71,12 +71,12 @@ def quantity(
     may_be_free: bool = False,
     usual: tuple[float, float] | None = None,
 ) -> Mapping[str, Any]:
-    """The metadata of a dataclass field that is a positive quantity, in `unit`.
+    """Metadata of a dataclass field that is a positive quantity, in `unit`.
 
-    `example` is a value with its unit, for messages. In files it has the name of the field or this `key`, and in
-    sentences these `words` stand for it. One that `may_be_free` is the mass of a coordinate or the value of an element
-    of the mechanism as it stands, so that an optimiser may choose it. `inerter check` warns of a value that is not
-    within the `usual` ones, (least, largest).
+    `example` is a value with its unit, for messages. The key in files is the name of the field or `key`; in sentences
+    the quantity is called `words`. One that `may_be_free` may be a design variable: it is the mass of a coordinate or
+    the value of an element of the mechanism, unchanged. `inerter check` warns of values outside `usual`, (smallest,
+    largest).
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
@@ -89,7 +89,7 @@ def quantity(
 
 
 def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
-    """The metadata of a dataclass field that is one of these texts, or without `options` a name; as `quantity`.
+    """Metadata of a dataclass field that is one of these texts, or any name without `options`; else like `quantity`.
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
@@ -102,7 +102,7 @@ def choice(options: tuple[str, ...], sentence: str, *, example: str = "", key: s
 
 
 def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[str, Any]:
-    """The metadata of a field of an index that has this form in study files; else as `quantity`.
+    """Metadata of a setting of an index with this value type in study files; else like `quantity`.
 
     A "filter" is a `Filter`, "outputs" are names with weights, an "excitation" is one for `RandomResponse`, an "output"
     or an "input" is the name of one, and an "amplitude" that of an input. `example` is written as in TOML.
@@ -110,55 +110,55 @@ def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[
     >>> @dataclasses.dataclass(frozen=True)
     ... class Heard:
     ...     at: str = dataclasses.field(metadata=formed("output", "Where.", '"sprung_velocity"'))
-    >>> formed_of(Heard)
+    >>> typed_fields_of(Heard)
     (Formed(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
     """
-    return {_FORMED: Formed("", form, sentence, example, key)}
+    return {_FORMED: TypedField("", form, sentence, example, key)}
 
 
 def mount(sentence: str) -> Mapping[str, Any]:
-    """The metadata of a dataclass field that is a network; files give it in their layouts, unless it may be None."""
+    """Metadata of a dataclass field that is a network, given in the layouts of a file; optional if it may be None."""
     return {_MOUNT: sentence}
 
 
 def fields_of(kind: type) -> tuple[Field, ...]:
-    """The quantities of a dataclass, in their order."""
-    return _stated(kind)[0]
+    """Quantities of a dataclass, in the order of its fields."""
+    return _declared_fields(kind)[0]
 
 
 def choices_of(kind: type) -> tuple[TextChoice, ...]:
-    """The texts of a dataclass that are chosen, in their order."""
-    return tuple(_named(f, f.metadata[_CHOICE]) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
+    """Choices of text of a dataclass, in the order of its fields."""
+    return tuple(_with_field_name(f, f.metadata[_CHOICE]) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
 
 
-def formed_of(kind: type) -> tuple[Formed, ...]:
-    """The fields of a dataclass that have a form of their own, in their order."""
-    return tuple(_named(f, f.metadata[_FORMED]) for f in dataclasses.fields(kind) if _FORMED in f.metadata)
+def typed_fields_of(kind: type) -> tuple[TypedField, ...]:
+    """Typed settings of a dataclass, in the order of its fields."""
+    return tuple(_with_field_name(f, f.metadata[_FORMED]) for f in dataclasses.fields(kind) if _FORMED in f.metadata)
 
 
 def mounts_of(kind: type) -> tuple[str, ...]:
-    """The networks of a dataclass, in their order."""
-    return tuple(_stated(kind)[1])
+    """Names of the mounted networks of a dataclass, in the order of its fields."""
+    return tuple(_declared_fields(kind)[1])
 
 
 def needed_mounts_of(kind: type) -> tuple[str, ...]:
-    """Those networks of a dataclass that cannot be left out, in their order."""
-    return tuple(name for name, needed in _stated(kind)[1].items() if needed)
+    """Names of the required networks of a dataclass, in the order of its fields."""
+    return tuple(name for name, needed in _declared_fields(kind)[1].items() if needed)
 
 
 @cache
-def _stated(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
+def _declared_fields(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
     every = dataclasses.fields(kind)
     quantities = tuple(_quantity_of(field) for field in every if _QUANTITY in field.metadata)
     return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
 
 
-def _named(field: dataclasses.Field[Any], stated: Stated) -> Stated:
+def _with_field_name(field: dataclasses.Field[Any], declared: Declared) -> Declared:
     needed = field.default is field.default_factory is dataclasses.MISSING
-    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, needed=needed)
+    return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, needed=needed)
 
 
 def _quantity_of(field: dataclasses.Field[Any]) -> Field:
-    stated: Field = field.metadata[_QUANTITY]
+    declared: Field = field.metadata[_QUANTITY]
     default = field.default if isinstance(field.default, float) else None
-    return dataclasses.replace(stated, name=field.name, key=stated.key or field.name, default=default)
+    return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, default=default)

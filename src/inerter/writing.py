@@ -1,4 +1,4 @@
-"""Files that are there as a whole or not at all: written beside their place, safe on disk, and only then renamed."""
+"""Atomic writing of files: to a temporary folder, synchronised to disk, then renamed."""
 
 from __future__ import annotations
 
@@ -19,52 +19,52 @@ from inerter.errors import InerterError, WorkError
 if TYPE_CHECKING:
     import xarray
 
-_UNFORESEEN = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}  # the request was right, but the disk is full or ill
-_UNDER_WAY: set[Path] = set()
+_DISK_FAILURES = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO}  # valid request, but a full or faulty disk
+_OPEN_FOLDERS: set[Path] = set()
 
 
 @contextmanager
-def whole(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Where to write the file that is to be at `path`: it is there if the block ends well, else nothing has changed.
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Path of a temporary file that replaces `path` at the end of the block, unless the block raises.
 
-    The file to write has the same name, in a folder of its own. A link is followed. What is no file, such as a
-    terminal, is written to as it is.
+    The temporary file has the same name, in a separate folder. Symbolic links are followed. A path that is not a
+    regular file, such as a terminal, is written to directly.
     """
     place = Path(os.path.realpath(os.fsdecode(path)))
     if place.exists() and not place.is_file():
         yield place
         return
-    with scratch(place.parent) as folder:
+    with temporary_folder(place.parent) as folder:
         draft = folder / place.name
         yield draft
         if place.exists():
             shutil.copymode(place, draft)
-        settle(draft)
+        sync_to_disk(draft)
         draft.replace(place)
-        settle(place.parent)
+        sync_to_disk(place.parent)
 
 
 @contextmanager
-def scratch(parent: Path) -> Iterator[Path]:
-    """A new folder in `parent` for what is not whole yet; gone afterwards, with all that is left in it."""
+def temporary_folder(parent: Path) -> Iterator[Path]:
+    """New folder in `parent` for incomplete files, which is removed at the end of the block."""
     folder = parent / f".inerter-{secrets.token_hex(4)}"
-    _UNDER_WAY.add(folder)  # before it is there: an interrupt may come at any time
+    _OPEN_FOLDERS.add(folder)  # before it exists: an interrupt may occur at any time
     try:
         folder.mkdir()
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-        _UNDER_WAY.discard(folder)
+        _OPEN_FOLDERS.discard(folder)
 
 
-def sweep() -> None:
-    """Remove what `scratch` has left, before a process ends in the midst of it."""
-    for folder in tuple(_UNDER_WAY):
+def remove_temporary_folders() -> None:
+    """Remove the folders of `temporary_folder` that still exist, before the process ends."""
+    for folder in tuple(_OPEN_FOLDERS):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def settle(path: Path) -> None:
-    """Wait until a file, or the names in a folder, are safe on disk."""
+def sync_to_disk(path: Path) -> None:
+    """Synchronise a file, or the entries of a folder, to disk."""
     if path.is_dir():
         if os.name == "posix":  # elsewhere a folder cannot be opened
             handle = os.open(path, os.O_RDONLY)
@@ -77,8 +77,8 @@ def settle(path: Path) -> None:
 
 
 @contextmanager
-def undisturbed() -> Iterator[None]:
-    """Ctrl-C waits for the end of the block, which moves files from one place to another and does not take long."""
+def defer_interrupts() -> Iterator[None]:
+    """Defer Ctrl-C to the end of the block, which should be short."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -92,52 +92,55 @@ def undisturbed() -> Iterator[None]:
             signal.raise_signal(signal.SIGINT)
 
 
-def characters(text: str) -> str:
-    """A text in which what is no character, as file names may have it, is escaped."""
+def escape_surrogates(text: str) -> str:
+    """Text with lone surrogates, which file names may contain, escaped."""
     return text.encode(errors="backslashreplace").decode()
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text as a whole, in `characters`."""
-    with lines_of_text(path) as stream:
+    """Write a text atomically, with `escape_surrogates`."""
+    with open_text(path) as stream:
         stream.write(text)
 
 
 @contextmanager
-def lines_of_text(path: Path) -> Iterator[TextIO]:
-    """Where to write a text, bit by bit, that is to be there as a whole; in `characters`."""
-    with whole(path) as draft, draft.open("w", encoding="utf-8", errors="backslashreplace", newline="\n") as stream:
+def open_text(path: Path) -> Iterator[TextIO]:
+    """Text stream to a file that is replaced atomically, with `escape_surrogates`."""
+    with (
+        atomic_write(path) as draft,
+        draft.open("w", encoding="utf-8", errors="backslashreplace", newline="\n") as stream,
+    ):
         yield stream
 
 
 def write_netcdf(path: Path, data: xarray.Dataset) -> None:
-    """Write a dataset as a whole. It is made in memory: the library that writes such files dies of a full disk."""
+    """Write a dataset atomically. It is built in memory, as the HDF5 library crashes on a full disk."""
     import h5netcdf  # noqa: PLC0415 - heavy
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415 - heavy
 
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
         data.dump_to_store(H5NetCDFStore(file))
-    with whole(path) as draft:
+    with atomic_write(path) as draft:
         draft.write_bytes(content.getbuffer())
 
 
 @contextmanager
 def export(path: str | os.PathLike[str], kind: type[InerterError], *, overwrite: bool = False) -> Iterator[Path]:
-    """`whole` for a caller who asks for one file; one that is there is replaced with `overwrite` only.
+    """`atomic_write` for a file that a caller names; an existing file is replaced only with `overwrite`.
 
-    Raises `kind` if there is a file already or it cannot be written, or `WorkError` if the disk is full.
+    Raises `kind` if the file exists or cannot be written, or `WorkError` if the disk is full.
     """
     if not overwrite and os.path.isfile(path):
-        raise kind(f"{os.fsdecode(path)!r} exists: name another file, or replace it with overwrite=True.")
+        raise kind(f"{os.fsdecode(path)!r} exists. Name another file, or replace it with overwrite=True.")
     try:
-        with whole(path) as draft:
+        with atomic_write(path) as draft:
             yield draft
     except OSError as error:
-        chosen = WorkError if is_unforeseen(error) else kind
+        chosen = WorkError if is_disk_failure(error) else kind
         raise chosen(f"Cannot write {os.fsdecode(path)!r}: {error.strerror or error}.") from error
 
 
-def is_unforeseen(error: OSError) -> bool:
-    """Whether nobody could have known before the work that a file cannot be written."""
-    return error.errno in _UNFORESEEN
+def is_disk_failure(error: OSError) -> bool:
+    """Whether an error is due to a full or faulty disk, not to the request."""
+    return error.errno in _DISK_FAILURES

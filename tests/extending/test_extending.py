@@ -486,7 +486,7 @@ def test_a_broken_distribution_is_one_sentence(case: str, study: Path, tmp_path:
     done = inerter(place, "check", study.name, cwd=study.parent, code=2)
     assert done.stdout == ""
     (line,) = (line for line in done.stderr.splitlines() if not line.startswith("inerter: preparing"))  # if it is slow
-    assert line.startswith("inerter: inerter-extending 1.0 adds rows to inerter, but its inerter_extending.seat")
+    assert line.startswith("inerter: inerter-extending 1.0: cannot load its extension inerter_extending.seat")
     assert word in line
 
 

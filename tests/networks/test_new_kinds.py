@@ -12,7 +12,7 @@ import pytest
 
 import inerter as it
 from inerter.cli.main import call
-from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RowError, StudyError
+from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RegistryError, StudyError
 from inerter.fields import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
@@ -459,7 +459,7 @@ def test_kinds_are_registered_once_and_units_tell_the_first_that_is_a_value_alon
     assert ELEMENTS["clutch"] is Clutch
     assert kinds_by_unit()["N"] is it.Friction
     assert "kg m^2" not in kinds_by_unit()
-    with pytest.raises(RowError, match="another kind of element with the key 'clutch'"):
+    with pytest.raises(RegistryError, match="another kind of element with the key 'clutch'"):
         ELEMENTS.add(type("Other", (Clutch,), {}))
 
 

@@ -48,7 +48,7 @@ from inerter.papers.wang_su_2008.source import simulated_rows, study
 SHOWN, CONTRADICTED, UNDETERMINED = ClaimVerdict
 
 
-def judged(table: int, name: str) -> SimulatedRow:
+def computed_row(table: int, name: str) -> SimulatedRow:
     return rows.row_from_json(table, name, rows.compute(table, name))
 
 
@@ -59,7 +59,7 @@ EXPECTED += [(3, "J1 9"), (3, "J3 7"), (3, "J5 3")]
 @pytest.mark.parametrize(("table", "name"), sampled(EXPECTED, [row for row in EXPECTED if row != (1, "J5 6")]))
 def test_rows_of_the_expected_value(table: int, name: str) -> None:
     """Within what four runs, the printed digits and the conventions explain, from the printed designs alone."""
-    row = judged(table, name)
+    row = computed_row(table, name)
     assert row.verdict != "differs"
     assert abs(row.difference) < 8e-3 or row.verdict == "another peak"
     if row.row.index == "J5":
@@ -73,7 +73,7 @@ def test_rows_of_the_expected_value(table: int, name: str) -> None:
 @pytest.mark.parametrize("case", [4, 6, 9, 10])
 def test_the_column_of_j5_is_what_the_public_method_says_under_either_conventions(case: int) -> None:
     """No printed number has a say in it; where the printed one follows another peak, the verdict tells."""
-    row = judged(1, f"J5 {case}")
+    row = computed_row(1, f"J5 {case}")
     for conventions in ("exact", "paper2008"):
         found = evaluate(row.row.design(), row.row.asks(), ExpectedValue(conventions=conventions))
         assert row.paper2008 == found.value
@@ -83,7 +83,7 @@ def test_the_column_of_j5_is_what_the_public_method_says_under_either_convention
 
 
 def test_a_row_of_the_approximated_linear_model() -> None:
-    row = judged(2, "J3 9")
+    row = computed_row(2, "J3 9")
     assert abs(row.difference) < 15e-3
     assert row.paper2008_error > 0.0
     assert row.improvement is not None
@@ -99,7 +99,7 @@ def test_how_far_method_1_is_from_the_printed_table() -> None:
     comfort, load, both = re.findall(r"within ([\d.]+) %", text)[:3]
     off: dict[tuple[str, bool], list[float]] = {}
     for row in simulated_rows(2):
-        found = judged(2, f"{row.index} {row.case}")
+        found = computed_row(2, f"{row.index} {row.case}")
         alone = row.index == "J5" and "elastic" not in row.nonlinearity
         off.setdefault((row.index, alone), []).append(100.0 * found.difference)
     for said, index in ((comfort, "J1"), (load, "J3"), (both, "J5")):
@@ -156,8 +156,8 @@ def test_a_verdict_on_a_peak_says_which() -> None:
     assert verdict(0.99, 0.99) == "either of several peaks"
     assert verdict(1.02, 0.99) == "another peak"
     assert verdict(1.02, 1.001) == "differs"
-    assert "22.0 rad/s" in reason(judged(0.99, 0.99))
-    assert "10.0 rad/s" in reason(judged(0.99, 0.99))
+    assert "22.0 rad/s" in reason(row_with_shares(0.99, 0.99))
+    assert "10.0 rad/s" in reason(row_with_shares(0.99, 0.99))
 
 
 K = np.linspace(10e3, 300e3, 30)

@@ -249,7 +249,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
         doubted = replace(found, fit=replace(found.fit, status=status, explanations=(one,)))
         for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
             told = " ".join(text.split())
-            assert ("113 kg" in told.partition("estimates")[0].partition("Parameters")[0]) == sound
+            assert ("113 kg" in told.partition("estimates value")[0].partition("Parameters")[0]) == sound
             assert "use the values under this hypothesis, where" in told
             assert "above" not in told.partition("records")[0]
     assert len(proposed) == 6

@@ -12,9 +12,9 @@ from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method, Sees
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.rows import Rows
+from inerter.registry import Registry
 
-METHODS: Rows[type[Method]] = Rows(
+METHODS: Registry[type[Method]] = Registry(
     "method",
     "name",
     ("words", "sees", "needs_amplitude", "searches", "estimate", "estimate_many", "objective"),

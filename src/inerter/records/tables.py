@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import is_unit_cell, split_heading, without_brackets
-from inerter.units import shown
+from inerter.units import quote_value
 
 HEAD = 1 << 18  # bytes within which the numbers must begin
 BLOCK = 1 << 23  # bytes that are parsed at a time
@@ -101,7 +101,7 @@ def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
     left = [] if last is None else [at for at in range(last + 1, len(rows)) if any(rows[at])]
     if not left:
         return end, ()
-    said = shown(lines[left[0]].decode(layout.encoding, errors="replace").strip())
+    said = quote_value(lines[left[0]].decode(layout.encoding, errors="replace").strip())
     which = f"The last line, {said}, was" if len(left) == 1 else f"The last {len(left)} lines, from {said} on, were"
     return start + sum(map(len, lines[: left[0]])), (f"{which} left out: no numbers.",)
 
@@ -127,10 +127,10 @@ def _layout(source: str, head: bytes) -> TableLayout:
             return _read_layout(source, lines, at, delimiter, offset, encoding)
     grouped = (cell for line in lines for d in _DELIMITERS for cell in _cells(line, d) if _THOUSANDS.fullmatch(cell))
     if (cell := next(grouped, None)) is not None:
-        raise RecordError(f"{source}: the number {shown(cell)} has {_THOUSANDS_SAID}")
+        raise RecordError(f"{source}: the number {quote_value(cell)} has {_THOUSANDS_SAID}")
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
-        f"{source}: rows of numbers in two or more columns not found; the file begins {shown(first.strip())}. "
+        f"{source}: rows of numbers in two or more columns not found; the file begins {quote_value(first.strip())}. "
         f"Expected a header such as 'time [s], displacement [mm], force [N]' and rows of numbers below it."
     )
 
@@ -301,8 +301,8 @@ def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: 
         spare = cells[layout.columns :]
         if len(cells) < layout.columns or any(spare):
             raise RecordError(
-                f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in {shown(text.strip())}. "
-                f"Remove or complete this line."
+                f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in "
+                f"{quote_value(text.strip())}. Remove or complete this line."
             )
         for column in wanted:
             if not _is_value(cells[column], layout.decimal):
@@ -324,8 +324,8 @@ def _bad_cell(source: str, line: int, cells: list[str], decimal: str = ".") -> R
     cell = next((cell for cell in cells if not _is_number(cell)), cells[0])
     mark = "comma" if decimal == "," else "point"
     if _THOUSANDS.fullmatch(cell):
-        return RecordError(f"{source}, line {line}: {shown(cell)} has {_THOUSANDS_SAID}")
+        return RecordError(f"{source}, line {line}: {quote_value(cell)} has {_THOUSANDS_SAID}")
     return RecordError(
-        f"{source}, line {line}: expected a number with a decimal {mark}, got {shown(cell)}. "
+        f"{source}, line {line}: expected a number with a decimal {mark}, got {quote_value(cell)}. "
         f"Leave the cell empty, or write nan, where a sample is missing."
     )

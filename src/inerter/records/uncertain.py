@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from inerter.checks import is_number
 from inerter.errors import UnitError
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.units import format_quantity, parse_quantity, quote_value
 
 _SIGNS = re.compile(r"\+/-|\+-|±")
 _FACTOR = re.compile(r"\(\s*k\s*=\s*([0-9.]+)\s*\)\s*$")
@@ -93,4 +93,4 @@ def _number(part: str, text: object, example: str) -> float:
 
 
 def _refusal(text: object, example: str) -> str:
-    return f'Got {shown(text)}; expected a value and its standard uncertainty, such as "{example}".'
+    return f'Got {quote_value(text)}; expected a value and its standard uncertainty, such as "{example}".'

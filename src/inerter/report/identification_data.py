@@ -15,7 +15,7 @@ from inerter.records.uncertain import Uncertain
 from inerter.report.identified_values import elements_block
 from inerter.report.json_data import json_data
 from inerter.work.origin import versions
-from inerter.writing import whole
+from inerter.writing import atomic_write
 
 
 def identification_data(found: IdentificationResult) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def response_data(found: Responses) -> dict[str, Any]:
 
 def write_residuals(found: IdentificationResult, path: Path) -> None:
     """Write one row per sample of every record: measured and predicted force, and use of the sample."""
-    with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
+    with atomic_write(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
         file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")
         for number, c in enumerate(found.fit.comparisons):
             parts = np.where(c.fitted, "fit", np.where(c.checked, "check", "left out"))

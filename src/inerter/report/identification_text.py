@@ -20,7 +20,7 @@ LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not 
 
 
 def identification_text(found: IdentificationResult) -> str:
-    """Whether it can be relied on, records, estimates, goodness, the next experiment, elements.
+    """Reliability, records, estimates, goodness, the next experiment, elements.
 
     ASCII, 80 columns.
     """

@@ -22,7 +22,7 @@ from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
@@ -267,8 +267,8 @@ def _unit_size(source: str, role: str, channel: Channel, unit: str) -> float:
         worth = parse_quantity(f"1 {unit.strip()}", "m")
     except UnitError:
         raise RecordError(
-            f"{source}: the unit {shown(unit)} of {channel.name!r} is not a unit of length. Write another after the "
-            f'name, such as "{kind} [{_EXAMPLES[kind]}]", or specify it: ',
+            f"{source}: the unit {quote_value(unit)} of {channel.name!r} is not a unit of length. Write another after "
+            f'the name, such as "{kind} [{_EXAMPLES[kind]}]", or specify it: ',
             *(Remedy(Action.UNITS, ((kind, _EXAMPLES[kind]),)), "."),
         ) from None
     return worth

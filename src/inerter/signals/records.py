@@ -13,7 +13,7 @@ import numpy as np
 from inerter.errors import SignalError, UnitError
 from inerter.signals.arguments import Array, generator, positive, whole_number
 from inerter.signals.signal import SampledSignal, Signal
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 
 _HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
@@ -100,7 +100,7 @@ def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[s
         if len(cells) != 2:
             raise SignalError(
                 f"{name}, line {line}: expected two cells with a comma between them, "
-                f"got {len(cells)} in {shown(','.join(cells))}."
+                f"got {len(cells)} in {quote_value(','.join(cells))}."
             )
     if not rows:
         raise SignalError(
@@ -115,7 +115,7 @@ def _header(name: str, units: dict[str, str], line: int, cells: list[str]) -> tu
     names = [match[1].lower() if match else "" for match in found]
     if sorted(names) != sorted(units):
         raise SignalError(
-            f"{name}, line {line}: expected a header with units, {_example(units)}, got {shown(','.join(cells))}."
+            f"{name}, line {line}: expected a header with units, {_example(units)}, got {quote_value(','.join(cells))}."
         )
     try:
         scales = [parse_quantity(f"1 {match[2].strip()}", units[match[1].lower()]) for match in found if match]
@@ -130,5 +130,7 @@ def _number(name: str, line: int, cell: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise SignalError(f"{name}, line {line}: expected a finite number with a decimal point, got {shown(cell)}.")
+        raise SignalError(
+            f"{name}, line {line}: expected a finite number with a decimal point, got {quote_value(cell)}."
+        )
     return value

@@ -19,7 +19,7 @@ from inerter.errors import StatusKind
 from inerter.files.study.cases import ENDED, FAILURES, Case, Outcome
 from inerter.files.study.task_rows import TASKS
 from inerter.optimisation.threads import one_blas_thread
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -142,7 +142,7 @@ class TaskResults(Generic[AnswerT]):
     answers: Sequence[AnswerT]
 
 
-@made_of_rows
+@cache_until_registration
 def tasks() -> tuple[Task[Any], ...]:
     """All tasks, in the order in which they are computed and reported."""
     return tuple(_task(row.home) for row in TASKS.values())

@@ -16,7 +16,7 @@ from study_text import study_text
 import inerter as it
 from inerter import registry
 from inerter.errors import MechanismError, RegistryError, StudyError, UnknownEntryError
-from inerter.fields import fields_of, mounts_of
+from inerter.field_metadata import fields_of, mounts_of
 from inerter.files.common.signal_kinds import unit_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import write_resolved

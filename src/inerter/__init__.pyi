@@ -5,11 +5,11 @@ from inerter.errors import ErrorSource as ErrorSource
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
-from inerter.fields import Field as Field
-from inerter.fields import choice as choice
-from inerter.fields import formed as formed
-from inerter.fields import mount as mount
-from inerter.fields import quantity as quantity
+from inerter.field_metadata import Field as Field
+from inerter.field_metadata import choice as choice
+from inerter.field_metadata import formed as formed
+from inerter.field_metadata import mount as mount
+from inerter.field_metadata import quantity as quantity
 from inerter.files.common.folder import Intent as Intent
 from inerter.files.common.folder import claimed as claimed
 from inerter.files.common.signal_kinds import SIGNALS as SIGNALS

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic import designs, sweep
 
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.figures.labels import (
     axis_label,
     compared_layouts,

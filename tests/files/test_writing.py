@@ -16,10 +16,7 @@ import pytest
 import xarray as xr
 
 import inerter as it
-from inerter.errors import RecordError, SimulationError, WorkError
-from inerter.figures.style import new_figure, save
-from inerter.records.writers import WRITERS
-from inerter.writing import (
+from inerter.atomic_io import (
     atomic_write,
     defer_interrupts,
     export,
@@ -28,6 +25,9 @@ from inerter.writing import (
     write_netcdf,
     write_text,
 )
+from inerter.errors import RecordError, SimulationError, WorkError
+from inerter.figures.style import new_figure, save
+from inerter.records.writers import WRITERS
 
 
 def test_a_file_is_there_when_the_block_has_ended_well(tmp_path: Path) -> None:
@@ -219,7 +219,7 @@ def test_a_dataset_on_a_full_disk_does_not_end_the_process(tiny_disk: Path) -> N
     program = """
 import sys, numpy as np, xarray as xr
 from pathlib import Path
-from inerter.writing import write_netcdf
+from inerter.atomic_io import write_netcdf
 try:
     write_netcdf(Path(sys.argv[1]) / "a.nc", xr.Dataset({"a": ("t", np.random.default_rng(0).normal(size=100000))}))
 except OSError as error:

@@ -13,7 +13,7 @@ import pytest
 import inerter as it
 from inerter.cli.main import call
 from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RegistryError, StudyError
-from inerter.fields import Field
+from inerter.field_metadata import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study

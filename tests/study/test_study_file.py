@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import NetworkError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of

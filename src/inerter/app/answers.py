@@ -16,7 +16,7 @@ from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encode_json
 from inerter.errors import DesignError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import responses

@@ -13,8 +13,8 @@ from typing import Any
 from inerter.app.calls import run_call
 from inerter.app.kinds import KINDS, JobStopped
 from inerter.app.wire import decode_json, encode_json
+from inerter.atomic_io import atomic_write
 from inerter.work.progress import ProgressStep, progress
-from inerter.writing import atomic_write
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
 _OFTEN = 0.05  # seconds between two lines about progress

@@ -75,7 +75,7 @@ def _end_soon() -> None:
     time.sleep(_PATIENCE)
     from multiprocessing import active_children
 
-    from inerter.writing import remove_temporary_folders
+    from inerter.atomic_io import remove_temporary_folders
 
     for process in active_children():
         process.kill()

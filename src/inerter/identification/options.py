@@ -6,9 +6,9 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
-from inerter.checks import is_number
 from inerter.errors import IdentificationError, UnitError
 from inerter.records.uncertain import Uncertain, parse_uncertain
+from inerter.validation import is_number
 
 POINTS = 128  # starts of a search
 

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
 from inerter.identification.models import with_mount
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import RunSettings, check_simulation, simulate
+from inerter.validation import check_positive, is_number
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from inerter.errors import PerformanceIndexError, RegistryError
-from inerter.fields import Field, TextChoice, TypedField, choices_of, fields_of, typed_fields_of
+from inerter.field_metadata import Field, TextChoice, TypedField, choices_of, fields_of, typed_fields_of
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
 from inerter.indices.element_stroke import ElementStroke

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, Question
 from inerter.methods.error_bounds import checked
@@ -29,6 +28,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable, Container, Mapping
 from typing import Any
 
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method, Sees

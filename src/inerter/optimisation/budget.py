@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.methods.asking import Asked
 from inerter.methods.compare import Comparison, compare
@@ -19,6 +18,7 @@ from inerter.methods.method import Averaging, Method, Sees, check_request, evalu
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import binary_dilation, find_objects, label
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.channels import Samples
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import detrend as without_line
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, low_pass
 from inerter.records.gaps import LONGEST, SCATTER, fill, missing_rows
 from inerter.records.record import CHANNELS, Record
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 BOTH = ("displacement", "force")

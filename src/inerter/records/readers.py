@@ -11,7 +11,6 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
 from inerter.records.channel_selection import Roles, checked_roles, example, select_channels
@@ -22,6 +21,7 @@ from inerter.records.gaps import fill_missing, have_same_times, resample_onto_fo
 from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 Opener = Callable[[str, str], AbstractContextManager[Contents]]

@@ -10,7 +10,6 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import OK, RecordError, Status, StatusKind
 from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
@@ -18,6 +17,7 @@ from inerter.records.record import Record
 from inerter.records.result import Response, format_sources, respond
 from inerter.records.spectra import HarmonicLines, Spectra, lines_of, welch
 from inerter.systems.linear import LinearSystem
+from inerter.validation import check_positive
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]

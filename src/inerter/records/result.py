@@ -13,9 +13,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.atomic_io import export
 from inerter.errors import OK, RecordError, Status
 from inerter.records.record import Record
-from inerter.writing import export
 
 if TYPE_CHECKING:
     import xarray

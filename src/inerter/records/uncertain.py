@@ -11,9 +11,9 @@ import math
 import re
 from dataclasses import dataclass
 
-from inerter.checks import is_number
 from inerter.errors import UnitError
 from inerter.units import format_quantity, parse_quantity, quote_value
+from inerter.validation import is_number
 
 _SIGNS = re.compile(r"\+/-|\+-|±")
 _FACTOR = re.compile(r"\(\s*k\s*=\s*([0-9.]+)\s*\)\s*$")

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from inerter.atomic_io import export
 from inerter.errors import RecordError
 from inerter.records.optional_readers import library
 from inerter.records.record import CHANNELS, Record
-from inerter.writing import export
 
 _NOT_GIVEN = "unknown source"
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import isnan
 from pathlib import Path
 
+from inerter.atomic_io import write_text
 from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
@@ -36,7 +37,6 @@ from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
 from inerter.units import format_handy, format_number, handy_unit
 from inerter.work.origin import versions
-from inerter.writing import write_text
 
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)

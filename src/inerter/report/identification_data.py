@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from inerter.atomic_io import atomic_write
 from inerter.files.identification.running import IdentificationResult, Reading, Responses
 from inerter.identification.fit import RecordFit
 from inerter.networks.parser import format_expression
@@ -15,7 +16,6 @@ from inerter.records.uncertain import Uncertain
 from inerter.report.identified_values import elements_block
 from inerter.report.json_data import json_data
 from inerter.work.origin import versions
-from inerter.writing import atomic_write
 
 
 def identification_data(found: IdentificationResult) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from inerter.atomic_io import write_text
 from inerter.figures.labels import capital, swept_places, together, typeset, typeset_quantity
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
@@ -35,7 +36,6 @@ from inerter.report.question import (
     vehicle_rows,
 )
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
-from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError
 from inerter.signals.arguments import positive
 from inerter.signals.signal import SampledSignal, Signal
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 LEFT, RIGHT = "left", "right"

@@ -13,7 +13,6 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError, UnitError
 from inerter.records import tables
 from inerter.records.channel_selection import fold_name
@@ -23,6 +22,7 @@ from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
 from inerter.units import parse_quantity, quote_value
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")

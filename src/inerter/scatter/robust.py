@@ -13,7 +13,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.asking import Asked, estimate_of, objective_of
@@ -31,6 +30,7 @@ from inerter.scatter.spread import (
     with_free_scatter,
 )
 from inerter.scatter.tolerance import evaluate_sample, quantile_error, rank_weights
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

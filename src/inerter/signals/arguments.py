@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import SignalError
+from inerter.validation import check_positive, is_number
 
 Array = NDArray[np.float64]
 

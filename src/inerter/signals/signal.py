@@ -10,7 +10,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.checks import is_number
 from inerter.errors import SignalError
 from inerter.signals.arguments import (
     MOST,
@@ -26,6 +25,7 @@ from inerter.signals.arguments import (
     whole_number,
 )
 from inerter.signals.tables import HOLDS, check_times, close_period, coefficients, spacing
+from inerter.validation import is_number
 
 Pair = tuple[Array, Array]
 

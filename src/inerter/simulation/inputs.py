@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import SimulationError
 from inerter.signals.arguments import slack
 from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from inerter.checks import is_number
 from inerter.errors import DesignError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 

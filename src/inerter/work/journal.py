@@ -18,9 +18,9 @@ from pathlib import Path
 from shutil import copyfileobj
 from typing import Any
 
+from inerter.atomic_io import atomic_write
 from inerter.errors import StudyError, WorkError
 from inerter.work.origin import VERSION, origin
-from inerter.writing import atomic_write
 
 FORMAT = 2
 _LINE = re.compile(rb'(\{.*), "check": "([0-9a-f]{16})"\}')

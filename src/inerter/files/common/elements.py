@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from inerter.errors import UnitError
-from inerter.fields import Field
+from inerter.field_metadata import Field
 from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, TableCodec
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import (

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from inerter.fields import Field, TextChoice
+from inerter.field_metadata import Field, TextChoice
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError

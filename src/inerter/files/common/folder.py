@@ -14,9 +14,9 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from inerter.atomic_io import defer_interrupts, is_disk_failure, sync_to_disk, temporary_folder
 from inerter.errors import StudyError, WorkError
 from inerter.files.common.listing import MARK, Entry, Listing, digest, is_linked, is_own, listing, names_below
-from inerter.writing import defer_interrupts, is_disk_failure, sync_to_disk, temporary_folder
 
 _LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
 FIGURES, REPORT = "figures", "report.html"  # in folders of results of any command

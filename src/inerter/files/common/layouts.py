@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import NetworkError
-from inerter.fields import mounts_of
+from inerter.field_metadata import mounts_of
 from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, section, without_none
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import EXPRESSION, layout_name

@@ -9,9 +9,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common import profiles
 from inerter.files.common.codec import (
     REQUIRED,
@@ -31,6 +30,7 @@ from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spec
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
 from inerter.units import format_quantity, quote_value
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 
 ROAD_QUANTITIES = sorted(fields_of(Road), key=lambda f: f.name != "speed")  # which comes first

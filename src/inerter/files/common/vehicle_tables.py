@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from inspect import getdoc
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.errors import RegistryError, UnitError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     Codec,
     KeyPath,
@@ -28,6 +27,7 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
 from inerter.networks.elements import NAME
 from inerter.units import parse_one_of, parse_quantity, quote_value
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from inerter.errors import InerterError, MechanismError
-from inerter.fields import fields_of, mounts_of, needed_mounts_of
+from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of

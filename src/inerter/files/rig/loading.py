@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError
 from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
@@ -21,7 +22,6 @@ from inerter.networks.parser import network
 from inerter.systems.piecewise import piecewise
 from inerter.units import quote_value
 from inerter.vehicle.rig import Rig
-from inerter.writing import escape_surrogates
 
 _OWN = ("layout", "duration", "start")  # of [rig], and not of the rig itself
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
@@ -21,7 +22,6 @@ from inerter.files.simulation.sections import simulation_codec
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
 from inerter.units import quote_value
-from inerter.writing import escape_surrogates
 
 
 def load_simulation(path: str | Path) -> SimulationRequest:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.ties import with_known_values
 from inerter.files.study.place import Place, element_at, place_of
 from inerter.files.study.places import number_at, with_numbers

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.files.common.codec import Declaration, Scalar, TableCodec
 from inerter.files.common.problem import EntryError
 from inerter.systems.filters import Filter
 from inerter.units import quote_value
+from inerter.validation import is_number
 
 
 def _coefficients(value: Any) -> tuple[float, ...]:

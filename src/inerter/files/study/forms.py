@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.errors import RegistryError
-from inerter.fields import TypedField
+from inerter.field_metadata import TypedField
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, Scalar
 from inerter.files.common.codecs import NamesCodec
 from inerter.files.common.entries import TEXT
@@ -29,6 +28,7 @@ from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
 from inerter.units import quote_value
+from inerter.validation import is_number
 
 _OF_INPUTS = {"N": "force", "N m": "moment", "m": "road", "m/s": "velocity of a road"}
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.files.common.elements import with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
@@ -28,7 +29,6 @@ from inerter.files.study.tasks import tasks
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Element, Free
 from inerter.units import quote_value
-from inerter.writing import escape_surrogates
 
 WHAT = "a study file"
 

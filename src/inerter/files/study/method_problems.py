@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from inerter.errors import with_article
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import some
 from inerter.files.study.place import element_at, place_of

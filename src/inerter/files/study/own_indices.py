@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import RegistryError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import TableCodec, without_none
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
 from inerter.files.common.entries import declaration_of, layout_name, one_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import RegistryError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     Codec,
     Scalar,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from inerter.errors import InerterError, StudyError, with_article
-from inerter.fields import Field, fields_of, needed_mounts_of
+from inerter.field_metadata import Field, fields_of, needed_mounts_of
 from inerter.files.common.keys import keys_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.suggest import nearest

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import keyed_dataclass
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError

@@ -9,11 +9,11 @@ from typing import Any
 
 import xarray as xr
 
+from inerter.atomic_io import open_text
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
 from inerter.units import label_with_unit
-from inerter.writing import open_text
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
 

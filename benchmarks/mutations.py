@@ -43,8 +43,8 @@ AREAS = {  # sources, and the tests that are about them; those of vehicles and r
     "roads": ("roads", "tests/roads tests/methods/test_measured_roads.py"),
     "systems": ("systems", "tests/systems tests/norms tests/vehicle tests/simulation"),
     "norms": ("norms", "tests/norms tests/methods tests/systems"),
-    "methods": ("methods", "tests/methods tests/optimisation tests/scatter tests/trade_off"),
-    "optimisation": ("optimisation", "tests/optimisation tests/trade_off tests/scatter"),
+    "methods": ("methods", "tests/methods tests/optimisation tests/uncertainty tests/pareto_fronts"),
+    "optimisation": ("optimisation", "tests/optimisation tests/pareto_fronts tests/uncertainty"),
     "records": ("records", "tests/records tests/identification"),
     "units": ("units.py", "tests/test_units.py tests/files tests/report"),
 }

@@ -99,6 +99,8 @@ from inerter.optimisation.optimise import Optimum as Optimum
 from inerter.optimisation.optimise import optimise as optimise
 from inerter.papers.paper import Paper as Paper
 from inerter.papers.registry import PAPERS as PAPERS
+from inerter.pareto_fronts.front import Front as Front
+from inerter.pareto_fronts.pareto import pareto as pareto
 from inerter.records.readers import read_record as read_record
 from inerter.records.record import Record as Record
 from inerter.records.response import frequency_response as frequency_response
@@ -109,10 +111,6 @@ from inerter.roads.profile import Profile as Profile
 from inerter.roads.reading import profile as profile
 from inerter.roads.reading import read_profile as read_profile
 from inerter.roads.spectrum import road_spectrum as road_spectrum
-from inerter.scatter.robust import Quantile as Quantile
-from inerter.scatter.robust import robust as robust
-from inerter.scatter.tolerance import Tolerance as Tolerance
-from inerter.scatter.tolerance import tolerance as tolerance
 from inerter.signals.coherence import Coherence as Coherence
 from inerter.signals.harmonics import cosine as cosine
 from inerter.signals.harmonics import flat_multisine as flat_multisine
@@ -138,8 +136,10 @@ from inerter.systems.assemble import assemble as assemble
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.linear import LinearSystem as LinearSystem
 from inerter.systems.static_loads import static_tyre_loads as static_tyre_loads
-from inerter.trade_off.front import Front as Front
-from inerter.trade_off.pareto import pareto as pareto
+from inerter.uncertainty.robust_design import Quantile as Quantile
+from inerter.uncertainty.robust_design import robust as robust
+from inerter.uncertainty.tolerance import Tolerance as Tolerance
+from inerter.uncertainty.tolerance import tolerance as tolerance
 from inerter.vehicle.absorber import Absorber as Absorber
 from inerter.vehicle.full_car import FullCar as FullCar
 from inerter.vehicle.half_car import HalfCar as HalfCar

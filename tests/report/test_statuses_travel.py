@@ -27,7 +27,7 @@ from inerter.report.answers import answers
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.text import summary_table
-from inerter.scatter.spread import scatter_of
+from inerter.uncertainty.distributions import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)

@@ -29,10 +29,10 @@ from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import budget as find_budget
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
-from inerter.scatter.tolerance import tolerance
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import budget_method
+from inerter.uncertainty.tolerance import tolerance
 from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]

@@ -26,10 +26,10 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
 from inerter.methods.registry import deciding
+from inerter.pareto_fronts.front import Front
+from inerter.pareto_fronts.pareto import pareto
 from inerter.report.question import key_in_words
 from inerter.table import Cell, Row, Table, Writer
-from inerter.trade_off.front import Front
-from inerter.trade_off.pareto import pareto
 from inerter.units import label_with_unit
 
 if TYPE_CHECKING:

@@ -30,9 +30,9 @@ from inerter.methods.method import Method
 from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
-from inerter.scatter.robust import Quantile
-from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
+from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
+from inerter.uncertainty.robust_design import Quantile
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 

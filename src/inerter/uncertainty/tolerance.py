@@ -18,7 +18,14 @@ from inerter.methods.asking import Asked, estimate_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.method import Doubting, Estimate, Method, asked_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
-from inerter.scatter.spread import Scatter, elements_scatter, nominal, scatter_left_out, scatter_of, with_free_scatter
+from inerter.uncertainty.distributions import (
+    Scatter,
+    elements_scatter,
+    nominal,
+    scatter_left_out,
+    scatter_of,
+    with_free_scatter,
+)
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle

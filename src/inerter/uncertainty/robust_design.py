@@ -20,7 +20,7 @@ from inerter.methods.method import Estimate, Method, asked_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.scatter.spread import (
+from inerter.uncertainty.distributions import (
     Scatter,
     elements_scatter,
     nominal,
@@ -29,7 +29,7 @@ from inerter.scatter.spread import (
     source_values,
     with_free_scatter,
 )
-from inerter.scatter.tolerance import evaluate_sample, quantile_error, rank_weights
+from inerter.uncertainty.tolerance import evaluate_sample, quantile_error, rank_weights
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 

@@ -32,8 +32,8 @@ from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_li
 from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
-from inerter.trade_off.front import Front
-from inerter.trade_off.points import FrontPoint, dominates, gap_key, gaps, non_dominated, sparse, thin_out
+from inerter.pareto_fronts.front import Front
+from inerter.pareto_fronts.points import FrontPoint, dominates, gap_key, gaps, non_dominated, sparse, thin_out
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 

@@ -25,7 +25,7 @@ from inerter.indices.registry import amplitude_of, index_settings, needed_settin
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import averages, with_gradients
 from inerter.registry import Registry, cache_until_registration
-from inerter.report.question import vehicle_rows
+from inerter.report.problem_statement import vehicle_rows
 from inerter.units import parse_quantity
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)

@@ -23,7 +23,7 @@ from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, answer_part, by_task, parts_of
 from inerter.methods.compare import compare
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
-from inerter.report.answers import answers
+from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.text import summary_table
@@ -140,7 +140,7 @@ def judged_study(tmp_path, text=TEXT):
     }
     sentences = {key: next(task.sentences(results, with_unit), "") for key, (task, results) in told.items()}
     return {
-        "headline": answers(data, study, found)[0],
+        "headline": conclusion_sentences(data, study, found)[0],
         "answer box": answer[1].replace("<li>", "").strip(),
         "front": sentences.get("fronts", ""),
         "budget": lines.get("budgets", "").partition("  S2")[2],

@@ -25,10 +25,10 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.networks.elements.values import NAME
-from inerter.report.answers import answers
-from inerter.report.findings import headlines
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.index_summary import headlines
 from inerter.report.page import report
-from inerter.report.question import condition_rows
+from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table
 
@@ -371,7 +371,7 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
     assert max(map(len, told.splitlines())) <= WIDTH
     named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
     page = report(result.data, study, tmp_path)
-    for shown in (" ".join(told.split()), " ".join(answers(result.data, study)), page):
+    for shown in (" ".join(told.split()), " ".join(conclusion_sentences(result.data, study)), page):
         assert named in shown
         assert not kind or f"{said} at most" not in shown
     for shown in (told, page):

@@ -25,7 +25,7 @@ from inerter.figures.labels import (
     typeset_quantity,
     with_unit,
 )
-from inerter.report.question import of_each
+from inerter.report.problem_statement import of_each
 from inerter.table import Cell, Row, Table, Writer
 
 _MOST_RANGES = 3  # of swept values, in a remark

@@ -37,7 +37,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
-from inerter.report.findings import best_layout, place_text
+from inerter.report.index_summary import best_layout, place_text
 from inerter.table import Cell, Row, Table
 
 _MOST_SWEPT = 16  # rows of a table over a sweep

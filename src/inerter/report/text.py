@@ -28,9 +28,9 @@ from inerter.figures.labels import (
     swept_words,
     with_unit,
 )
-from inerter.report.by_method import method_lines
-from inerter.report.findings import extremes, over_the_sweep, place_text
+from inerter.report.index_summary import extremes, over_the_sweep, place_text
 from inerter.report.limits import limit_lines
+from inerter.report.method_comparison import method_lines
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"

@@ -20,7 +20,7 @@ from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResul
 from inerter.methods.registry import brief_words_of, deciding, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import Budget, budget
-from inerter.report.findings import best_layouts
+from inerter.report.index_summary import best_layouts
 from inerter.table import Cell, Row, Table, Writer
 from inerter.units import quote_value
 

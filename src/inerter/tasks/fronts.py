@@ -28,7 +28,7 @@ from inerter.files.study.ways import ways
 from inerter.methods.registry import deciding
 from inerter.pareto_fronts.front import Front
 from inerter.pareto_fronts.pareto import pareto
-from inerter.report.question import key_in_words
+from inerter.report.problem_statement import key_in_words
 from inerter.table import Cell, Row, Table, Writer
 from inerter.units import label_with_unit
 

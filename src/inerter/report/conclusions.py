@@ -13,16 +13,16 @@ from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.report.findings import Wording, headlines
+from inerter.report.index_summary import Wording, headlines
 from inerter.report.plausibility import result_warnings
-from inerter.report.question import limit_words, of_each
+from inerter.report.problem_statement import limit_words, of_each
 from inerter.report.speeds import speed_sentences
 from inerter.table import Writer
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
 
-def answers(
+def conclusion_sentences(
     results: xr.Dataset,
     study: Study,
     found: Sequence[Answer] = (),

@@ -33,7 +33,7 @@ from inerter.figures.labels import (
     way,
     with_unit,
 )
-from inerter.report.findings import extremes, place_text
+from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table
 
 _LONGEST_NAME = 20

@@ -30,7 +30,7 @@ from inerter.papers.wang_su_2008.judging import (
     EstimatedQuantity,
     Evidence,
     Statement,
-    all_of,
+    combined_verdict,
     everywhere,
     somewhere_above,
     statement,
@@ -339,9 +339,9 @@ def test_claims_are_judged_only_with_their_evidence() -> None:
 
 
 def test_a_claim_is_as_good_as_its_worst_statement() -> None:
-    assert all_of([SHOWN, SHOWN]) is SHOWN
-    assert all_of([SHOWN, UNDETERMINED]) is UNDETERMINED
-    assert all_of([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
+    assert combined_verdict([SHOWN, SHOWN]) is SHOWN
+    assert combined_verdict([SHOWN, UNDETERMINED]) is UNDETERMINED
+    assert combined_verdict([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
     mixed = Claim(
         0, "", (Statement("this", SHOWN, CONTRADICTED), Statement("that", UNDETERMINED, None, "1 %")), "N. B."
     )

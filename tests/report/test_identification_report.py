@@ -33,8 +33,8 @@ from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identification_figures import figures, window
-from inerter.report.identification_text import identification_text, share, unreliable
+from inerter.report.identification_figures import figures, last_periods
+from inerter.report.identification_text import format_variance_share, identification_text, unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 from inerter.units import format_handy
@@ -202,8 +202,8 @@ def test_single_values_and_shares() -> None:
     assert format_handy(9.5e-9, "m") == "0.0095 um"
     assert format_handy(0.0021, "s") == "2.1 ms"
     assert format_handy(5000.0, "kg") == "5000 kg"
-    assert share(0.5) == "50.0 %"
-    assert share(1.0) == "100.0 %"
+    assert format_variance_share(0.5) == "50.0 %"
+    assert format_variance_share(1.0) == "100.0 %"
 
 
 @pytest.mark.parametrize("text", ["b", "k | c", "(ks | cs) - gap - (b | f)", "k | c - (a - b | f)", "(a | b) - c | d"])
@@ -216,7 +216,7 @@ def test_expressions_are_read_back_as_they_were(text: str) -> None:
 
 def test_the_window_is_a_few_periods_of_what_was_fitted(found: IdentificationResult) -> None:
     (comparison,) = found.fit.comparisons
-    first, last = window(comparison)
+    first, last = last_periods(comparison)
     assert comparison.fitted[last]
     assert last - first <= 1.2 * 400
 
@@ -330,7 +330,7 @@ def test_a_misfit_that_nothing_explains_begins_with_what_records_were_warned_of(
     fit = SimpleNamespace(
         status=Status(StatusKind.INACCURATE, "it leaves much"), doubt=SimpleNamespace(numbers={"likeliest": likeliest})
     )
-    said = unreliable(SimpleNamespace(readings=readings, fit=fit))
+    said = unreliability_reason(SimpleNamespace(readings=readings, fit=fit))
     assert said.startswith("it leaves much")
     assert ("Begin with the warning about b.csv below" in said) == is_named
-    assert unreliable(SimpleNamespace(readings=readings, fit=SimpleNamespace(status=OK))) == ""
+    assert unreliability_reason(SimpleNamespace(readings=readings, fit=SimpleNamespace(status=OK))) == ""

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.initial_estimate import Chain
 from inerter.identification.possible_causes import Details, Suspect
 from inerter.kernels.declare import kernel, part
@@ -219,7 +219,7 @@ def _law(
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         plain = _numbers(chain, values)
         difference = simulate_chain(change(plain, values), e, force.size) - simulate_chain(plain, e, force.size)
-        return np.asarray(force + through_cell(difference, e))
+        return np.asarray(force + read_by_load_cell(difference, e))
 
     return Hypothesis(name, unknowns, read=read, details=details, starts=starts)
 

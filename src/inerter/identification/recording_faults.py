@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
-from inerter.identification.experiment import Experiment, experiment_of, reading_of
+from inerter.identification.experiment import Experiment, experiment_of, load_cell_output
 from inerter.identification.fit import Localisation
-from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.identification.possible_causes import Details, Suspect
 from inerter.identification.problem import FitProblem
@@ -97,7 +97,7 @@ def _cross_talk(signal: str, unit: str, size: float) -> Hypothesis:
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         reading = getattr(e.motion, signal)[: force.size]
-        return np.asarray(force + values[unknown.name] * through_cell(reading, e))
+        return np.asarray(force + values[unknown.name] * read_by_load_cell(reading, e))
 
     def details(values: Values) -> Details:
         return {"signal": signal, "unit": unit, "size": values[unknown.name]}
@@ -164,7 +164,7 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
         known = {n: values.get(n, bounds[n][0]) for n in space.names}
         system = bare.system(space.coordinates_of(known), e.record)
         run = None if system is None else e.run(system, size)
-        return None if run is None else run[reading_of(e.record)]
+        return None if run is None else run[load_cell_output(e.record)]
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         if e.record is not record:

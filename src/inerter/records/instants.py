@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.records.dropouts import MAD
-from inerter.records.gaps import runs
+from inerter.records.gaps import true_runs
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
@@ -45,14 +45,14 @@ class Instant:
     size: float
 
 
-def spikes(values: Vector, widest: int = _WIDEST) -> list[Instant]:
+def spike_instants(values: Vector, widest: int = _WIDEST) -> list[Instant]:
     """Runs of up to `widest` samples that leave an otherwise smooth channel and return to it at once.
 
     An impact that passed a load cell takes several samples to decay, and a step does not return: neither is a spike.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500] += 40.0
-    >>> [(found.start, found.stop) for found in spikes(values)]
+    >>> [(found.start, found.stop) for found in spike_instants(values)]
     [(500, 501)]
     """
     if values.size < 8 * widest:
@@ -115,7 +115,7 @@ def _local_scale(deviation: Vector) -> Vector:
     return np.asarray(np.maximum(whole, level))
 
 
-def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
+def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     """Runs of at least four equal values where noise or motion would have changed them.
 
     A clipped channel, one at rest and one whose values repeat all the time have no held values. A channel that is not
@@ -123,11 +123,11 @@ def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500:506] = values[500]
-    >>> [(found.start, found.stop) for found in held_values(values)]
+    >>> [(found.start, found.stop) for found in held_value_instants(values)]
     [(500, 506)]
     """
     same = np.diff(values) == 0.0
-    candidates = [(a, b + 1) for a, b in runs(same) if b + 1 - a >= _HELD]
+    candidates = [(a, b + 1) for a, b in true_runs(same) if b + 1 - a >= _HELD]
     if not candidates or values.size < 4 * _BEFORE:
         return []
     inside = np.zeros(values.size, dtype=bool)
@@ -175,7 +175,7 @@ def _departure(values: Vector, a: int, b: int) -> tuple[float, float]:
     return away, float(np.std(values[near] - law(near - middle)))
 
 
-def joints(record: Record, excused: Mask) -> list[Instant]:
+def joint_instants(record: Record, excused: Mask) -> list[Instant]:
     """Instants at which the displacement jumps between two smooth parts: joints between pieces.
 
     They are few, and far larger than any other discontinuity. `excused` are samples with faults of another kind.

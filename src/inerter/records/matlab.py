@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
-from inerter.records.channel_units import fits
+from inerter.records.channel_units import is_unit_of_role
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import split_heading
 from inerter.records.optional_readers import library, reraise_read_errors
@@ -134,7 +134,7 @@ def _seconds_per_unit(variables: Mapping[str, Any], keys: Mapping[str, str], not
     if not isinstance(unit, str) or not unit:
         notes[_TIMESERIES] = None
         return 1.0
-    return parse_quantity(f"1 {unit}", "s") if fits("time", unit) else None
+    return parse_quantity(f"1 {unit}", "s") if is_unit_of_role("time", unit) else None
 
 
 def _control_desk(x: Mapping[str, Any], y: Mapping[str, Any], prefix: str, notes: dict[str, None]) -> list[Channel]:

@@ -32,7 +32,7 @@ class SpectralLine:
     amplitude: float
 
 
-def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
+def isolated_line(record: Record, motion: Motion) -> SpectralLine | None:
     """The largest isolated line above the motion that is no harmonic of it; None if there is none.
 
     Friction and backlash cause lines at the harmonics of a periodic motion, of which each is about as large as the

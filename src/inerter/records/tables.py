@@ -64,7 +64,7 @@ def open_channels(path: str, source: str) -> Iterator[Contents]:
         layout = _layout(source, file.read(HEAD))
         described = zip(layout.names, layout.units, layout.shorts, strict=True)
         channels = tuple(Channel(name, unit, short, key=at) for at, (name, unit, short) in enumerate(described))
-        end, notes = _end(file, layout)
+        end, notes = _end_of_numbers(file, layout)
 
         def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
             wanted = [channel.key for channel in chosen]
@@ -88,7 +88,7 @@ def _as_utf8(raw: BinaryIO) -> BinaryIO:
     return cast(BinaryIO, copy)
 
 
-def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
+def _end_of_numbers(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
     """End of the numbers [bytes]: before last lines without any, such as "Ende", which a note reports."""
     end = file.seek(0, os.SEEK_END)
     start = max(layout.offset, end - _TAIL)
@@ -277,22 +277,22 @@ def _parse(source: str, block: bytes, line: int, layout: TableLayout, wanted: li
             skipinitialspace=True, index_col=False, encoding=layout.encoding, na_values=["-"], **options,
         )  # fmt: skip
         columns = [frame[at].to_numpy() for at in wanted]
-        clean = all(np.isfinite(values).all() for values in columns) and _even(block, len(frame), layout)
+        clean = all(np.isfinite(values).all() for values in columns) and _has_equal_rows(block, len(frame), layout)
     except (ValueError, TypeError):
         columns, clean = [], False  # pandas' errors do not name the line of the file
     if not clean:
-        _inspect(source, block, line, layout, wanted)
+        _find_bad_row(source, block, line, layout, wanted)
     if not columns:
         raise RecordError(f"{source}: the rows after line {line - 1} cannot be read as numbers.")
     return columns
 
 
-def _even(block: bytes, rows: int, layout: TableLayout) -> bool:
+def _has_equal_rows(block: bytes, rows: int, layout: TableLayout) -> bool:
     """Whether there are as many delimiters as rows of equal length have."""
     return layout.delimiter is not None and block.count(layout.delimiter.encode()) == rows * (layout.columns - 1)
 
 
-def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
+def _find_bad_row(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
     """Raise `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
     for at, text in enumerate(block.decode(layout.encoding, errors="replace").split("\n"), line):
         cells = _cells(text.split("#")[0], layout.delimiter)

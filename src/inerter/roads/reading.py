@@ -72,10 +72,10 @@ def read_profile(
     if suffix == ".crg":
         if units is not None or interval is not None or named:
             raise RecordError("An OpenCRG file requires no units, interval or columns. Give its path, and `lateral`.")
-        return _from_crg(name, source, _checked_lateral(lateral))
+        return _read_crg(name, source, _checked_lateral(lateral))
     if lateral is not None:
         raise RecordError("`lateral` applies to OpenCRG files; for tables, name the columns `height` and `right`.")
-    return _from_table(name, source, _checked_units(units), interval, named)
+    return _read_table(name, source, _checked_units(units), interval, named)
 
 
 def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> SampledSignal:
@@ -121,7 +121,7 @@ def _checked_units(units: object) -> dict[str, str]:
     return dict(units)
 
 
-def _from_table(
+def _read_table(
     name: str, source: str, units: dict[str, str], interval: float | None, named: Mapping[str, Any]
 ) -> Profile:
     if interval is not None and (not is_number(interval) or interval <= 0.0):
@@ -160,7 +160,7 @@ def _select_columns(
     for role, words in _WORDS.items():
         if role not in chosen and not (role == "distance" and spaced):
             left = [channel for channel in channels if channel not in chosen.values()]
-            alike = [channel for channel in left if _is_called(channel.name, words)]
+            alike = [channel for channel in left if _has_name(channel.name, words)]
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
                 raise RecordError(
@@ -170,7 +170,7 @@ def _select_columns(
                 )
             chosen |= {role: alike[0]} if alike else {}
     if chosen == asked and not any(channel.unit for channel in channels):  # no header, or a remark taken for one
-        chosen |= _by_order(source, contents, chosen, spaced)
+        chosen |= _columns_by_order(source, contents, chosen, spaced)
     for role in ("distance", "height"):
         if role not in chosen and not (role == "distance" and spaced):
             raise _missing_column(
@@ -192,7 +192,7 @@ def _missing_column(source: str, role: str, left: Sequence[Channel], channels: S
     )
 
 
-def _is_called(name: str, words: str) -> bool:
+def _has_name(name: str, words: str) -> bool:
     plain = re.sub(r"[_.\-/]", " ", fold_name(name))
     return re.search(rf"(?<!\w)(?:{words})(?!\w)", plain) is not None
 
@@ -206,7 +206,9 @@ def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, M
     return found
 
 
-def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool) -> dict[str, Channel]:
+def _columns_by_order(
+    source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool
+) -> dict[str, Channel]:
     """Columns of a table without a header: the increasing one is the distance; then heights, left before right."""
     values = _numbers(contents, [channel for channel in contents.channels if channel not in chosen.values()])
     left = list(values)
@@ -285,7 +287,7 @@ def _checked_lateral(lateral: object) -> tuple[float, ...]:
     return tuple(map(float, given))
 
 
-def _from_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
+def _read_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
     crg = library("pyopencrg", "roads", "OpenCRG files")
     with reraise_read_errors(source, "OpenCRG"), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its warnings on headers without effect on heights

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import SignalError, UnitError
-from inerter.signals.arguments import Array, generator, positive, whole_number
+from inerter.signals.arguments import Array, positive_number, random_generator, whole_number
 from inerter.signals.signal import SampledSignal, Signal
 from inerter.units import parse_quantity, quote_value
 
@@ -30,11 +30,11 @@ def held_noise(
     Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a
     non-negative integer.
     """
-    power = positive("The power of a noise", power, "its unit squared per Hz")
-    interval = positive("The interval of a noise", interval, "s")
-    duration = positive("The duration of a noise", duration, "s")
+    power = positive_number("The power of a noise", power, "its unit squared per Hz")
+    interval = positive_number("The interval of a noise", interval, "s")
+    duration = positive_number("The duration of a noise", duration, "s")
     count = whole_number(duration, interval, "A duration")
-    value = math.sqrt(power / interval) * generator(seed).standard_normal(count)
+    value = math.sqrt(power / interval) * random_generator(seed).standard_normal(count)
     label = f"noise of {power:g} per Hz, held for {interval:g} s, seed {seed}"
     time = np.linspace(0.0, duration, count + 1)
     return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)

@@ -87,12 +87,12 @@ def _is_its_image(mechanism: Mechanism) -> bool:
     for a, b in mechanism.mirror:
         images |= {a: (b, 1.0), b: (a, 1.0)} if a != b else {a: (a, -1.0)}
     known = {c.name: c for c in mechanism.coordinates}
-    if any(_law(known[a]) != _law(known[b]) for a, b in mechanism.mirror):
+    if any(_inertia_and_kind(known[a]) != _inertia_and_kind(known[b]) for a, b in mechanism.mirror):
         return False
     return Counter(_mount_signatures(mechanism, {})) == Counter(_mount_signatures(mechanism, images))
 
 
-def _law(coordinate: Coordinate) -> tuple[float | Free, bool]:
+def _inertia_and_kind(coordinate: Coordinate) -> tuple[float | Free, bool]:
     return coordinate.inertia, coordinate.angle
 
 

@@ -14,10 +14,10 @@ from inerter.papers.wang_su_2008.judging import (
     EstimatedQuantity,
     Evidence,
     Statement,
-    about,
-    all_of,
+    combined_verdict,
     everywhere,
     kilo,
+    rounding_interval,
     somewhere_above,
     statement,
     within,
@@ -43,7 +43,7 @@ def _rising(curves: Curves, names: Sequence[str], index: str) -> tuple[ClaimVerd
     """Whether each curve is nowhere below the one before it, and somewhere above; and how much higher each is."""
     gaps = [curves.uncertain_excess(higher, lower, index) for lower, higher in pairwise(names)]
     every = [gap for steps in gaps for gap in steps]
-    return all_of([everywhere(every, low=-WORSE), *(somewhere_above(steps, WORSE) for steps in gaps)]), every
+    return combined_verdict([everywhere(every, low=-WORSE), *(somewhere_above(steps, WORSE) for steps in gaps)]), every
 
 
 def _where_contrary(curves: Curves, names: Sequence[str], index: str) -> str:
@@ -97,8 +97,8 @@ def _claim_2(curves: Curves, between: Found) -> Claim:
         ends = [within(gaps[0], high=-WORSE), within(gaps[-1], low=WORSE)]
         least = -100.0 * min(gap.value for gap in gaps)
         text = f"{kind}: better below k = {kilo(found)} kN/m, by at most {least:.2f} %"
-        once = all_of(ends) if len(found) == 1 else ClaimVerdict.CONTRADICTED
-        number = within(EstimatedQuantity(found[0]), *about(120e3, curves.step)) if found else None
+        once = combined_verdict(ends) if len(found) == 1 else ClaimVerdict.CONTRADICTED
+        number = within(EstimatedQuantity(found[0]), *rounding_interval(120e3, curves.step)) if found else None
         parts.append(statement(text, once, number, by=_percent([gaps[0], gaps[-1]])))
     return Claim(2, CLAIMS[2], tuple(parts))
 
@@ -171,7 +171,7 @@ def _claim_8(curves: Curves) -> Claim:
         found = curves.crossings(f"{layout}-10N", f"{layout}-soft", "J1")
         text = f"{layout}: friction alone is better than elasticity alone above k = {_crossing_text(found)} kN/m"
         ends = [within(gaps[0], low=100.0 * WORSE), within(gaps[-1], high=-100.0 * WORSE)]
-        once = all_of(ends) if len(found) == 1 else all_of([*ends, ClaimVerdict.UNDETERMINED])
+        once = combined_verdict(ends) if len(found) == 1 else combined_verdict([*ends, ClaimVerdict.UNDETERMINED])
         parts.append(statement(text, once, _near(found, printed, curves.step), by=[gaps[0], gaps[-1]]))
         parts.append(_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J1"))
     return Claim(8, CLAIMS[8], tuple(parts))
@@ -218,12 +218,12 @@ def _claim_10(curves: Curves) -> Claim:
         f"S3: elasticity certainly costs more than friction at {counts[0]} of {len(more)} stiffnesses, less at "
         f"{counts[1]}"
     )
-    verdict = all_of([everywhere(more, low=-WORSE), somewhere_above(more, WORSE)])
+    verdict = combined_verdict([everywhere(more, low=-WORSE), somewhere_above(more, WORSE)])
     parts.append(statement(text, verdict, by=_percent(more), at_once=len(more)))
     gaps, found = curves.uncertain_excess("S2-10N", "S2-soft", "J5"), curves.crossings("S2-10N", "S2-soft", "J5")
     below = [gap for gap, k in zip(gaps, curves.k, strict=True) if k < 140e3]
     text = f"S2: friction and elasticity cost the same at k = {_crossing_text(found, ', ')} kN/m, elasticity more above"
-    verdict = all_of([somewhere_above(below, WORSE), within(gaps[-1], high=-WORSE)])
+    verdict = combined_verdict([somewhere_above(below, WORSE), within(gaps[-1], high=-WORSE)])
     number = _near(found, 140e3, curves.step)
     parts.append(statement(text, verdict, number, by=_percent([*below, gaps[-1]]), at_once=len(below)))
     return Claim(10, CLAIMS[10], tuple(parts))
@@ -239,7 +239,7 @@ def claim_13(evidence: Evidence) -> Claim:
             last = gaps[-1].times(100.0)
             where = f"than S1's at k = {kilo(curves.k[-1:], '', 0)} kN/m{_exceptions(curves, [gaps])}"
             text = f"{index} of {layout.split('-')[0]}: {_against(last)} {where}"
-            verdict = all_of([everywhere(gaps, high=WORSE), within(last, high=-100.0 * WORSE)])
+            verdict = combined_verdict([everywhere(gaps, high=WORSE), within(last, high=-100.0 * WORSE)])
             parts.append(statement(text, verdict, by=_percent(gaps), at_once=len(gaps)))
     half = [evidence.improvement(3, index, case) for index in ("J1", "J3", "J5") for case in (7, 13)]
     spread = np.array([one.value for one in half])
@@ -261,4 +261,4 @@ def _crossing_text(found: Sequence[EstimatedQuantity], between: str = " and ") -
 
 def _near(found: Sequence[EstimatedQuantity], printed: float, step: float) -> ClaimVerdict:
     """Whether the only crossing lies at the printed stiffness, which was read off a figure in steps."""
-    return within(found[0], *about(printed, step)) if len(found) == 1 else ClaimVerdict.UNDETERMINED
+    return within(found[0], *rounding_interval(printed, step)) if len(found) == 1 else ClaimVerdict.UNDETERMINED

@@ -43,7 +43,7 @@ class ClaimVerdict(StrEnum):
 _OPPOSITE = {ClaimVerdict.SHOWN: ClaimVerdict.CONTRADICTED, ClaimVerdict.CONTRADICTED: ClaimVerdict.SHOWN}
 
 
-def all_of(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
+def combined_verdict(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
     """The verdict on several statements together: contradicted by any, shown only by all."""
     found = set(verdicts)
     for verdict in (ClaimVerdict.CONTRADICTED, ClaimVerdict.UNDETERMINED):
@@ -116,7 +116,7 @@ def somewhere_above(found: Sequence[EstimatedQuantity], level: float) -> ClaimVe
     return everywhere(found, high=level).opposite
 
 
-def about(printed: float, step: float) -> tuple[float, float]:
+def rounding_interval(printed: float, step: float) -> tuple[float, float]:
     """Range of values that round to `printed`, in multiples of `step`."""
     return printed - 0.5 * step, printed + 0.5 * step
 
@@ -170,13 +170,13 @@ class Claim:
     @property
     def verdict(self) -> ClaimVerdict:
         """Verdict on all statements together."""
-        return all_of(part.verdict for part in self.parts)
+        return combined_verdict(part.verdict for part in self.parts)
 
     @property
     def printed_numbers(self) -> ClaimVerdict | None:
         """Verdict on the printed numbers of all statements; None if no number is printed or shown."""
         found = [part.number for part in self.parts if part.number is not None]
-        return all_of(found) if found else None
+        return combined_verdict(found) if found else None
 
     @property
     def headline(self) -> str:

@@ -8,8 +8,8 @@ from inerter.papers.wang_su_2008.judging import (
     EstimatedQuantity,
     Evidence,
     Statement,
-    about,
     exact_value,
+    rounding_interval,
     statement,
     within,
 )
@@ -44,7 +44,7 @@ def _claim_6(evidence: Evidence) -> Claim:
             parts.append(statement(text, within(small, -_STEP, _STEP), by=[small], unit=_POINTS))
     for layout, (ideal, hundred), printed in (("S2", (2, 5), 1.0), ("S3", (7, 10), 2.5)):
         cost = evidence.cost(1, "J3", ideal, hundred)
-        parts.append(_loss(f"J3 of {layout} with 100 N", cost, *about(printed, _STEP)))
+        parts.append(_loss(f"J3 of {layout} with 100 N", cost, *rounding_interval(printed, _STEP)))
     ride = [
         f"{layout} {_points(evidence.cost(1, 'J1', *cases))}" for layout, cases in {"S2": (2, 5), "S3": (7, 10)}.items()
     ]
@@ -74,7 +74,7 @@ def _nearest_peak_text(layout: str, force: int, row: SimulatedRow, reference: Si
 
 
 def _claim_11(evidence: Evidence) -> Claim:
-    ranges = {"J1": (2.0, 3.0), "J3": about(0.5, _STEP)}
+    ranges = {"J1": (2.0, 3.0), "J3": rounding_interval(0.5, _STEP)}
     parts = [
         _loss(f"{index} of {layout}", evidence.cost(1, index, *cases), *ranges[index])
         for layout, cases in {"S2": (2, 6), "S3": (7, 11)}.items()
@@ -92,12 +92,12 @@ def claim_12(evidence: Evidence) -> Claim:
         for layout, pair in cases.items()
     ]
     load = {layout: evidence.cost(3, "J5", *pair) for layout, pair in cases.items()}
-    parts.append(_loss("Method 2, J5 of S3", load["S3"], *about(6.5, _STEP)))
+    parts.append(_loss("Method 2, J5 of S3", load["S3"], *rounding_interval(6.5, _STEP)))
     text = f"Method 2, J5 of S2 loses {_points(load['S2'])} {_POINTS}, less than that of S3"
     lead = load["S3"].minus(load["S2"])
     parts.append(statement(text, within(lead, low=0.0), by=[lead], unit=_POINTS))
     parts += [
-        _loss(f"Method 1, J5 of {layout}", evidence.cost(2, "J5", *pair), *about(8.0, 1.0))
+        _loss(f"Method 1, J5 of {layout}", evidence.cost(2, "J5", *pair), *rounding_interval(8.0, 1.0))
         for layout, pair in cases.items()
     ]
     return Claim(12, CLAIMS[12], tuple(parts))

@@ -1,4 +1,4 @@
-"""What an inerter does for a vehicle, and which design is best.
+"""Vehicle suspensions with inerters: performance indices, optimal designs, simulation and identification.
 
 Networks of springs, dampers, inerters, dry friction and gaps; quarter cars, half cars and any other mechanism; exact
 norms and optimisation. Everything public is a name in this module; each is loaded when it is first used.

@@ -176,7 +176,7 @@ def test_an_export_from_python_replaces_nothing_unless_it_is_told_to(name: str, 
     path.write_bytes(b"old")
     link.symlink_to(path)
     for place in (path, link):
-        with pytest.raises((RecordError, SimulationError), match=rf"{place.name}' exists: .* overwrite=True\.$"):
+        with pytest.raises((RecordError, SimulationError), match=rf"{place.name}' exists\. .* overwrite=True\.$"):
             CAREFUL[name](place)
     assert path.read_bytes() == b"old"
     EXPORTS[name](path)

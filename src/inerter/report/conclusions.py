@@ -51,7 +51,8 @@ def _constraint_sentence(results: xr.Dataset, study: Study, write: Writer) -> It
     """Sentence on the constraints, and on layouts without a feasible design."""
     swept = {sweep.words for sweep in study.sweeps}
     limits = [
-        f"{limit_words(study, one)} {'what is swept' if one.words in swept else _format_number(one.value, one.unit, write)}"
+        f"{limit_words(study, one)} "
+        + ("the swept value" if one.words in swept else _format_number(one.value, one.unit, write))
         for one in study.limits
     ]
     missed = infeasible(results)

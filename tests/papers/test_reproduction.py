@@ -95,7 +95,7 @@ def test_a_row_of_the_approximated_linear_model() -> None:
 def test_how_far_method_1_is_from_the_printed_table() -> None:
     """As docs/methods.md tells."""
     page = (Path(__file__).parents[2] / "docs" / "methods.md").read_text(encoding="utf-8")
-    text = " ".join(page.partition("**Beside the printed table.**")[2].split())
+    text = " ".join(page.partition("**Comparison with the printed table.**")[2].split())
     comfort, load, both = re.findall(r"within ([\d.]+) %", text)[:3]
     off: dict[tuple[str, bool], list[float]] = {}
     for row in simulated_rows(2):

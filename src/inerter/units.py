@@ -61,7 +61,7 @@ def parse_quantity(text: str, unit: str) -> float:
     if unit == _ROUGHNESS and (form := _density_form(given)) is not None:
         return _convert(text, number, given, "m^3") * _KAPPA_OVER[form]
     if not _have_same_dimension(given, unit):
-        problem = f"{_describe_unit(given)} is a unit of another kind"
+        problem = f"incompatible unit {_describe_unit(given)}"
         like = f"{_number_of(text)} {_as_force(given, (unit,)) or _with_prefix(given, unit)}"
         _fail(text, problem, expected, example or like)
     _check_density(text, given, unit)
@@ -87,7 +87,8 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = 
     force = _as_force(given, units)
     hint = f' Did you mean "{_number_of(text)} {force}"?' if force else ""
     raise UnitError(
-        f"Got {quote_value(text)}: {_describe_unit(given)} is the unit of no {what}; expected one of {known}.{hint}"
+        f"Got {quote_value(text)}: {_describe_unit(given)} is not the unit of any {what}; "
+        f"expected one of {known}.{hint}"
     )
 
 
@@ -306,7 +307,7 @@ def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[s
     example = example or f"{_number_of(text)} {unit}"
     if not isinstance(text, str):
         is_number = isinstance(text, int | float) and not isinstance(text, bool)
-        _fail(text, "a number without a unit" if is_number else "not a quantity in quotes", expected, example)
+        _fail(text, "unit missing" if is_number else "not a quantity in quotes", expected, example)
     if _NOT_FINITE.match(text):
         _fail(text, "not a finite number", expected, example)
     number = _NUMBER.match(text)
@@ -316,17 +317,17 @@ def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[s
     if given.startswith(","):
         _fail(text, "a comma in a number, where the decimal mark is a point", expected, example)
     if not given:
-        _fail(text, "no unit", expected, example)
+        _fail(text, "unit missing", expected, example)
     if not is_unit(given):
-        why = "is not known (capitals matter; a product needs a space or *)"
-        _fail(text, f"the unit {quote_value(given)} {why}", expected, example)
+        why = "(units are case-sensitive; write a product with a space or *)"
+        _fail(text, f"unknown unit {quote_value(given)} {why}", expected, example)
     return number.group(1), given
 
 
 def _check_density(text: object, given: str, unit: str) -> None:
     """Raise `UnitError` unless a spectral density is explicitly per Hz or per rad/s: seconds alone are ambiguous."""
     if unit.endswith(_DENSITY) and not _PER_FREQUENCY.search(given):
-        why = "a density per Hz and one per rad/s are not the same"
+        why = "ambiguous density, per Hz or per rad/s"
         _fail(text, why, f"a unit of {unit}", f"{_number_of(text)} {unit}")
 
 

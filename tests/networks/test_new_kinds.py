@@ -434,7 +434,7 @@ def test_the_whole_command_has_words_for_a_switch_of_its_own(known, tmp_path, ca
         ("{ kind = 3 }", "got kind = 3: not a kind of element"),
         (DAMPER.replace("knee", "elbow"), '"elbow": not a key of a digressive damper; expected damping, beyond, knee'),
         (DAMPER.replace(', knee = "50 mm/s"', ""), 'got no knee of the digressive damper; expected knee = "1 m/s".'),
-        (DAMPER.replace("50 mm/s", "50 mm"), '"50 mm": "mm" (millimeter) is a unit of another kind'),
+        (DAMPER.replace("50 mm/s", "50 mm"), '"50 mm": incompatible unit "mm" (millimeter)'),
         (DAMPER.replace("50 mm/s", "-50 mm/s"), 'got knee = "-50 mm/s": not positive'),
         (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), "got a table for damping; expected a range"),
         (DAMPER.replace('"3 kN s/m"', '{ from = "2 N s/m", to = "1 N s/m" }'), "reversed ends of damping"),

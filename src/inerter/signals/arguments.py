@@ -114,7 +114,7 @@ def checked_grid(start: float, step: float, count: int) -> Array:
     finite_number("The start of a grid", start, "s")
     positive_number("The step of a grid", step, "s")
     if not isinstance(count, Integral) or isinstance(count, bool) or not 0 <= count <= MOST:
-        raise SignalError(f"The count of a grid must be a whole number from 0 to 1e8, got {count!r}.")
+        raise SignalError(f"The count of a grid must be an integer from 0 to 1e8, got {count!r}.")
     return start + step * np.arange(int(count))
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 
 def _homes() -> dict[str, str]:
-    """The module of every public name: what the stub beside this file imports."""
+    """The module of every public name: from the imports of the stub of this file."""
     tree = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     found = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
     return {alias.name: str(node.module) for node in found for alias in node.names}

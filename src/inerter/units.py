@@ -130,7 +130,7 @@ def _density_form(given: str) -> int | None:
         return None
     base = _registry().get_base_units(_registry().parse_units(given))[1]
     power = next((n for n in _KAPPA_OVER if base == _registry().parse_units("m^3") * _registry().radian ** n), None)
-    return None if power and "rad" not in given else power  # of a degree, or a turn, nobody knows what is meant
+    return None if power and "rad" not in given else power  # of a degree or a turn the meaning is ambiguous
 
 
 def are_compatible(unit: str, other: str) -> bool:

@@ -240,12 +240,12 @@ def _starting_points(
     widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
     sizes = {u.name: u.size for u in hypothesis.unknowns}
     zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
-    begun = {other: known[name] for name, other in hypothesis.alike.items()}
-    alike = {other: widths[name] for name, other in hypothesis.alike.items()}
+    begun = {other: known[name] for name, other in hypothesis.counterparts.items()}
+    equal = {other: widths[name] for name, other in hypothesis.counterparts.items()}
     for start in hypothesis.starts:
         seen = {**sizes, **start}
         steps = [
-            widths.get(n) or alike.get(n) or _difference_step(space, i, seen.get(n, 1.0))
+            widths.get(n) or equal.get(n) or _difference_step(space, i, seen.get(n, 1.0))
             for i, n in enumerate(space.names)
         ]
         yield space.coordinates_of({**known, **zero, **begun, **start}), np.array(steps)

@@ -63,7 +63,7 @@ class Hypothesis:
     details: Callable[[Values], Details] = _no_details  # the numbers of its sentence
     slow: int | None = None  # degree of the polynomial over time that is free in each part of a record
     starts: tuple[Values, ...] = ({},)  # starting values; default: the sizes, or zero if it may be negative
-    alike: Mapping[str, str] = field(default_factory=dict)  # unknowns that start at these values of the model
+    counterparts: Mapping[str, str] = field(default_factory=dict)  # unknowns that start at these values of the model
 
 
 def gain() -> Hypothesis:

@@ -436,12 +436,12 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     resonance = _resonance(frequency, amplitudes(s.motion["force"] - s.motion["force"].mean()), highest)
     peak = int(np.argmax(excess))
     main = slice(max(peak - 3, 0), peak + 4)
-    beside = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
+    nearby = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
-    if beside.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[beside])):
+    if nearby.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[nearby])):
         multiple = _multiple(peak, moved)
-        foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
-        above = float(amplitude[peak]) / max(float(np.median(amplitude[beside])), 1e-300)
+        foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[nearby])))
+        above = float(amplitude[peak]) / max(float(np.median(amplitude[nearby])), 1e-300)
         chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
         resonates = resonance[0] <= frequency[peak] <= resonance[1]
         numbers = {

@@ -1,4 +1,4 @@
-"""Local searches one after another: told of while they go on, and kept where long work keeps its parts."""
+"""Local searches one after another, with progress reports, saved for resumption of a long run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 _SHORTER = 1.25  # later starts are further from an optimum, and many end early
-_KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is told as the lowest
+_KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is reported as the lowest
 SAMPLED, APPROACHED = 0.02, 0.95  # shares of a search that are done with its sample, and with all first searches
 
 

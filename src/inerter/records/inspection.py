@@ -253,10 +253,10 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
         if mains > 0.45 * rate or motion.highest > 0.8 * mains or multiple:
             continue
         line = np.abs(frequency - mains) <= width
-        beside = (np.abs(frequency - mains) > 2.0 * width) & (np.abs(frequency - mains) <= 0.2 * mains)
+        nearby = (np.abs(frequency - mains) > 2.0 * width) & (np.abs(frequency - mains) <= 0.2 * mains)
         amplitude = math.sqrt(2.0 * float(np.sum(density[line])) * float(frequency[1]))
-        stands_out = float(np.max(density[line])) > 4.0 * float(np.max(density[beside]))
-        if stands_out and amplitude > 1e-3 * float(np.std(record.force)):
+        exceeds = float(np.max(density[line])) > 4.0 * float(np.max(density[nearby]))
+        if exceeds and amplitude > 1e-3 * float(np.std(record.force)):
             numbers = {"frequency": mains, "amplitude": amplitude}
             return [Finding(RecordFinding.HUM, "warning", "force", numbers)]
     return []

@@ -23,7 +23,7 @@ Mask = NDArray[np.bool_]
 _SIXTH = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / -20.0  # a sample less what its neighbours predict
 _AROUND = 50  # samples to either side, whose deviations a spike has to exceed too
 _CLEAR = 8.0  # standard deviations from the prediction of the neighbours
-_RETURN = 0.08  # of a spike: deviation of the samples beside it, once it is taken out
+_RETURN = 0.08  # of a spike: deviation of the adjacent samples, once it is removed
 _WIDEST = 3  # samples of a spike
 _HELD = 4  # equal samples in a row, at least
 _LOCAL = 100  # samples to either side, which say how often values repeat by chance
@@ -71,13 +71,13 @@ def _spikes_of(values: Vector, width: int) -> Iterator[Instant]:
     deviation = _deviation(values)
     scale = np.maximum(_local_scale(deviation), resolution(values))
     limit = _CLEAR * np.maximum(scale, 1e-12 * float(np.ptp(values)))
-    beside = 4
+    margin = 4
     for at in np.flatnonzero(np.abs(deviation) > limit):
-        for start in range(max(int(at) - width + 1, beside), int(at) + 1):
+        for start in range(max(int(at) - width + 1, margin), int(at) + 1):
             stop = start + width
-            if stop + beside > values.size:
+            if stop + margin > values.size:
                 continue
-            near = np.r_[start - beside : start, stop : stop + beside]
+            near = np.r_[start - margin : start, stop : stop + margin]
             middle = 0.5 * (start + stop - 1)
             inside = np.arange(start, stop)
             law = np.polynomial.Polynomial.fit(near - middle, values[near], 3)

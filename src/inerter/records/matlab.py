@@ -25,7 +25,7 @@ _UNITS = ("unit", "units")
 _VALUES = ("data", "values", "value", "y", "signals")
 _NAMES = ("name", "label", "signalname", "channelname")
 _CLOCKS = ("time", "t", "zeit", "temps")
-_STEPS = ("dt", "wf_increment", "increment", "ts")  # [s], beside values
+_STEPS = ("dt", "wf_increment", "increment", "ts")  # [s], next to values
 _PORTS = re.compile(r"(out|in|value)\d*", re.IGNORECASE)  # of blocks of a model, which the path names before
 _CATMAN = re.compile(r"(.+)_Data")
 _OBJECTS = ("opaque", "object")
@@ -46,7 +46,7 @@ class _Key:
 def open_channels(path: str, source: str) -> Iterator[Contents]:
     """The vectors of the file, those of structs by "run.position", the columns of a matrix by "data[0]".
 
-    The unit of a vector is a text beside it: `unit` or `units` in its own struct, or a struct `units` with a text of
+    The unit of a vector is a text next to it: `unit` or `units` in its struct, or a struct `units` with a text of
     the vector's name. Structs and arrays of structs with values, names and units are channels by these names: those of
     dSPACE ControlDesk (`X`, `Y(i)`), of Simulink (`time`, `signals(i)`), of catman (`Channel_1_Data` and its header),
     waveforms of LabVIEW (`t0`, `dt`, `Y`) and timeseries as structs (`Time`, `Data`).

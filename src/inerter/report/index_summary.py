@@ -166,7 +166,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     """Swept values at which a layout is as good as the baseline, each with its standard error.
 
     Between swept values the improvement follows a monotone cubic; how far a straight line would put the crossing from
-    there is added to the error. Where both are alike over more than one value, there is no crossing.
+    there is added to the error. Where both are equal over more than one value, there is no crossing.
     """
     element = str(swept_element(results))
     row = results.sel(layout=layout, index=index).sortby(element)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ROUGHNESS = "m^3/cycle"
-_ALSO = {  # the same value in the unit in which it is usually told
+_ALSO = {  # the same value in its customary unit
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
     "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
     _ROUGHNESS: lambda value: f" ({_road_class(value)})",

@@ -36,7 +36,7 @@ WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
 _NARROWEST = 20  # of the last column, which goes beyond the width where numbers are enormous
-_LONGEST_NAME = 20  # a longer name of a layout has a line of its own
+_LONGEST_NAME = 20  # a longer name of a layout has a separate line
 
 
 @dataclass(frozen=True)

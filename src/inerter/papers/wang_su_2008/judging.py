@@ -125,7 +125,7 @@ def rounding_interval(printed: float, step: float) -> tuple[float, float]:
 class Statement:
     """Statement of a claim: the finding, the verdict on it, and the verdict on the printed number.
 
-    `power` is the least difference that would have been told, in words; empty where nothing scatters.
+    `power` is the smallest detectable difference, in words; empty where nothing scatters.
     """
 
     found: str

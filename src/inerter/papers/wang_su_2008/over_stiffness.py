@@ -45,7 +45,7 @@ class Curves:
     def uncertain_excess(self, one: str, other: str, index: str) -> list[EstimatedQuantity]:
         """Relative excess of `one` over `other` with its uncertainty, at each stiffness.
 
-        Realisation by realisation, since both were driven by the same ones: what those do to both alike cancels.
+        Realisation by realisation, since both had the same ones: common deviations cancel.
         """
         gap, scatter = self.excess(one, other, index), self._scatter(one, other, index)
         doubts = self._doubts(one, other, index)

@@ -234,7 +234,7 @@ def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progres
     before = journal.read() if results.resume else ()
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]
-    pending = pending[::2] + pending[1::2]  # neighbours are alike: two processes would compile the same
+    pending = pending[::2] + pending[1::2]  # neighbours are similar: two processes would compile the same
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
     results.list_journal(JOURNAL)

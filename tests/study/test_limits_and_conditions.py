@@ -87,7 +87,7 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     text = summary_table(result.data)
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "at its limit: 1 % more" in text
-    assert "Every design keeps these limits" in report(result.data, study, tmp_path)
+    assert "Every design satisfies these constraints" in report(result.data, study, tmp_path)
 
 
 @pytest.mark.parametrize("of", ["dynamic-load-coefficient", "transmissibility"])
@@ -111,7 +111,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
     assert not result.failed
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
-    assert headlines(result.data) == ["Best ride comfort: no layout keeps the limits."]
+    assert headlines(result.data) == ["Best ride comfort: no layout satisfies the constraints."]
     assert "the nearest design" in report(result.data, study, tmp_path)
 
 

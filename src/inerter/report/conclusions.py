@@ -57,14 +57,14 @@ def _constraint_sentence(results: xr.Dataset, study: Study, write: Writer) -> It
     ]
     missed = infeasible(results)
     if limits and bool(missed.all()):
-        yield f"No design has {format_list(limits)}{_closest_design_clause(results, study, write)}."
+        yield f"No feasible design with {format_list(limits)}{_closest_design_clause(results, study, write)}."
     elif limits:
         none = [
-            f" Of {name} there is none{at}."
+            f" {name} has no feasible design{at}."
             for name in layouts(results)
             if (at := _infeasible_places_clause(results, name)) is not None
         ]
-        yield f"These are the best of all designs with {format_list(limits)}.{''.join(none)}"
+        yield f"All designs satisfy {format_list(limits)}.{''.join(none)}"
 
 
 def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:
@@ -94,7 +94,7 @@ def _closest_design_clause(results: xr.Dataset, study: Study, write: Writer) -> 
         f"{of_each(limit.of, part)} {_format_number(float(value), limit.unit, write)}"
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
-    return f"; the nearest, one of {of}, has {format_list(told)}"
+    return f"; closest: {of} with {format_list(told)}"
 
 
 def _format_number(value: float, unit: str, write: Writer) -> str:

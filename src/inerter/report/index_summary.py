@@ -327,13 +327,13 @@ def _sweep_headline(every: xr.Dataset, index: str, wording: Wording) -> str:
 def _missing_value_clause(results: xr.Dataset, index: str, layout: str) -> str:
     """Clause on a layout without a value: infeasible, or not finite."""
     missed = bool(infeasible(results.sel(layout=layout, index=index)))
-    return f"no {layout} keeps the limits" if missed else f"{layout} has no finite value"
+    return f"no feasible {layout}" if missed else f"{layout} has no finite value"
 
 
 def _no_best_clause(results: xr.Dataset, index: str) -> str:
     """Clause on the reason why no layout is best."""
     missed = bool(infeasible(results.sel(index=index)).all())
-    return "no layout keeps the limits" if missed else "no layout has a finite value"
+    return "no layout satisfies the constraints" if missed else "no layout has a finite value"
 
 
 def _format_range(least: float, largest: float) -> str:

@@ -180,12 +180,13 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if not is_blind(study.optimise):
             what = brief_words_of(study.optimise)
-            yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
+            yield f"The minimised value is that by {what}: {words_of(study.optimise)}."
     if study.limits:
         limits = "; ".join(
             f"{limit_words(study, limit)} {_value_text(study, limit.value, limit.unit)}" for limit in study.limits
         )
-        yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
+        satisfy = "must satisfy" if bool(infeasible(results).any()) else "satisfies"
+        yield f"Every design {satisfy} these constraints: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
         yield f"An index is its {how}; limits hold in each. Frequency responses are those outside the conditions."

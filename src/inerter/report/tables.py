@@ -134,7 +134,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
         texts = [_other(results, design.sel(other=other), other) for other in others]
-        missed = "misses the limits" if bool(infeasible(design)) else ""
+        missed = "infeasible" if bool(infeasible(design)) else ""
         own = [other == index for other in others]
         rows.append(Row(name, [Cell(t, missed * is_own, strong=is_own) for t, is_own in zip(texts, own, strict=True)]))
     return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)

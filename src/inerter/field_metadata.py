@@ -111,7 +111,7 @@ def formed(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[
     ... class Heard:
     ...     at: str = dataclasses.field(metadata=formed("output", "Where.", '"sprung_velocity"'))
     >>> typed_fields_of(Heard)
-    (Formed(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
+    (TypedField(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
     """
     return {_FORMED: TypedField("", form, sentence, example, key)}
 

@@ -29,9 +29,9 @@ from test_steps import FLOOR, STEPS, checked, order, survives
 
 
 def each(number: int, what: Callable[[int], object]) -> Iterator[tuple[int, object]]:
-    """So many members that are not refused, and what was found; a failure is printed, and found as "WRONG"."""
+    """Outcomes of the first `number` members that are not refused; a failure is printed, with the outcome "WRONG"."""
 
-    def found() -> Iterator[tuple[int, object]]:
+    def outcomes() -> Iterator[tuple[int, object]]:
         for seed in count(20_000):
             try:
                 result = what(seed)
@@ -41,7 +41,7 @@ def each(number: int, what: Callable[[int], object]) -> Iterator[tuple[int, obje
             if result is not None:
                 yield seed, result
 
-    return islice(found(), number)
+    return islice(outcomes(), number)
 
 
 def steps(number: int) -> None:

@@ -1,4 +1,4 @@
-"""What several workers gain, what handing out costs, and what a slow network takes. Needs the extra "cluster".
+"""Speed-up by several workers, overhead of submission, and effect of network latency. Needs the extra "cluster".
 
     python benchmarks/cluster.py                    # everything, the best of 3 rounds: about ten minutes
     python benchmarks/cluster.py --rounds 1 study   # one part of: study, waiting, pieces
@@ -107,7 +107,7 @@ async def forward(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, la
 
 
 async def proxies(latency: float, pairs: list[tuple[int, int]]) -> None:
-    """What comes to the first port of each pair goes to the second, and the answer back."""
+    """Forward the messages of the first port of each pair to the second, and the responses back."""
 
     async def connect(port: int, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         while True:
@@ -170,7 +170,7 @@ def children() -> list[int]:
     return [child.pid for child in multiprocessing.active_children() if child.pid is not None]
 
 
-def timed(work: Callable[[], object]) -> float:
+def time_of(work: Callable[[], object]) -> float:
     begin = time.perf_counter()
     work()
     return time.perf_counter() - begin
@@ -201,7 +201,7 @@ def run_of(study: it.Study, **where: Any) -> Run:
     try:
         with TemporaryDirectory() as folder:
             before = cpu_used()
-            seconds = timed(lambda: it.run_study(study, Path(folder) / "out", **where))
+            seconds = time_of(lambda: it.run_study(study, Path(folder) / "out", **where))
             return Run(seconds, sum(worked), cpu_used() - before)
     finally:
         pieces.Cutter.learn = learn  # type: ignore[method-assign]
@@ -257,7 +257,7 @@ def waiting_part(rounds: int) -> None:
             items = [seconds] * round(ALONE / seconds)
             for name, pool in pools.items():
                 least = min(
-                    timed(lambda pool=pool, items=items: list(pool.spread(time.sleep, items))) for _ in range(rounds)
+                    time_of(lambda pool=pool, items=items: list(pool.spread(time.sleep, items))) for _ in range(rounds)
                 )
                 print(
                     f"{len(items)} items of {seconds:g} s on 2, {name}: {ALONE / least:.2f} times as fast", flush=True
@@ -271,15 +271,19 @@ def pieces_part(rounds: int) -> None:
     for _ in range(rounds):
         with Pool(2) as pool:
             pool.begin(os.getpid)
-            measured("own processes, 2", pool, work, worth, lambda: [cpu_of(os.getpid()), *map(cpu_of, children())])
+            measure_overhead(
+                "own processes, 2", pool, work, worth, lambda: [cpu_of(os.getpid()), *map(cpu_of, children())]
+            )
         with ExitStack() as stack:
             cluster = Cluster(stack, 2)
             pool = stack.enter_context(Pool(executor=cluster.executor))
-            measured("dask, 2 workers", pool, work, worth, cluster.cpu)
+            measure_overhead("dask, 2 workers", pool, work, worth, cluster.cpu)
     pieces.WORTH = worth
 
 
-def measured(name: str, pool: Pool, work: Callable[[int], bool], worth: float, cpu: Callable[[], list[float]]) -> None:
+def measure_overhead(
+    name: str, pool: Pool, work: Callable[[int], bool], worth: float, cpu: Callable[[], list[float]]
+) -> None:
     for _ in pool.spread(work, range(200)):  # starts and loads everything
         pass
     before, begin = cpu(), time.perf_counter()

@@ -37,45 +37,45 @@ import inerter as it
 
 ROADS, GAINS = it.ExpectedValue(realisations=2, jobs=1), it.ApproximateLinear(realisations=2)
 PARTS: dict[str, tuple[str, int, Callable[[int], Member], Callable[[Member], Judged | None]]] = {
-    "norm": ("norms beside rational arithmetic", 1320, linear_member, against_exact),
+    "norm": ("norms versus rational arithmetic", 1320, linear_member, against_exact),
     "roads": (
-        "simulated roads, hardly any friction, beside norms",
+        "simulated roads, negligible friction, versus norms",
         120,
         member_with_friction,
         lambda member: of_hardly_any_friction(member, ROADS),
     ),
     "roads-steps": (
-        "simulated roads beside shorter steps",
+        "simulated roads versus shorter steps",
         120,
         member_with_friction,
         lambda member: of_finer_steps(member, ROADS),
     ),
     "sines": (
-        "simulated sines, hardly any friction, beside norms",
+        "simulated sines, negligible friction, versus norms",
         60,
         member_under_a_sine,
         lambda member: of_hardly_any_friction(member, ROADS),
     ),
     "sines-steps": (
-        "simulated sines beside shorter steps",
+        "simulated sines versus shorter steps",
         60,
         member_under_a_sine,
         lambda member: of_finer_steps(member, ROADS),
     ),
     "gains-steps": (
-        "approximate linear model beside shorter steps",
+        "approximate linear model versus shorter steps",
         60,
         member_with_friction,
         lambda member: of_finer_steps(member, GAINS),
     ),
     "linearisation": (
-        "statistical linearisation beside 16 simulated roads",
+        "statistical linearisation versus 16 simulated roads",
         120,
         member_with_friction,
         lambda member: of_linearisation(member, 16),
     ),
     "balance": (
-        "harmonic balance beside simulated sines",
+        "harmonic balance versus simulated sines",
         120,
         member_under_a_sine,
         lambda member: of_linearisation(member, 2),

@@ -54,8 +54,8 @@ def answer(words: list[str], connection: object, limit: float) -> None:
     connection.send((code, out.getvalue(), err.getvalue(), time.process_time() - begun))  # type: ignore[attr-defined]
 
 
-def ended(words: list[str], limit: float) -> tuple[int, str, str, float]:
-    """The same, of a process that is ended after the limit [s]."""
+def run_with_limit(words: list[str], limit: float) -> tuple[int, str, str, float]:
+    """Exit code, output, errors and seconds of a command in a process that is ended after the limit [s]."""
     here, there = multiprocessing.Pipe()
     process = multiprocessing.get_context("fork").Process(target=answer, args=(words, there, limit))
     process.start()
@@ -68,16 +68,16 @@ def ended(words: list[str], limit: float) -> tuple[int, str, str, float]:
     return found
 
 
-def judged(seed: int, folder: Path, limit: float) -> tuple[int, str, list[str]]:
-    """Seed, what came of it ("refused", "result", "sentence" or "WRONG"), and faults."""
+def test_member(seed: int, folder: Path, limit: float) -> tuple[int, str, list[str]]:
+    """Seed, outcome ("refused", "result", "sentence" or "WRONG"), and faults."""
     case = extreme(seed)
     path = folder / f"{seed}.toml"
     path.write_text(case.text, encoding="utf-8")
-    code, _, err, seconds = ended(["check", str(path)], limit)
+    code, _, err, seconds = run_with_limit(["check", str(path)], limit)
     if code == 2:
         return seed, "refused", [" ".join(err.split())[:160]]
     faults = [f"check: {fault}" for fault in what_is_wrong(code, "", err, seconds, limit)]
-    code, out, err, seconds = ended(arguments(case.command, path, folder / f"{seed}-results"), limit)
+    code, out, err, seconds = run_with_limit(arguments(case.command, path, folder / f"{seed}-results"), limit)
     faults += what_is_wrong(code, out, err, seconds, limit)
     (folder / f"{seed}.out").write_text(f"{code} after {seconds:.1f} s\n{out}\n{err}", encoding="utf-8")
     return seed, "WRONG" if faults else "result" if code == 0 else "sentence", faults
@@ -103,7 +103,7 @@ def main() -> int:
     with ThreadPoolExecutor(given.jobs) as threads:
         while (left := given.count - kinds["result"] - kinds["sentence"] - kinds["WRONG"]) > 0:
             batch = [next(seeds) for _ in range(min(left, 4 * given.jobs))]
-            for seed, kind, faults in threads.map(lambda seed: judged(seed, folder, given.limit), batch):
+            for seed, kind, faults in threads.map(lambda seed: test_member(seed, folder, given.limit), batch):
                 kinds[kind] += 1
                 if kind in ("WRONG", "refused"):
                     print(f"{kind}: {seed} ({extreme(seed).base}): {'; '.join(faults)}", flush=True)

@@ -6,7 +6,7 @@ the friction never slips, by a simulator of their own (tests/troubled_rig.py), w
     python benchmarks/identification_troubles.py sticking [RECORDS] [PROCESSES]
 
 Results go line by line to identification-troubles-<kind>.jsonl in the current folder; a record that is in there is not
-fitted again, so that an interrupted campaign goes on. Then it counts: of the intervals that are given without a warning
+fitted again, so that an interrupted campaign can be resumed. Then it counts: of the intervals given without a warning
 how many miss the truth, how many of the troubles are among the first two explanations, how many sound rigs are warned.
 """
 
@@ -33,7 +33,7 @@ def case_of(kind: str, number: int) -> Case:
     return {"sound": lambda n: clean(n)[0], "sticking": sticking, "troubled": troubled}[kind](number)
 
 
-def fitted(task: tuple[str, int]) -> dict[str, object]:
+def fit_member(task: tuple[str, int]) -> dict[str, object]:
     """One record fitted with the model of its device without the trouble, as data."""
     kind, number = task
     case = case_of(kind, number)
@@ -72,7 +72,7 @@ def run(kind: str, count: int, processes: int) -> list[dict[str, object]]:
     todo = sorted(set(range(count)) - {row["number"] for row in done})
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     with ProcessPoolExecutor(processes) as pool, path.open("a") as file:
-        for row in pool.map(fitted, [(kind, number) for number in todo]):
+        for row in pool.map(fit_member, [(kind, number) for number in todo]):
             file.write(json.dumps(row) + "\n")
             file.flush()
             done.append(row)

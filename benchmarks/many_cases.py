@@ -90,7 +90,7 @@ class Run:
                 stream.seek(self._seen)
                 self._count += stream.read(size - self._seen).count(b"\n")
             self._seen = size
-            self.lines.append((time.perf_counter() - self.begun, _used(self.process.pid), self._count))
+            self.lines.append((time.perf_counter() - self.begun, _processor_time(self.process.pid), self._count))
 
     def pace(self, first: float, last: float) -> str:
         """Cases a second between two parts of the whole, and those of a second of processor time."""
@@ -99,7 +99,7 @@ class Run:
         return f"{(n - m) / (b - a):.0f} ({(n - m) / (q - p):.0f})" if b > a and q > p else "all at once"
 
 
-def _used(process: int) -> float:
+def _processor_time(process: int) -> float:
     """Processor time of a process and of those that it has started [s]."""
     total = 0.0
     with suppress(psutil.NoSuchProcess):

@@ -43,8 +43,8 @@ AREAS = {  # sources, and the tests that are about them; those of vehicles and r
     "roads": ("roads", "tests/roads tests/methods/test_measured_roads.py"),
     "systems": ("systems", "tests/systems tests/norms tests/vehicle tests/simulation"),
     "norms": ("norms", "tests/norms tests/methods tests/systems"),
-    "methods": ("methods", "tests/methods tests/optimisation tests/scatter tests/trade_off"),
-    "optimisation": ("optimisation", "tests/optimisation tests/trade_off tests/scatter"),
+    "methods": ("methods", "tests/methods tests/optimisation tests/uncertainty tests/pareto_fronts"),
+    "optimisation": ("optimisation", "tests/optimisation tests/pareto_fronts tests/uncertainty"),
     "records": ("records", "tests/records tests/identification"),
     "units": ("units.py", "tests/test_units.py tests/files tests/report"),
 }
@@ -88,13 +88,13 @@ class Mutant:
 
     @property
     def key(self) -> tuple[str, int, int, str]:
-        """What tells it from others."""
+        """Unique key of the mutant."""
         return self.file, self.begin, self.end, self.after
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a mutant: noticed by the tests of its "area", by "others", or "survived"."""
+    """Outcome of a mutant: detected by the tests of its "area", by "others", or "survived"."""
 
     area: str
     file: str
@@ -127,10 +127,10 @@ def main() -> None:
             writer.writeheader()
         copies: Queue[Path] = Queue()
         for i in range(given.jobs):
-            copies.put(copied(Path(folder) / str(i)))
+            copies.put(copy_tree(Path(folder) / str(i)))
         executed = tests_by_line(Path(folder) / "0", given.coverage or Path(folder) / "coverage")
 
-        def tested(mutant: Mutant) -> Outcome:
+        def test_on_copy(mutant: Mutant) -> Outcome:
             copy = copies.get()
             try:
                 return test(mutant, copy, executed.get((mutant.file, header_line(mutant, copy)), []))
@@ -138,7 +138,7 @@ def main() -> None:
                 copies.put(copy)
 
         with ThreadPoolExecutor(given.jobs) as threads:
-            for outcome in threads.map(tested, pending):
+            for outcome in threads.map(test_on_copy, pending):
                 writer.writerow(asdict(outcome))
                 stream.flush()
                 known.append(outcome)
@@ -148,7 +148,7 @@ def main() -> None:
 
 
 def draw(count: int, seed: int, areas: list[str]) -> list[Mutant]:
-    """As many mutants of each area, drawn among all places of it that can be changed, in an order of their own."""
+    """Equal numbers of mutants of each area, drawn from all of its mutable places, in random order."""
     generator = random.Random(seed)
     chosen: list[Mutant] = []
     for i, area in enumerate(areas):
@@ -249,8 +249,8 @@ def other_number(text: str) -> str:
     return f"{mantissa[:last]}{digit + 1 if digit < 9 else 8}{mantissa[last + 1 :]}{sign}{exponent}"
 
 
-def copied(place: Path) -> Path:
-    """A copy of what the tests need."""
+def copy_tree(place: Path) -> Path:
+    """Copy of the files that the tests need."""
     place.mkdir()
     for name in ("src", "tests", "examples", "docs", "benchmarks"):
         shutil.copytree(ROOT / name, place / name, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))

@@ -27,8 +27,8 @@ ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
 
 
-def judged(mechanism, index) -> tuple[str, float]:
-    """What became of one number, and its relative error where there is one."""
+def verdict_of(mechanism, index) -> tuple[str, float]:
+    """Verdict on one number, and its relative error; 0 without one."""
     try:
         estimate = evaluate(mechanism, index, Norm())
     except MechanismError:
@@ -53,7 +53,7 @@ def main(count: int) -> None:
             here: Counter[str] = Counter()
             for mechanism in mechanisms(family, 11, count, extremes):
                 for index in INDICES:
-                    outcome, error = judged(mechanism, index)
+                    outcome, error = verdict_of(mechanism, index)
                     here[outcome] += 1
                     if outcome == "WRONG":
                         print(index.symbol, mechanism)

@@ -144,7 +144,7 @@ def batches() -> None:
     """Beside it the same ratio for a bare loop that touches no memory: what two cores of this machine give at most."""
     cars = [quarter_car(it.Spring(120e3) | it.Damper(3000.0 + 20.0 * i) | FRICTION) for i in range(64)]
 
-    def simulated(jobs: int) -> float:
+    def seconds_with(jobs: int) -> float:
         begin = time.perf_counter()
         it.simulate_many(
             cars, road=[SIGNAL], outputs=["sprung_acceleration"], duration=20.0, discard=10.0, jobs=jobs
@@ -157,8 +157,8 @@ def batches() -> None:
             list(pool.map(peers.burn, [50_000_000] * 8))
         return time.perf_counter() - begin
 
-    simulated(2), bare(2)
-    rounds = [(simulated(1) / simulated(2), bare(1) / bare(2)) for _ in range(7)]
+    seconds_with(2), bare(2)
+    rounds = [(seconds_with(1) / seconds_with(2), bare(1) / bare(2)) for _ in range(7)]
     ours, most = np.median(rounds, axis=0)
     print(f"64 runs of 20 s on two cores: {ours:.2f} times faster than on one; a bare loop: {most:.2f} times")
 

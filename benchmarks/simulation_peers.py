@@ -1,4 +1,4 @@
-"""What the event-driven simulation is measured against: a quarter car with Coulomb friction, by other means.
+"""Reference solutions for the event-driven simulation: a quarter car with Coulomb friction, by other solvers.
 
     python benchmarks/simulation_peers.py [seconds]
 
@@ -348,7 +348,7 @@ def disagreement(problem: Problem, table: RoadTable) -> float:
 # --- costs time when Python calls it: mode, 1 / step, last interval, then the quadratics of the road's velocity.
 
 
-def packed(table: RoadTable) -> Array:
+def pack(table: RoadTable) -> Array:
     return np.concatenate([[STICK, 1.0 / table.step, table.intervals - 1.0], table.quadratics.ravel()])
 
 
@@ -361,14 +361,14 @@ def road_velocity(t: float, data: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Compiled:
+class CompiledFunctions:
     rates: Callable[[float, Array, Array, Array], None]  # (t, x, data, dx): fills dx
     guard: Callable[[Array, Array], float]  # (x, data): positive inside the mode
     jacobian: Callable[[Array, Array], None]  # (data, J): fills J
 
 
 @lru_cache
-def compiled(problem: Problem) -> Compiled:
+def compile_functions(problem: Problem) -> CompiledFunctions:
     rates, stick_force = problem.rates, problem.stick_force
     stuck, slipping = affine(problem, STICK)[0], affine(problem, SLIP_UP)[0]
 
@@ -384,7 +384,7 @@ def compiled(problem: Problem) -> Compiled:
     def jacobian(data, J):
         J[:, :] = stuck if data[0] == STICK else slipping
 
-    return Compiled(rates_at, guard, jacobian)
+    return CompiledFunctions(rates_at, guard, jacobian)
 
 
 # --- scipy.integrate.solve_ivp.
@@ -396,7 +396,7 @@ def dop853_path(problem: Problem, table: RoadTable, rtol: float, stop_at_kinks: 
     That is both several times faster and far more accurate than steps which the kinks of the road cut short. It fails
     if the tolerance asks for a shorter step than the table's.
     """
-    functions, data = compiled(problem), packed(table)
+    functions, data = compile_functions(problem), pack(table)
     times, n, end = table.times, problem.size, table.duration
 
     def rates(t: float, x: Array) -> Array:
@@ -452,7 +452,7 @@ def cvode_path(
     problem: Problem, table: RoadTable, rtol: float, method: str = "Adams", chunk: int = 1000, jacobian: bool = True
 ) -> Path:
     """`solve` is asked for at most `chunk` times at once: it walks over all of them in Python at every start."""
-    functions, data = compiled(problem), packed(table)
+    functions, data = compile_functions(problem), pack(table)
 
     # scikit-sundae 1.2 refuses an array as its `userdata`.
     def rates(t: float, x: Array, dx: Array) -> None:
@@ -492,7 +492,7 @@ def cvode_path(
 # --- The measurements.
 
 
-def measured(
+def measure(
     peer: str,
     path: Callable[..., Path],
     problem: Problem,
@@ -524,7 +524,7 @@ def solve_ivp_run(
     """scipy's DOP853 with a terminal event. Without `stop_at_kinks` it chooses its own steps, as one would write it."""
     path = partial(dop853_path, stop_at_kinks=stop_at_kinks)
     name = "DOP853 to kinks" if stop_at_kinks else "DOP853 free"
-    return measured(name, path, problem, table, rtol, expected, repeats)
+    return measure(name, path, problem, table, rtol, expected, repeats)
 
 
 def cvode_run(
@@ -539,7 +539,7 @@ def cvode_run(
 
     Fastest with a fine table: `road_table(1e-5, duration, stride=20)` gives results every 0.2 ms.
     """
-    return measured(f"CVODE {method}", partial(cvode_path, method=method), problem, table, rtol, expected, repeats)
+    return measure(f"CVODE {method}", partial(cvode_path, method=method), problem, table, rtol, expected, repeats)
 
 
 @njit(error_model="numpy")

@@ -16,8 +16,8 @@ from inerter.identification.noise import uniform_whitening
 from inerter.identification.options import FitOptions
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.residual_tests import check_parts, judge_of
-from inerter.identification.solving import SolvedFit, _for_fit
+from inerter.identification.residual_tests import check_parts, noise_reference
+from inerter.identification.solving import SolvedFit, _without_validation_part
 from inerter.identification.sticking import Adhesion
 from inerter.networks.elements import Network
 from inerter.records.record import Record
@@ -30,14 +30,14 @@ def quick_fit(
     """The best fit near these values, judged as `identify` judges it."""
     rig, whole = Rig(model), [experiment_of(record)]
     space = space_of(rig, assumed)
-    experiments = _for_fit(whole, 0.2)
+    experiments = _without_validation_part(whole, 0.2)
     problem = FitProblem(
         rig, space, experiments, [uniform_whitening(e.kept, 1.0) for e in experiments], assumed=assumed
     )
     optimum = best_fit_of(problem, space.coordinates_of(values), evaluations=40)
     lead = float(experiments[0].record.time[int(experiments[0].kept.argmax())] - record.time[0])
     checked = tuple(check_parts(experiments, whole, [lead]))
-    judge = judge_of(problem, optimum.point, checked, 0)
+    judge = noise_reference(problem, optimum.point, checked, 0)
     assert judge is not None
     problem = replace(problem, whitenings=judge.fitted, systems={})
     optimum = best_fit_of(problem, optimum.point, evaluations=40)

@@ -89,7 +89,7 @@ def limited(data: xr.Dataset, active: np.ndarray, missed: np.ndarray) -> xr.Data
         limit_value=((*dims, "limit"), size * [9e-3, 1300.0]),
         limit_active=((*dims, "limit"), active | missed[..., None]),
         limit_cost=((*dims, "limit"), np.where(active, -0.4, 0.0)),
-        status=(dims, np.where(missed, "infeasible: no design was found that keeps the limits", "ok").astype(object)),
+        status=(dims, np.where(missed, "infeasible: no feasible design was found", "ok").astype(object)),
     )
     return improved(data.assign(value=data["value"].where(~data["status"].str.startswith("infeasible"))))
 

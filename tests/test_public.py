@@ -113,10 +113,20 @@ def test_half_car_of_the_first_release() -> None:
     assert value == pytest.approx(6.1101, abs=1e-4)  # Wang and Su (2008), Table 2, J1 case 1
 
 
-def test_an_old_name_works_and_tells_the_new_one() -> None:
-    with pytest.warns(DeprecationWarning, match="`PerformanceIndexError`"):
-        old = errors.IndicatorError
-    assert old is errors.PerformanceIndexError
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("IndicatorError", "PerformanceIndexError"),
+        ("RowError", "RegistryError"),
+        ("UnknownRowError", "UnknownEntryError"),
+    ],
+)
+def test_an_old_name_works_and_warns_with_the_new_one(old: str, new: str) -> None:
+    with pytest.warns(DeprecationWarning, match=f"`{new}`"):
+        assert getattr(errors, old) is getattr(errors, new)
+
+
+def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="has no attribute 'NoError'"):
         _ = errors.NoError
 

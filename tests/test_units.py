@@ -13,7 +13,7 @@ from inerter import units
 from inerter.errors import UnitError
 from inerter.frequent_units import FREQUENT
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, shown
+from inerter.units import format_quantity, format_with_interval, parse_one_of, parse_quantity, quote_value
 
 UNITS = (*kinds_by_unit(), "kg m^2", "m/s", "m^3/cycle", "rad/s")
 
@@ -80,13 +80,13 @@ def test_densities_are_per_hertz_or_per_radian(text, unit, value):
 def test_a_density_that_may_be_either_is_refused(text):
     unit = {"m": DENSITY, "(m": DENSITY, "N": "N^2/Hz", "(N": "(N m)^2/Hz"}[re.split(r"[ ^/]", text)[1]]
     for read in (parse_quantity, lambda text, unit: parse_one_of(text, {unit: ""}, unit)):
-        with pytest.raises(UnitError, match="per Hz and one per rad/s are not the same"):
+        with pytest.raises(UnitError, match="ambiguous density, per Hz or per rad/s"):
             read(text, unit)
 
 
 @pytest.mark.parametrize("text", ["1 ((m)^9)^9 N", "1 ((km^9)^9)^9/m N"])
 def test_a_power_of_a_power_of_a_bracket_is_no_unit(text):
-    with pytest.raises(UnitError, match="is not known"):
+    with pytest.raises(UnitError, match="unknown unit"):
         parse_quantity(text, "N")
 
 
@@ -117,32 +117,32 @@ def test_the_unit_tells_the_element(text, unit, value):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("120", ("no unit", '"120 N/m"')),
-        ("120 kN", ("another kind", "kilonewton", '"120 kN/m"')),
+        ("120", ("unit missing", '"120 N/m"')),
+        ("120 kN", ("incompatible unit", "kilonewton", '"120 kN/m"')),
         ("10 kn/m", ("knot", "N/m")),
-        ("10 KN/m", ("not known", "capitals")),
-        ("10 foo", ("not known", '"foo"')),
-        ("5 kNs/m", ("not known", "space")),
+        ("10 KN/m", ("unknown unit", "case-sensitive")),
+        ("10 foo", ("unknown unit", '"foo"')),
+        ("5 kNs/m", ("unknown unit", "space")),
         ("N/m", ("begin with a number",)),
         ("", ("begin with a number",)),
         ("stiff", ("begin with a number",)),
         ("1,5 N/m", ("comma", "point")),
-        ("1_000 N/m", ("not known",)),
+        ("1_000 N/m", ("unknown unit",)),
         ("nan N/m", ("not a finite number",)),
         ("-inf N/m", ("not a finite number",)),
         ("Infinity N/m", ("not a finite number",)),
         ("1e400 N/m", ("too large",)),
         ("1e308 GN/m", ("too large",)),
-        ("5 degC", ("another kind",)),
-        ("5 dBm", ("another kind",)),
-        ("5 N/m)", ("not known",)),
-        ("5 N/m*", ("not known",)),
-        ("5 m^9^9^9^9", ("not known",)),
-        ("5 __import__('os')", ("not known",)),
-        ("5 " + "(" * 5000, ("not known",)),
-        ("5\nN\n/m\nx", ("not known", r"\n")),
-        (120, ("number without a unit", '"120 N/m"')),
-        (10**400, ("number without a unit",)),
+        ("5 degC", ("incompatible unit",)),
+        ("5 dBm", ("incompatible unit",)),
+        ("5 N/m)", ("unknown unit",)),
+        ("5 N/m*", ("unknown unit",)),
+        ("5 m^9^9^9^9", ("unknown unit",)),
+        ("5 __import__('os')", ("unknown unit",)),
+        ("5 " + "(" * 5000, ("unknown unit",)),
+        ("5\nN\n/m\nx", ("unknown unit", r"\n")),
+        (120, ("unit missing", '"120 N/m"')),
+        (10**400, ("unit missing",)),
         (True, ("not a quantity", "true")),
         (None, ("not a quantity",)),
         (["120 N/m"], ("not a quantity", "a list")),
@@ -170,7 +170,7 @@ def test_a_roughness_is_given_as_the_standard_gives_it(at_n0, at_omega0):
 
 def test_what_is_no_roughness_is_refused():
     for text in ("5e-7 m^2", "5e-7 m^2/cycle", "5e-7 m/cycle", "16e-6 m^3 rad", "16e-6 m^3/deg", "1e-6 m^3/turn"):
-        with pytest.raises(UnitError, match="another kind"):
+        with pytest.raises(UnitError, match="incompatible unit"):
             parse_quantity(text, "m^3/cycle")
 
 
@@ -182,7 +182,7 @@ def test_a_refused_roughness_is_never_answered_by_a_rougher_one(given):
 
 
 def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():
-    with pytest.raises(UnitError, match="another kind"):
+    with pytest.raises(UnitError, match="incompatible unit"):
         parse_quantity("1 cycle/s", "rad/s")
 
 
@@ -285,8 +285,8 @@ def test_an_interval_through_decades_has_a_unit_at_each_end():
 
 @pytest.mark.parametrize("value", ["x" * 500, 10**400, "a\nb\x7f\x85\u2028", '"' * 500])
 def test_shown_is_one_short_line(value):
-    assert len(shown(value)) < 70
-    assert len(shown(value).splitlines()) == 1
+    assert len(quote_value(value)) < 70
+    assert len(quote_value(value).splitlines()) == 1
 
 
 def test_pint_is_loaded_by_the_first_unit_that_is_not_frequent():

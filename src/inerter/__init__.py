@@ -1,4 +1,4 @@
-"""What an inerter does for a vehicle, and which design is best.
+"""Vehicle suspensions with inerters: performance indices, optimal designs, simulation and identification.
 
 Networks of springs, dampers, inerters, dry friction and gaps; quarter cars, half cars and any other mechanism; exact
 norms and optimisation. Everything public is a name in this module; each is loaded when it is first used.
@@ -13,7 +13,7 @@ from inerter.renamed import warn_renamed
 
 
 def _homes() -> dict[str, str]:
-    """The module of every public name: what the stub beside this file imports."""
+    """The module of every public name: from the imports of the stub of this file."""
     tree = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     found = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
     return {alias.name: str(node.module) for node in found for alias in node.names}

@@ -1,7 +1,7 @@
-"""Exceptions of the package, and the `Status` that a number carries when it is not an ordinary one.
+"""Exceptions of the package, the `Status` of a result, and the sources of its numerical error.
 
-Bad input raises, where it enters. A numerical failure of one case among many is a `Status`. What a number may be off by
-is made of `ErrorSource`s.
+Invalid input raises where it enters. A numerical failure of one case among many is a `Status`. The error bound of a
+result is the sum of its `ErrorSource`s.
 """
 
 from __future__ import annotations
@@ -14,45 +14,45 @@ from inerter.renamed import warn_renamed
 
 
 class InerterError(Exception):
-    """Base of all errors of this package: the request was wrong, and the message says how to mend it."""
+    """Base of all errors of this package. Invalid request; the message contains a remedy."""
 
 
 class NetworkError(InerterError, ValueError):
-    """An element, an expression or a network that cannot be."""
+    """Invalid element, expression or network."""
 
 
 class MechanismError(InerterError, ValueError):
-    """A vehicle or mechanism that cannot be assembled."""
+    """Invalid vehicle or mechanism."""
 
 
 class LinearSystemError(InerterError, ValueError):
-    """Matrices that do not fit, or a norm asked of a system that does not have it."""
+    """Matrices of inconsistent shapes, or a norm that does not exist for a system."""
 
 
 class PerformanceIndexError(InerterError, ValueError):
-    """An index that the vehicle cannot answer, or that is set up wrongly."""
+    """Performance index that is undefined for a vehicle, or has invalid settings."""
 
 
 class DesignError(InerterError, ValueError):
-    """Free values where none may be, none where some must be, or values that do not fit them."""
+    """Missing, unexpected or inconsistent design variables."""
 
 
 class UnitError(InerterError, ValueError):
-    """A quantity without a unit, with an unknown one, or with one of another dimension."""
+    """Quantity without a unit, with an unknown unit, or with a unit of another dimension."""
 
 
 class SignalError(InerterError, ValueError):
-    """A signal that cannot be, or that is asked for a time that it does not know."""
+    """Invalid signal, or a time outside its definition."""
 
 
 class SimulationError(InerterError, ValueError):
-    """A simulation that cannot be run as it was asked for."""
+    """Simulation with an invalid request."""
 
 
 class RecordError(InerterError, ValueError):
-    """A measured record, or a file of one, that cannot be used.
+    """Unusable measured record, or unusable file of one.
 
-    Its `args` are the parts of the message: text, and remedies, which the command line says in its own words.
+    Its `args` are the parts of the message: text and remedies, which the command line formats as options.
     """
 
     def __str__(self) -> str:
@@ -60,30 +60,30 @@ class RecordError(InerterError, ValueError):
 
 
 class IdentificationError(InerterError, ValueError):
-    """A model and records from which nothing can be identified."""
+    """Model and records for which identification is impossible."""
 
 
-class RowError(InerterError, ValueError):
-    """A row that cannot stand in its table, or a distribution whose rows cannot be loaded."""
+class RegistryError(InerterError, ValueError):
+    """Invalid entry of a registry, or a distribution whose entries cannot be loaded."""
 
 
-class UnknownRowError(RowError, KeyError):
-    """A key that no row of a table has."""
+class UnknownEntryError(RegistryError, KeyError):
+    """Key without an entry in a registry."""
 
     def __str__(self) -> str:
         return str(self.args[0])  # a KeyError would put it in quotes
 
 
 class StudyError(InerterError, ValueError):
-    """A study file, or a result folder, that cannot be used."""
+    """Unusable study file or result folder."""
 
 
 class WorkError(InerterError):
-    """The request was right, but the work could not be finished; what was computed is kept."""
+    """Failed computation of a valid request; completed results are kept."""
 
 
 class StatusKind(StrEnum):
-    """What kind of number a result is."""
+    """Kind of the status of a result."""
 
     OK = "ok"
     UNSTABLE = "unstable"
@@ -97,14 +97,14 @@ class StatusKind(StrEnum):
 
 @dataclass(frozen=True)
 class Status:
-    """How far a number can be trusted, with a sentence for the reader when it is not simply `ok`."""
+    """Reliability of a result, with an explanation unless it is `ok`."""
 
     kind: StatusKind = StatusKind.OK
     message: str = ""
 
     @property
     def ok(self) -> bool:
-        """True for an ordinary, trustworthy number."""
+        """True if the result is reliable."""
         return self.kind is StatusKind.OK
 
     def __str__(self) -> str:
@@ -112,7 +112,7 @@ class Status:
 
     @staticmethod
     def parts(text: str) -> tuple[str, str]:
-        """Kind and message of what a table holds as text; of a case that was not computed its word, and none."""
+        """Kind and message of a status as text; for a case that was not computed, that text and no message."""
         kind, _, message = text.partition(": ")
         return kind, message
 
@@ -122,13 +122,13 @@ OK = Status()
 
 @dataclass(frozen=True)
 class ErrorSource:
-    """A named part of the error of a number: `bound`, relative to the number, is not exceeded."""
+    """Named source of numerical error with its relative `bound`."""
 
     name: str
     bound: float
 
 
-_GRAVEST_FIRST = (
+_MOST_SEVERE_FIRST = (
     StatusKind.FAILED,
     StatusKind.INFEASIBLE,
     StatusKind.UNSTABLE,
@@ -141,18 +141,25 @@ _GRAVEST_FIRST = (
 
 
 def worst_of(statuses: Iterable[Status]) -> Status:
-    """The status of what is made of several numbers: the gravest of theirs, the first of those that are alike."""
-    return min(statuses, key=lambda status: _GRAVEST_FIRST.index(status.kind), default=OK)
+    """Status of a result that depends on several: the most severe one, the first among equals."""
+    return min(statuses, key=lambda status: _MOST_SEVERE_FIRST.index(status.kind), default=OK)
 
 
 def with_article(word: str) -> str:
-    """A word of a message after its indefinite article."""
+    """A word with its indefinite article, for messages."""
     is_vowel = word[0] in "aeiou" and not word.startswith(("one", "uni"))
     return f"{'an' if is_vowel else 'a'} {word}"
 
 
+_RENAMED: dict[str, type[InerterError]] = {
+    "IndicatorError": PerformanceIndexError,
+    "RowError": RegistryError,
+    "UnknownRowError": UnknownEntryError,
+}
+
+
 def __getattr__(name: str) -> object:
-    if name != "IndicatorError":
+    if name not in _RENAMED:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    warn_renamed(name, "PerformanceIndexError")
-    return PerformanceIndexError
+    warn_renamed(name, _RENAMED[name].__name__)
+    return _RENAMED[name]

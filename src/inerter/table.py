@@ -1,4 +1,4 @@
-"""A table of results: rows of texts under a caption, and how numbers get their texts."""
+"""Tables of results: rows of texts under a caption, and the protocol of number formatting."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Protocol
 
 @dataclass(frozen=True)
 class Cell:
-    """A value, and a remark below it; `prose` is words, which may go over several lines."""
+    """Cell with a value and a remark below it; `prose` is text that may wrap over several lines."""
 
     text: str
     remark: str = ""
@@ -18,7 +18,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """A row of a table; `status` is empty or what is wrong with its numbers."""
+    """Row of a table; `status` is the problem of its numbers, empty if there is none."""
 
     label: str
     cells: list[Cell]
@@ -28,7 +28,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """A table with its caption; the first column holds the labels of the rows."""
+    """Table with its caption; the first column contains the labels of the rows."""
 
     caption: str
     header: list[str]
@@ -37,14 +37,14 @@ class Table:
     failures: tuple[str, ...] = ()
 
     @property
-    def judged(self) -> bool:
-        """Whether the last column is a verdict on the others: it stays in sight."""
+    def has_verdict(self) -> bool:
+        """Whether the last column is a verdict in words, which remains visible while the others scroll."""
         return any(row.cells[-1].prose for row in self.rows if row.cells)
 
 
 class Writer(Protocol):
-    """A function that turns a number, its unit, its standard error and its relative error bound into text."""
+    """Function that formats a number with its unit, standard error and relative error bound."""
 
     def __call__(self, value: float, unit: str, error: float = ..., bound: float = ...) -> str:
-        """The number for people."""
+        """Formatted number with its unit."""
         ...

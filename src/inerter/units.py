@@ -1,4 +1,4 @@
-"""Quantities as text: "120 kN/m" to a number in SI units and back. Pint is used here alone, and loads on first use."""
+"""Quantities as text: "120 kN/m" to a number in SI units and back. Only this module uses pint, loaded on first use."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ _NOT_FINITE = re.compile(r"\s*[+-]?(?:nan|inf|infinity)\b", re.IGNORECASE)
 _POWER = r"(?:(?:\^|\*\*)-?\d|[²³])"
 _NAME = rf"[^\W\d_]++{_POWER}?+"
 _UNIT = re.compile(rf"(?:{_NAME}|\((?:{_NAME}|[\s*/·.])++\){_POWER}|[()\s*/·.])+")  # a bracket with a power holds none
-_DENSITY = "/Hz"  # a spectral density ends so, and may be told per rad/s too
+_DENSITY = "/Hz"  # suffix of a spectral density, which may be given per rad/s too
 _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
-_FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # the weight of a mass, for those who mean it
+_FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # weight of a mass, as meant in a force
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
-PURE = "1"  # the unit of what is a mere number
+PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
 _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
 _LONGEST = 100
-_FAR = 100.0  # ends of an interval that far apart, as a ratio, have units of their own
+_FAR = 100.0  # ratio of the ends of an interval above which each has its own unit
 _MOST_DIGITS = 6  # of a value with an interval
 
-_PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # from which size on, scale, unit
+_PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size, scale, unit
     "N/m": ((1e6, 1e6, "MN/m"), (1e3, 1e3, "kN/m"), (0.0, 1.0, "N/m")),
     "N s/m": ((1e6, 1e6, "MN s/m"), (1e3, 1e3, "kN s/m"), (0.0, 1.0, "N s/m")),
     "N": ((1e6, 1e6, "MN"), (1e3, 1e3, "kN"), (0.0, 1.0, "N")),
-    "m": ((1.0, 1.0, "m"), (1e-5, 1e-3, "mm"), (0.0, 1e-6, "um")),  # 0.1 mm is a gap, 5 um a bearing's play
+    "m": ((1.0, 1.0, "m"), (1e-5, 1e-3, "mm"), (0.0, 1e-6, "um")),  # 0.1 mm is a gap, 5 um the clearance of a bearing
     "m/N": ((1.0, 1.0, "m/N"), (1e-3, 1e-3, "mm/N"), (0.0, 1e-6, "um/N")),
 }
 
 
 def parse_quantity(text: str, unit: str) -> float:
-    """The number that `text` stands for, expressed in `unit`.
+    """Value of the quantity `text`, in `unit`.
 
     A roughness [m^3/cycle] may be given as ISO 8608 states it too: "256e-6 m^3" is the displacement spectral density at
     n0 = 0.1 cycle/m, Gd(n0) = 2 kappa / n0^2, and "16e-6 m^3/rad" that at Omega0 = 1 rad/m, Gd(Omega0) = 4 pi kappa.
@@ -59,17 +59,17 @@ def parse_quantity(text: str, unit: str) -> float:
     expected, example = _FORMS if unit == _ROUGHNESS else (f"a unit of {unit}", "")
     number, given = _split(text, expected, unit, example)
     if unit == _ROUGHNESS and (form := _density_form(given)) is not None:
-        return _converted(text, number, given, "m^3") * _KAPPA_OVER[form]
-    if not _are_of_one_kind(given, unit):
-        problem = f"{_described(given)} is a unit of another kind"
-        like = f"{_number_of(text)} {_as_force(given, (unit,)) or _prefixed(given, unit)}"
+        return _convert(text, number, given, "m^3") * _KAPPA_OVER[form]
+    if not _have_same_dimension(given, unit):
+        problem = f"incompatible unit {_describe_unit(given)}"
+        like = f"{_number_of(text)} {_as_force(given, (unit,)) or _with_prefix(given, unit)}"
         _fail(text, problem, expected, example or like)
     _check_density(text, given, unit)
-    return _converted(text, number, given, unit)
+    return _convert(text, number, given, unit)
 
 
 def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = "element") -> tuple[str, float]:
-    """The one of `units` that is of the kind of unit that `text` has, and the number that it stands for in that unit.
+    """The one of `units` with the dimension of the quantity `text`, and its value in that unit.
 
     `units` goes from a unit to the kind of `what` it is the unit of; `example` is one of them, for messages.
 
@@ -80,17 +80,20 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = 
     """
     number, given = _split(text, f"one of {', '.join(units)}", example)
     for unit in units:
-        if _are_of_one_kind(given, unit):
+        if _have_same_dimension(given, unit):
             _check_density(text, given, unit)
-            return unit, _converted(text, number, given, unit)
+            return unit, _convert(text, number, given, unit)
     known = ", ".join(f"{unit} ({what})" for unit, what in units.items())
     force = _as_force(given, units)
     hint = f' Did you mean "{_number_of(text)} {force}"?' if force else ""
-    raise UnitError(f"Got {shown(text)}: {_described(given)} is the unit of no {what}; expected one of {known}.{hint}")
+    raise UnitError(
+        f"Got {quote_value(text)}: {_describe_unit(given)} is not the unit of any {what}; "
+        f"expected one of {known}.{hint}"
+    )
 
 
 def unit_in(text: str) -> str:
-    """The unit in a quantity of any kind, as it is written.
+    """Unit in a quantity of any kind, as written.
 
     Raises `UnitError` unless `text` is a finite number followed by a unit.
     """
@@ -98,7 +101,7 @@ def unit_in(text: str) -> str:
 
 
 def is_unit(unit: str) -> bool:
-    """Whether that is a unit, which quantities can be read in."""
+    """Whether `unit` is a known unit."""
     if unit in FREQUENT:
         return True
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
@@ -111,38 +114,38 @@ def is_unit(unit: str) -> bool:
 
 
 def is_unit_for(given: str, unit: str) -> bool:
-    """Whether `parse_quantity` takes quantities in `given` for one of `unit`.
+    """Whether `parse_quantity` accepts quantities in `given` for `unit`.
 
     >>> is_unit_for("km/h", "m/s"), is_unit_for("m^3", "m^3/cycle"), is_unit_for("m^3", "kg")
     (True, True, False)
     """
-    return are_alike(given, unit) or (unit == _ROUGHNESS and _density_form(given) is not None)
+    return are_compatible(given, unit) or (unit == _ROUGHNESS and _density_form(given) is not None)
 
 
 def _density_form(given: str) -> int | None:
-    """The power of radians in a unit of displacement spectral density, as ISO 8608 has them; None for other units."""
+    """Power of rad in a unit of displacement spectral density of ISO 8608; None for other units."""
     if given in FREQUENT:
         return 0 if FREQUENT[given][0] == "m^3" else None
-    if not _are_of_one_kind(given, "m^3"):
+    if not _have_same_dimension(given, "m^3"):
         return None
     base = _registry().get_base_units(_registry().parse_units(given))[1]
     power = next((n for n in _KAPPA_OVER if base == _registry().parse_units("m^3") * _registry().radian ** n), None)
-    return None if power and "rad" not in given else power  # of a degree, or a turn, nobody knows what is meant
+    return None if power and "rad" not in given else power  # of a degree or a turn the meaning is ambiguous
 
 
-def are_alike(unit: str, other: str) -> bool:
-    """Whether both are units of the same kind of quantity.
+def are_compatible(unit: str, other: str) -> bool:
+    """Whether both units have the same dimension.
 
-    >>> are_alike("km/h", "m/s"), are_alike("kg", "N/m")
+    >>> are_compatible("km/h", "m/s"), are_compatible("kg", "N/m")
     (True, False)
     """
-    return _are_of_one_kind("" if unit == PURE else unit, "" if other == PURE else other)
+    return _have_same_dimension("" if unit == PURE else unit, "" if other == PURE else other)
 
 
-def product(one: str, sign: str, other: str) -> str:
-    """The unit of a product ("*") or a quotient ("/") of quantities in two units, in SI units.
+def combine_units(one: str, sign: str, other: str) -> str:
+    """Unit of the product ("*") or quotient ("/") of quantities in two units, in SI units.
 
-    >>> product("N/m", "/", "N/m"), product("1", "/", "N/m")
+    >>> combine_units("N/m", "/", "N/m"), combine_units("1", "/", "N/m")
     ('1', 'm/N')
     """
     parts = [_registry().parse_units("" if unit == PURE else unit) for unit in (one, other)]
@@ -151,7 +154,7 @@ def product(one: str, sign: str, other: str) -> str:
 
 
 def format_quantity(value: float, unit: str, digits: int = 4) -> str:
-    """`value`, given in `unit`, for people: `digits` significant digits and a prefix that suits the size.
+    """Quantity as text: `value` [`unit`] with `digits` significant digits and a suitable prefix.
 
     `parse_quantity` reads it back, to that many digits.
 
@@ -177,19 +180,19 @@ def is_prefixed(given: str, unit: str) -> bool:
     return given in (unit, *(name for _, _, name in _PREFIXES.get(unit, ())))
 
 
-def headed(what: str, unit: str) -> str:
-    """What a column or an axis holds, with its unit in brackets if it has one.
+def label_with_unit(what: str, unit: str) -> str:
+    """Label of a column or axis, with its unit in brackets if it has one.
 
-    >>> headed("value", "N"), headed("ratio", "")
+    >>> label_with_unit("value", "N"), label_with_unit("ratio", "")
     ('value [N]', 'ratio')
     """
     return f"{what} [{unit}]" if unit else what
 
 
 def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:
-    """`value` and its interval, given in `unit`, for people: one unit, and as many decimals as the interval bears.
+    """Texts of `value` and its interval [`unit`]: in one unit, with as many decimals as the interval justifies.
 
-    An interval that goes through decades has a unit of its own at each end, and three digits.
+    The ends of an interval over decades have separate units, and three digits.
 
     >>> format_with_interval(113.0123, 112.9917, 113.0331, "kg")
     ('113.012 kg', '112.992 to 113.033 kg')
@@ -205,7 +208,7 @@ def format_with_interval(value: float, low: float, high: float, unit: str) -> tu
 
 
 def format_handy(value: float, unit: str, digits: int = 3) -> str:
-    """A value alone, in its handy unit.
+    """Value as text, in a unit of suitable size.
 
     >>> format_handy(5000.0, "N"), format_handy(2e-3, "s")
     ('5 kN', '2 ms')
@@ -215,7 +218,7 @@ def format_handy(value: float, unit: str, digits: int = 3) -> str:
 
 
 def format_number(number: float, digits: int) -> str:
-    """A number to so many digits, without a power of ten unless it is far from one.
+    """Number as text with so many significant digits, without a power of ten unless far from 1.
 
     >>> format_number(5000.0, 3), format_number(1.234e-7, 2)
     ('5000', '1.2e-07')
@@ -224,7 +227,7 @@ def format_number(number: float, digits: int) -> str:
 
 
 def handy_unit(value: float, unit: str) -> tuple[float, str]:
-    """The size and the name of the unit in which a value, given in `unit`, is a number of handy size; ms among them.
+    """Size and name of the unit in which a value [`unit`] is a number of suitable size; ms included.
 
     >>> handy_unit(12e3, "N/m"), handy_unit(0.0, "m")
     ((1000.0, 'kN/m'), (1.0, 'm'))
@@ -238,7 +241,7 @@ def handy_unit(value: float, unit: str) -> tuple[float, str]:
 
 
 def _decimals(low: float, high: float) -> int:
-    """So many that half of the interval has two digits, within reason."""
+    """Number of decimals for which half of the interval has two digits, within limits."""
     half, size = 0.5 * (high - low), max(abs(low), abs(high))
     if not half > 0.0 or not size > 0.0:
         return 3
@@ -246,14 +249,14 @@ def _decimals(low: float, high: float) -> int:
     return min(max(1 - math.floor(math.log10(half)), 0), most)
 
 
-def places_borne(value: float, bound: float = math.nan, error: float = math.nan, digits: int = 4) -> int:
-    """Decimal places that a number of a largest error `bound` and of a standard `error` bears, in its own unit.
+def decimal_places(value: float, bound: float = math.nan, error: float = math.nan, digits: int = 4) -> int:
+    """Decimal places that a largest error `bound` and a standard `error` justify, both in the unit of the value.
 
     As many as two digits of the standard error have, without one as make `digits` significant digits; the last place is
     no smaller than the bound, but there are two significant digits at least, and one of a standard error. Below zero
     the number is rounded to tens, hundreds, ...
 
-    >>> places_borne(2.5094), places_borne(2.5094, bound=0.002), places_borne(2.5094, bound=1e-4, error=0.00046)
+    >>> decimal_places(2.5094), decimal_places(2.5094, bound=0.002), decimal_places(2.5094, bound=1e-4, error=0.00046)
     (3, 2, 4)
     """
     size = _exponent(value)
@@ -271,7 +274,7 @@ def places_borne(value: float, bound: float = math.nan, error: float = math.nan,
 
 
 def digits_at(value: float, places: int) -> int:
-    """Significant digits of a number with so many decimal places.
+    """Number of significant digits of a value with so many decimal places.
 
     >>> digits_at(2.5094, 2), digits_at(7544.2, -1)
     (3, 3)
@@ -280,12 +283,12 @@ def digits_at(value: float, places: int) -> int:
 
 
 def _exponent(value: float) -> int:
-    """The power of ten of the first digit."""
+    """Power of ten of the first digit."""
     return int(f"{value:.15e}".partition("e")[2]) if math.isfinite(value) else 0
 
 
-def shown(value: object) -> str:
-    """A value as it stands in a study file, on one line and not too long, for messages."""
+def quote_value(value: object) -> str:
+    """Value as written in a study file, on one line and shortened, for messages."""
     match value:
         case dict():
             return "a table"
@@ -300,11 +303,11 @@ def shown(value: object) -> str:
 
 
 def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[str, str]:
-    """The number and the unit in `text`, the latter known to pint; `unit`, or an `example`, is for an error."""
+    """Number and known unit in `text`; `unit`, or an `example`, is for the error message."""
     example = example or f"{_number_of(text)} {unit}"
     if not isinstance(text, str):
         is_number = isinstance(text, int | float) and not isinstance(text, bool)
-        _fail(text, "a number without a unit" if is_number else "not a quantity in quotes", expected, example)
+        _fail(text, "unit missing" if is_number else "not a quantity in quotes", expected, example)
     if _NOT_FINITE.match(text):
         _fail(text, "not a finite number", expected, example)
     number = _NUMBER.match(text)
@@ -314,40 +317,40 @@ def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[s
     if given.startswith(","):
         _fail(text, "a comma in a number, where the decimal mark is a point", expected, example)
     if not given:
-        _fail(text, "no unit", expected, example)
+        _fail(text, "unit missing", expected, example)
     if not is_unit(given):
-        why = "is not known (capitals matter; a product needs a space or *)"
-        _fail(text, f"the unit {shown(given)} {why}", expected, example)
+        why = "(units are case-sensitive; write a product with a space or *)"
+        _fail(text, f"unknown unit {quote_value(given)} {why}", expected, example)
     return number.group(1), given
 
 
 def _check_density(text: object, given: str, unit: str) -> None:
-    """That a spectral density says whether it is per Hz or per rad/s: seconds alone may be either."""
+    """Raise `UnitError` unless a spectral density is explicitly per Hz or per rad/s: seconds alone are ambiguous."""
     if unit.endswith(_DENSITY) and not _PER_FREQUENCY.search(given):
-        why = "a density per Hz and one per rad/s are not the same"
+        why = "ambiguous density, per Hz or per rad/s"
         _fail(text, why, f"a unit of {unit}", f"{_number_of(text)} {unit}")
 
 
 def _number_of(text: object) -> str:
-    """The number in `text` for use in an example, or one that is plausible."""
+    """Number in `text`, or a plausible one, for use in an example."""
     if isinstance(text, int | float) and not isinstance(text, bool) and abs(text) < 1e12:
-        return shown(text)
+        return quote_value(text)
     number = _NUMBER.match(text) if isinstance(text, str) and "," not in text else None
     return number.group(1) if number and len(number.group(1)) < 12 else "120"
 
 
 def _as_force(given: str, units: Iterable[str]) -> str:
-    """`given` with forces for its masses ("lbf/in" for "lb/in"), if that is a unit of the kind of one of `units`."""
+    """`given` with forces for its masses ("lbf/in" for "lb/in"), if compatible with one of `units`; else empty."""
     force = _MASS.sub(lambda mass: _FORCES[mass[0]], given)
-    return force if force != given and any(_are_of_one_kind(force, unit) for unit in units) else ""
+    return force if force != given and any(_have_same_dimension(force, unit) for unit in units) else ""
 
 
-def _prefixed(given: str, unit: str) -> str:
-    """`unit`, with the k or M of `given` where that is what the author meant ("120 kN" for N/m)."""
+def _with_prefix(given: str, unit: str) -> str:
+    """`unit`, with the k or M of `given` where that was probably meant ("120 kN" for N/m)."""
     return given[0] + unit if unit and given[:1] in ("k", "M") and given[1:2] == unit[0] else unit
 
 
-def _converted(text: str, number: str, given: str, unit: str) -> float:
+def _convert(text: str, number: str, given: str, unit: str) -> float:
     # Dividing by a whole number is exact to the last digit where multiplying by its inverse is not: 0.3 mm = 0.0003 m.
     try:
         up, down = _factors(given, unit)
@@ -368,7 +371,7 @@ def _factors(given: str, unit: str) -> tuple[float, float]:
     return float(registry.convert(1.0, one, other)), float(registry.convert(1.0, other, one))
 
 
-def _are_of_one_kind(unit: str, other: str) -> bool:
+def _have_same_dimension(unit: str, other: str) -> bool:
     if unit in FREQUENT and other in FREQUENT:
         return FREQUENT[unit][0] == FREQUENT[other][0]
     return bool(_dimension(unit) == _dimension(other))
@@ -379,14 +382,14 @@ def _dimension(unit: str) -> object:
     return _registry().parse_units(unit).dimensionality
 
 
-def _described(given: str) -> str:
-    """The unit as written, and in full: the reader sees that "kn" is a knot."""
+def _describe_unit(given: str) -> str:
+    """Unit as written, and in full, as for "kn", a knot."""
     full = str(_registry().parse_units(given))
     return f'"{given}"' if full == given else f'"{given}" ({full})'
 
 
 def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
-    raise UnitError(f'Got {shown(text)}: {problem}; expected a number with {expected}, such as "{example}".')
+    raise UnitError(f'Got {quote_value(text)}: {problem}; expected a number with {expected}, such as "{example}".')
 
 
 @cache

@@ -33,7 +33,7 @@ from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
-from inerter.report.answers import answers as sentences_of
+from inerter.report.conclusions import conclusion_sentences
 from inerter.report.speeds import speed_sentences
 from inerter.report.study_data import as_text
 
@@ -113,7 +113,7 @@ def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
     expected = asdict(speed_sentences(results))
     (sentence,) = expected["doubts"] + expected["others"]
     assert sentence.count("km/h") >= 3
-    assert sentence in sentences_of(results, study)
+    assert sentence in conclusion_sentences(results, study)
     document = tomllib.loads(text)
     panel = client.post("/api/panel/optimise", json={"study": document}).json()
     work = client.post("/api/work", json={"kind": "optimise", "study": document, "wait": 30}).json()["result"]

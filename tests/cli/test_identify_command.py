@@ -171,9 +171,9 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
     out, err = capsys.readouterr()
     assert "explains 12.0 %" in err
     assert "withheld" in out
-    assert "not to be relied on" in out
+    assert "unreliable estimates" in out
     assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
-    assert "Not to be relied on" in (folder / "report.html").read_text(encoding="utf-8")
+    assert "Unreliable estimates" in (folder / "report.html").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -200,12 +200,12 @@ def test_a_faulty_sensor_is_named_in_the_first_line(
     assert call(["identify", *arguments]) == 1
     out, err = capsys.readouterr()
     first = " ".join(out.partition("\n\n")[0].split())
-    assert first.startswith("Not to be relied on: the residual is ")
+    assert first.startswith("Unreliable estimates: the residual is ")
     assert "the displacement is delayed by 4" in first
     assert "the displacement is delayed by 4" in err
     assert max(map(len, out.splitlines())) <= 80
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert page.index("Not to be relied on:") < page.index("the displacement is delayed") < page.index("Parameters")
+    assert page.index("Unreliable estimates:") < page.index("the displacement is delayed") < page.index("Parameters")
     data = json.loads((folder / "fit.json").read_text())
     assert data["status"].startswith("inaccurate")
     assert "delay" in [e["name"] for e in data["explanations"][:2]]

@@ -87,7 +87,7 @@ def test_an_import_compiles_nothing_and_starts_nothing(tmp_path: Path) -> None:
         [sys.executable, "-c", EVERYTHING], capture_output=True, text=True, env=environment, check=True, timeout=280
     )
     names, compiler, threads, started = json.loads(done.stdout)
-    assert {"inerter.kernels.events", "inerter.identification.laws", "inerter.cli.commands"} <= set(names)
+    assert {"inerter.kernels.events", "inerter.identification.friction_models", "inerter.cli.commands"} <= set(names)
     assert not compiler
     assert threads == 1
     assert not [command for command in started if not command or command[0] == sys.executable]

@@ -7,7 +7,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from inerter.cli.main import call
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.schema import study_schema

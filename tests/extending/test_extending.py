@@ -418,13 +418,13 @@ def test_the_value_of_the_element_is_swept(session: Session, tmp_path: Path) -> 
 BAD = {
     "model": ('"seated-car"', '"seeted-car"', "vehicle.model", ['"seated-car"', 'Did you mean "seated-car"?']),
     "field": ('seat_stiffness = "15 kN/m"\n', "", "vehicle.seat_stiffness", ['seat_stiffness = "15 kN/m"']),
-    "unit": ('"500 N s/m"\ntyre', '"500 N/m"\ntyre', "vehicle.seat_damping", ["another kind", "N s/m"]),
+    "unit": ('"500 N s/m"\ntyre', '"500 N/m"\ntyre', "vehicle.seat_damping", ["incompatible unit", "N s/m"]),
     "index": ('"T1"', '"T2"', "study.indices", ['"peak-response", "T1", "W1"']),
     "setting": ('["J1", "T1", "W1"]', '["J1"]', "study.weighting_corner", ["weighting filter of W1", "no weighting_c"]),
-    "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["another kind", "rad/s"]),
+    "setting's unit": ('"0.5 Hz"', '"0.5 s"', "study.weighting_corner", ["incompatible unit", "rad/s"]),
     "method": ('"quadrature"', '"quadrture"', "study.evaluate", ['Did you mean "quadrature"?']),
     "method's setting": ("middle =", "midle =", "methods.quadrature.midle", ["unknown key", "one of middle"]),
-    "method's unit": ('"3 Hz"', '"3 m"', "methods.quadrature.middle", ["another kind", "rad/s"]),
+    "method's unit": ('"3 Hz"', '"3 m"', "methods.quadrature.middle", ["incompatible unit", "rad/s"]),
     "method's place": (
         'middle = "3 Hz"\n[study]\n',
         '[study]\nmiddle = "3 Hz"\n',
@@ -486,7 +486,7 @@ def test_a_broken_distribution_is_one_sentence(case: str, study: Path, tmp_path:
     done = inerter(place, "check", study.name, cwd=study.parent, code=2)
     assert done.stdout == ""
     (line,) = (line for line in done.stderr.splitlines() if not line.startswith("inerter: preparing"))  # if it is slow
-    assert line.startswith("inerter: inerter-extending 1.0 adds rows to inerter, but its inerter_extending.seat")
+    assert line.startswith("inerter: inerter-extending 1.0: cannot load its extension inerter_extending.seat")
     assert word in line
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic import designs, sweep
 
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.figures.labels import (
     axis_label,
     compared_layouts,
@@ -23,7 +23,7 @@ from inerter.figures.labels import (
 )
 from inerter.indices.registry import INDICES, index_settings
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.units import format_quantity, parse_quantity, places_borne
+from inerter.units import decimal_places, format_quantity, parse_quantity
 from inerter.vehicle.registry import VEHICLES
 
 SIZES = st.floats(1e-6, 1e9)
@@ -49,9 +49,9 @@ def test_the_last_digit_is_no_smaller_than_the_error_bound(value, bound):
     coarse = with_unit(value, "", bound=bound)
     digits = re.sub(r"e.*|\.", "", coarse).lstrip("0")
     assert len(digits.rstrip("0")) <= len(re.sub(r"e.*|\.", "", text).strip("0"))  # never more digits than without
-    places = places_borne(value, bound * value)
+    places = decimal_places(value, bound * value)
     assert float(coarse) == pytest.approx(value, abs=0.501 * 10.0**-places)
-    assert 10.0**-places >= 0.999 * bound * value or places == places_borne(value, value)  # two digits are left
+    assert 10.0**-places >= 0.999 * bound * value or places == decimal_places(value, value)  # two digits are left
     assert 10.0**-places < 10.0 * bound * value or text == coarse  # and no fewer than the bound leaves
 
 

@@ -21,7 +21,7 @@ from inerter.files.study.place import place_of
 from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import study_codec
 from inerter.networks.elements import Free
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(EXAMPLES.glob("*.toml"))}
@@ -153,7 +153,7 @@ def declarations(table: TableCodec) -> list[tuple[str, Any]]:
 
 @pytest.mark.parametrize("kind", CODECS)
 def test_every_declared_key_has_a_schema_and_its_example_can_be_read(kind):
-    codec = made_of_rows(CODECS[kind])()
+    codec = cache_until_registration(CODECS[kind])()
     every = declarations(codec)
     assert len(every) > 25
     for place, one in every:

@@ -15,13 +15,13 @@ from unittest.mock import patch
 
 from study_text import study_text
 
+from inerter.atomic_io import write_text
 from inerter.files.common.listing import MARK, digest, listing
 from inerter.files.identification.running import RESIDUALS, IdentificationResult
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
 from inerter.report.identification import write_fit
-from inerter.writing import write_text
 
 STUDY = study_text('indices = ["J1", "J3"]')
 RIG = """

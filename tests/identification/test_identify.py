@@ -10,9 +10,9 @@ from rigs import BALL_SCREW, PAPER, device, fit_test
 from scipy.stats import chi2
 
 import inerter as it
-from inerter.identification.experiment import experiment_of, reading_of
+from inerter.identification.experiment import experiment_of, load_cell_output
 from inerter.identification.initial_estimate import chain_of, guess_of
-from inerter.identification.noise import yardstick
+from inerter.identification.noise import noise_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.residual_tests import portmanteau
 from inerter.systems.piecewise import piecewise
@@ -119,7 +119,7 @@ def test_a_record_that_begins_in_motion():
     rig = it.VirtualRig((it.Spring(1e6) | it.Damper(3200.0)) - (it.Inerter(113.0) | it.Friction(10.0)), seed=7)
     record = rig.run(it.cosine(amplitude=1e-3, frequency=3.0), duration=5.0, start=0.1)
     fit = it.identify([record], FREE_SHAFT - (it.Inerter(113.0) | it.Friction(10.0)), seed=0, starts=8)
-    assert fit.comparisons[0].lead >= 0.5
+    assert fit.comparisons[0].discarded >= 0.5
     assert fit.parameters["ks"].value == pytest.approx(1e6, rel=0.02)
 
 
@@ -154,7 +154,7 @@ def test_perfect_sensors_are_predicted_to_rounding(gap):
     record = fit_test(gap=gap, sensors=QUIET)
     experiment = experiment_of(record, bandwidth=100.0)
     force = experiment.force(piecewise(it.Rig(device(gap=gap), record.force_bandwidth)))
-    assert reading_of(record) == "reading_force"
+    assert load_cell_output(record) == "reading_force"
     assert np.abs(force - record.force)[600:4900].max() < 2e-3 * np.abs(record.force).max() / 50.0
 
 
@@ -178,7 +178,7 @@ def test_residuals_like_those_of_the_sensors_are_white_and_others_are_not():
     rng = np.random.default_rng(0)
     drawn = rng.standard_normal((13, 6000))
     colour = np.array([np.convolve(row, [1.0, 0.8, 0.5, 0.2], "same") for row in drawn])
-    by = yardstick(colour[:12], 1e-3, np.ones(6000, dtype=bool))
+    by = noise_whitening(colour[:12], 1e-3, np.ones(6000, dtype=bool))
     assert chi2.sf(portmanteau(colour[12]), 20) < 1e-6
     assert chi2.sf(portmanteau(by(colour[12])), 20) > 1e-3
     assert chi2.sf(portmanteau(by(drawn[12])), 20) < 1e-6

@@ -19,9 +19,9 @@ from inerter.identification.localising import (
     SURE,
     LocalisedSamples,
     _band,
-    _over_time,
+    _level_changes,
+    _localised_samples,
     _resonance,
-    _samples,
     localisation_of,
 )
 from inerter.identification.misfit_patterns import FRICTION, MisfitPattern
@@ -153,7 +153,7 @@ def test_what_grows_with_the_motion_says_so() -> None:
             time, level * noise, np.full(time.size, 0.1), {"acceleration": a, "velocity": v},
             np.asarray(np.arange(6000) // 150),
         )  # fmt: skip
-        (found,) = _over_time(samples, np.random.default_rng(0))
+        (found,) = _level_changes(samples, np.random.default_rng(0))
         said.append(found)
     assert [found.kind for found in said] == [MisfitPattern.GROWS] * 2
     assert [found.numbers["motion"] for found in said] == [True, False]
@@ -195,7 +195,7 @@ def test_chance_is_no_pattern_of_the_motion_or_of_time(count: int) -> None:
 def test_blocks_are_no_shorter_than_a_stroke(frequency: float) -> None:
     """Within which residuals are autocorrelated; those of slow motions are few."""
     record, _ = rigid_record(0, duration=8.0, tones=((2e-3, frequency),))
-    samples = _samples(rigid_fit(record))
+    samples = _localised_samples(rigid_fit(record))
     lengths = [float(np.ptp(samples.time[samples.block == n])) + 1e-3 for n in range(samples.blocks)]
     assert min(lengths) > 0.4 / frequency
     assert max(lengths) < 1.2 / frequency
@@ -217,12 +217,12 @@ def test_a_line_is_found_at_its_frequency_across_samples_that_are_left_out() -> 
 def test_p_values_are_multiplied_by_the_number_of_tests(monkeypatch: pytest.MonkeyPatch) -> None:
     """Which are counted where they are made: every p-value of one record, with two further channels."""
     made = []
-    monkeypatch.setattr("inerter.identification.localising._p", lambda found, drawn: (made.append(1), 0.5)[1])
+    monkeypatch.setattr("inerter.identification.localising._p_value", lambda found, drawn: (made.append(1), 0.5)[1])
     _, motion = rigid_record(0)
     trouble = motion["force"] + 30.0 * np.where(motion["time"] > 2.0, motion["a"], 0.0) + 8.0 * _noise(motion, 0)
     one = rigid_fit(read(motion, trouble, 0, temperature=_temperature(motion), humidity=_temperature(motion)))
     localisation_of(one)
-    tests = _samples(one).tests
+    tests = _localised_samples(one).tests
     assert tests == 31
     assert len(made) <= tests - 1  # but for that of a line; coefficients that hardly change are not tested
 

@@ -34,7 +34,7 @@ def fast():
 @pytest.mark.campaign
 def test_the_papers_experiment():
     """Every value within 2 %, and the backlash as an upper bound; the check agrees in all octaves."""
-    found = rig.restored(rig.compute(rig.NAME))
+    found = rig.rig_test_from_json(rig.compute(rig.NAME))
     assert [p.name for p in found.parameters] == ["f", "ks", "cs", "gap", "b"]
     for p in found.parameters:
         if p.name == "gap":

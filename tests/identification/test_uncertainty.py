@@ -19,7 +19,7 @@ from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.residual_tests import Judge, mean_square
+from inerter.identification.residual_tests import NoiseReference, mean_square
 from inerter.identification.staged_protocol import _friction
 
 LEVEL, STROKE, PERIODS, RATE = 10.0, 400, 12, 100.0  # [N], samples in a stroke, periods of two strokes, [Hz]
@@ -113,7 +113,7 @@ def test_a_misfit_may_be_a_tenth_and_three_standard_deviations_of_sound_sensors(
     white = 0.01 * np.random.default_rng(4).standard_normal(400)
     sizes = 1.0 + spread * np.array([-1.0, 0.0, 1.0])  # whose standard deviation is the spread
     judged = uniform_whitening(np.ones(white.size, dtype=bool), 1.0)
-    judge = Judge([judged], [judged], [sizes[:, None] * white])
+    judge = NoiseReference([judged], [judged], [sizes[:, None] * white])
     usual = np.sqrt(np.mean(sizes**2))
     residual = (1.1 + deviations * spread) * usual * white
     misfit = judge.misfit(Still(residual), np.zeros(0))  # type: ignore[arg-type]

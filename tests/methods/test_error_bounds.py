@@ -14,7 +14,7 @@ from inerter.errors import ErrorSource, StatusKind
 from inerter.indices.excitation import RoadVelocity
 from inerter.methods import steady_squares
 from inerter.methods.error_bounds import of_weighted_sum, of_worst, with_error_sources
-from inerter.scatter.spread import scatter_of
+from inerter.uncertainty.distributions import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25)
 COMFORT = it.RideComfort(ROAD)

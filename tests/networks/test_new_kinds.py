@@ -12,8 +12,8 @@ import pytest
 
 import inerter as it
 from inerter.cli.main import call
-from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RowError, StudyError
-from inerter.fields import Field
+from inerter.errors import DesignError, NetworkError, PerformanceIndexError, RegistryError, StudyError
+from inerter.field_metadata import Field
 from inerter.figures.networks import draw_networks, schematic
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
@@ -436,7 +436,7 @@ def test_the_whole_command_has_words_for_a_switch_of_its_own(known, tmp_path, ca
         ("{ kind = 3 }", "got kind = 3: not a kind of element"),
         (DAMPER.replace("knee", "elbow"), '"elbow": not a key of a digressive damper; expected damping, beyond, knee'),
         (DAMPER.replace(', knee = "50 mm/s"', ""), 'got no knee of the digressive damper; expected knee = "1 m/s".'),
-        (DAMPER.replace("50 mm/s", "50 mm"), '"50 mm": "mm" (millimeter) is a unit of another kind'),
+        (DAMPER.replace("50 mm/s", "50 mm"), '"50 mm": incompatible unit "mm" (millimeter)'),
         (DAMPER.replace("50 mm/s", "-50 mm/s"), 'got knee = "-50 mm/s": not positive'),
         (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), "got a table for damping; expected a range"),
         (DAMPER.replace('"3 kN s/m"', '{ from = "2 N s/m", to = "1 N s/m" }'), "reversed ends of damping"),
@@ -461,7 +461,7 @@ def test_kinds_are_registered_once_and_units_tell_the_first_that_is_a_value_alon
     assert ELEMENTS["clutch"] is Clutch
     assert kinds_by_unit()["N"] is it.Friction
     assert "kg m^2" not in kinds_by_unit()
-    with pytest.raises(RowError, match="another kind of element with the key 'clutch'"):
+    with pytest.raises(RegistryError, match="another kind of element with the key 'clutch'"):
         ELEMENTS.add(type("Other", (Clutch,), {}))
 
 

@@ -15,7 +15,7 @@ import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, break_even
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import OK, DesignError, PerformanceIndexError, StatusKind
-from inerter.optimisation.budget import Crossing, lies_on_the_way, with_element
+from inerter.optimisation.budget import Crossing, is_within_range, with_element
 
 ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
@@ -360,4 +360,4 @@ def test_a_range_rests_on_its_own_points_and_on_the_next_beyond_its_end(value):
     for better, sign in (("below", 1.0), ("above", -1.0)):
         end = Crossing(value, 0.0, (value, value), better, OK)
         for steps, rests in ((-9.0, True), (-0.9, True), (0.9, True), (1.1, False), (9.0, False)):
-            assert lies_on_the_way(math.log(value) + sign * steps * step, end, step) is rests
+            assert is_within_range(math.log(value) + sign * steps * step, end, step) is rests

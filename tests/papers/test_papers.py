@@ -71,7 +71,7 @@ def test_options_without_a_paper_are_refused(options: list[str], capsys: pytest.
 @pytest.mark.parametrize("name", PAPERS)
 def test_a_part_that_a_paper_does_not_have_is_refused_before_anything_is_written(name: str, tmp_path: Path) -> None:
     parts = PAPERS[name].parts
-    words = rf"no part named 'table 9' of {name} \(there are: {', '.join(parts)}\)"
+    words = f"Unknown part 'table 9' of {name}; available: {', '.join(parts)}"
     with pytest.raises(StudyError, match=words):
         PAPERS[name].reproduce(tmp_path / "out", only=(parts[0], "table 9"))
     assert not (tmp_path / "out").exists()

@@ -27,10 +27,10 @@ from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import (
     Claim,
     ClaimVerdict,
+    EstimatedQuantity,
     Evidence,
-    Measured,
     Statement,
-    all_of,
+    combined_verdict,
     everywhere,
     somewhere_above,
     statement,
@@ -41,15 +41,15 @@ from inerter.papers.wang_su_2008.over_stiffness import Curves
 from inerter.papers.wang_su_2008.report.data import reason
 from inerter.papers.wang_su_2008.report.text import reproduction_text
 from inerter.papers.wang_su_2008.reproduce import JOURNAL, PaperItem, Reproduction, work
-from inerter.papers.wang_su_2008.rig import Found, RigTest
+from inerter.papers.wang_su_2008.rig import IdentifiedParameter, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study
 
 SHOWN, CONTRADICTED, UNDETERMINED = ClaimVerdict
 
 
-def judged(table: int, name: str) -> SimulatedRow:
-    return rows.judged(table, name, rows.compute(table, name))
+def computed_row(table: int, name: str) -> SimulatedRow:
+    return rows.row_from_json(table, name, rows.compute(table, name))
 
 
 EXPECTED = [(1, "J1 1"), (1, "J1 4"), (1, "J3 9"), (1, "J3 10"), (1, "J5 6"), (1, "J5 10")]
@@ -59,19 +59,21 @@ EXPECTED += [(3, "J1 9"), (3, "J3 7"), (3, "J5 3")]
 @pytest.mark.parametrize(("table", "name"), sampled(EXPECTED, [row for row in EXPECTED if row != (1, "J5 6")]))
 def test_rows_of_the_expected_value(table: int, name: str) -> None:
     """Within what four runs, the printed digits and the conventions explain, from the printed designs alone."""
-    row = judged(table, name)
+    row = computed_row(table, name)
     assert row.verdict != "differs"
     assert abs(row.difference) < 8e-3 or row.verdict == "another peak"
     if row.row.index == "J5":
         assert row.paper2008 == row.exact == max(peak.gain for peak in row.peaks)
         assert row.compatible
-        assert all(short < peak.gain for short, peak in zip(row.begun, row.peaks, strict=True) if peak.omega > 0.0)
+        assert all(
+            short < peak.gain for short, peak in zip(row.gains_from_rest, row.peaks, strict=True) if peak.omega > 0.0
+        )
 
 
 @pytest.mark.parametrize("case", [4, 6, 9, 10])
 def test_the_column_of_j5_is_what_the_public_method_says_under_either_conventions(case: int) -> None:
     """No printed number has a say in it; where the printed one follows another peak, the verdict tells."""
-    row = judged(1, f"J5 {case}")
+    row = computed_row(1, f"J5 {case}")
     for conventions in ("exact", "paper2008"):
         found = evaluate(row.row.design(), row.row.asks(), ExpectedValue(conventions=conventions))
         assert row.paper2008 == found.value
@@ -81,7 +83,7 @@ def test_the_column_of_j5_is_what_the_public_method_says_under_either_convention
 
 
 def test_a_row_of_the_approximated_linear_model() -> None:
-    row = judged(2, "J3 9")
+    row = computed_row(2, "J3 9")
     assert abs(row.difference) < 15e-3
     assert row.paper2008_error > 0.0
     assert row.improvement is not None
@@ -93,11 +95,11 @@ def test_a_row_of_the_approximated_linear_model() -> None:
 def test_how_far_method_1_is_from_the_printed_table() -> None:
     """As docs/methods.md tells."""
     page = (Path(__file__).parents[2] / "docs" / "methods.md").read_text(encoding="utf-8")
-    text = " ".join(page.partition("**Beside the printed table.**")[2].split())
+    text = " ".join(page.partition("**Comparison with the printed table.**")[2].split())
     comfort, load, both = re.findall(r"within ([\d.]+) %", text)[:3]
     off: dict[tuple[str, bool], list[float]] = {}
     for row in simulated_rows(2):
-        found = judged(2, f"{row.index} {row.case}")
+        found = computed_row(2, f"{row.index} {row.case}")
         alone = row.index == "J5" and "elastic" not in row.nonlinearity
         off.setdefault((row.index, alone), []).append(100.0 * found.difference)
     for said, index in ((comfort, "J1"), (load, "J3"), (both, "J5")):
@@ -143,19 +145,19 @@ def test_a_verdict_on_a_peak_says_which() -> None:
     row = next(r for r in simulated_rows(1) if r.index == "J5" and r.case == 10)
     high, low = GainPeak(22.0, 1.03 * row.value), GainPeak(10.0, 1.002 * row.value)
 
-    def judged(*begun: float) -> SimulatedRow:
-        short = tuple(part * row.value for part in begun)
+    def row_with_shares(*shares: float) -> SimulatedRow:
+        short = tuple(part * row.value for part in shares)
         return SimulatedRow(row, "m/N", high.gain, 0.0, high.gain, 0.0, (high, low), short)
 
-    def verdict(*begun: float) -> str:
-        return judged(*begun).verdict
+    def verdict(*shares: float) -> str:
+        return row_with_shares(*shares).verdict
 
     assert verdict(0.99, 1.001) == "as from a start at rest"
     assert verdict(0.99, 0.99) == "either of several peaks"
     assert verdict(1.02, 0.99) == "another peak"
     assert verdict(1.02, 1.001) == "differs"
-    assert "22.0 rad/s" in reason(judged(0.99, 0.99))
-    assert "10.0 rad/s" in reason(judged(0.99, 0.99))
+    assert "22.0 rad/s" in reason(row_with_shares(0.99, 0.99))
+    assert "10.0 rad/s" in reason(row_with_shares(0.99, 0.99))
 
 
 K = np.linspace(10e3, 300e3, 30)
@@ -215,7 +217,7 @@ def test_crossings_in_the_noise_do_not_count() -> None:
     (crossing,) = noisy.crossings("a", "S1", "J1")
     assert crossing.value == pytest.approx((K[9] + K[10]) / 2.0)
     assert crossing.error == pytest.approx(0.015 * (K[10] - K[9]) / 0.2)
-    found = noisy.measured("a", "S1", "J1")
+    found = noisy.uncertain_excess("a", "S1", "J1")
     assert within(found[4], low=between.WORSE) is ClaimVerdict.UNDETERMINED
     assert within(found[10], low=between.WORSE) is ClaimVerdict.SHOWN
 
@@ -224,10 +226,10 @@ def test_what_realisations_do_to_both_curves_cancels() -> None:
     """Their difference is known as well as that of each realisation, however much both scatter together."""
     data = made_up(a=np.full(30, 1.1), b=np.full(30, 1.2))
     both = Curves(with_scatter(data, alike=True, a=0.3, b=0.3))
-    for found in (both.measured("b", "a", "J1")[0], both.mean_measured("b", "a", "J1", np.full(30, True))):
+    for found in (both.uncertain_excess("b", "a", "J1")[0], both.mean_excess("b", "a", "J1", np.full(30, True))):
         assert found.value == pytest.approx(1.2 / 1.1 - 1.0)
         assert found.error == pytest.approx(abs(0.3 / 1.1 - 1.2 / 1.1**2 * 0.3))
-    alone = Curves(with_scatter(data, b=0.3)).measured("b", "a", "J1")[0]
+    alone = Curves(with_scatter(data, b=0.3)).uncertain_excess("b", "a", "J1")[0]
     assert alone.error == pytest.approx(0.3 / 1.1)
     assert alone.freedom == 7
 
@@ -337,9 +339,9 @@ def test_claims_are_judged_only_with_their_evidence() -> None:
 
 
 def test_a_claim_is_as_good_as_its_worst_statement() -> None:
-    assert all_of([SHOWN, SHOWN]) is SHOWN
-    assert all_of([SHOWN, UNDETERMINED]) is UNDETERMINED
-    assert all_of([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
+    assert combined_verdict([SHOWN, SHOWN]) is SHOWN
+    assert combined_verdict([SHOWN, UNDETERMINED]) is UNDETERMINED
+    assert combined_verdict([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
     mixed = Claim(
         0, "", (Statement("this", SHOWN, CONTRADICTED), Statement("that", UNDETERMINED, None, "1 %")), "N. B."
     )
@@ -348,7 +350,7 @@ def test_a_claim_is_as_good_as_its_worst_statement() -> None:
 
 
 def test_a_printed_number_is_judged_only_with_what_it_is_about() -> None:
-    found = statement("", CONTRADICTED, SHOWN, by=[Measured(1.0)])
+    found = statement("", CONTRADICTED, SHOWN, by=[EstimatedQuantity(1.0)])
     assert found.number is None
     assert not found.power
 
@@ -364,17 +366,19 @@ def test_a_printed_number_is_judged_only_with_what_it_is_about() -> None:
 def test_noise_only_takes_certainty_away(
     value: float, error: float, more: float, low: float, high: float, count: int
 ) -> None:
-    less, noisy = (within(Measured(value, size, 7), low, high, count) for size in (error, more * error))
+    less, noisy = (within(EstimatedQuantity(value, size, 7), low, high, count) for size in (error, more * error))
     assert noisy in (less, UNDETERMINED)
-    outside = within(Measured(value, error, 7), high, comparisons=count)
-    assert outside is within(Measured(value, error, 7), high=high, comparisons=count).opposite or value == high
+    outside = within(EstimatedQuantity(value, error, 7), high, comparisons=count)
+    assert outside is within(EstimatedQuantity(value, error, 7), high=high, comparisons=count).opposite or value == high
 
 
-def means(count: int, true: float, draws: int, seed: int) -> list[Measured]:
+def means(count: int, true: float, draws: int, seed: int) -> list[EstimatedQuantity]:
     """Means of as many normal values as `count`, with unit standard deviation."""
     values = np.random.default_rng(seed).normal(true, 1.0, (draws, count))
     errors = values.std(axis=1, ddof=1) / np.sqrt(count)
-    return [Measured(m, e, count - 1) for m, e in zip(values.mean(axis=1).tolist(), errors.tolist(), strict=True)]
+    return [
+        EstimatedQuantity(m, e, count - 1) for m, e in zip(values.mean(axis=1).tolist(), errors.tolist(), strict=True)
+    ]
 
 
 @pytest.mark.parametrize("count", [4, 8, 30])
@@ -384,7 +388,7 @@ def test_verdicts_are_wrong_as_rarely_as_they_say(count: int) -> None:
     at_end = [within(one, low=0.0) for one in means(count, 0.0, draws, seed=1)]
     for certain in (SHOWN, CONTRADICTED):
         assert abs(at_end.count(certain) - 0.025 * draws) < 4.0 * np.sqrt(0.025 * draws)
-    power = Measured(0.0, 1.0 / np.sqrt(count), count - 1).detectable()
+    power = EstimatedQuantity(0.0, 1.0 / np.sqrt(count), count - 1).detectable()
     shown = sum(within(one, low=0.0) is SHOWN for one in means(count, power, draws, seed=2)) / draws
     assert 0.88 < shown < 0.97
 
@@ -479,7 +483,7 @@ def test_the_same_seed_gives_the_same_number_whatever_ran_before() -> None:
 
 
 def test_the_rig_fits_a_terminal() -> None:
-    widest = Found("cs", "N s/m", 3200.0, 3204.7, (3190.6, 3218.9), "")
+    widest = IdentifiedParameter("cs", "N s/m", 3200.0, 3204.7, (3190.6, 3218.9), "")
     tested = RigTest((widest,), {}, {}, {}, (), (), "ok")
     lines = reproduction_text(Reproduction(("rig",), rig=tested)).splitlines()
     assert any("3.205 kN s/m  3.191 to 3.219 kN s/m" in line for line in lines)

@@ -10,7 +10,7 @@ from campaigns import sampled
 from numpy.typing import NDArray
 
 from inerter.records.inspection import findings
-from inerter.records.instants import held_values, spikes
+from inerter.records.instants import held_value_instants, spike_instants
 from inerter.records.record import Record
 from inerter.records.repair import repair
 
@@ -160,7 +160,7 @@ def test_steps_and_impacts_are_no_spikes() -> None:
     values[700:] += 20.0
     for at in (300, 1200, 1600):
         values[at : at + 4] += 50.0 * np.array([0.317, 0.123, -0.007, 0.0])
-    assert spikes(values, 1) == []
+    assert spike_instants(values, 1) == []
 
 
 def test_values_that_repeat_anyway_are_not_held() -> None:
@@ -169,4 +169,4 @@ def test_values_that_repeat_anyway_are_not_held() -> None:
     x = np.rint(1e3 * np.cos(6.0 * time)) * 1e-6
     still = np.concatenate([np.full(2000, 1e-3), x])
     coarse = np.rint(np.cos(6.0 * time) * 20.0 + 0.1 * np.random.default_rng(1).standard_normal(time.size))
-    assert all(held_values(values) == [] for values in (x, still, coarse, 10.0 * np.sign(np.sin(6.0 * time))))
+    assert all(held_value_instants(values) == [] for values in (x, still, coarse, 10.0 * np.sign(np.sin(6.0 * time))))

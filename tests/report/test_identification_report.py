@@ -20,10 +20,10 @@ from inerter.files.identification.running import IdentificationResult, Reading, 
 from inerter.identification.choice import Candidate
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
+from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.initial_estimate import chain_of
-from inerter.identification.laws import laws
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.parser import format_expression
@@ -33,8 +33,8 @@ from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identification_figures import figures, window
-from inerter.report.identification_text import identification_text, share, unreliable
+from inerter.report.identification_figures import figures, last_periods
+from inerter.report.identification_text import format_variance_share, identification_text, unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 from inerter.units import format_handy
@@ -143,7 +143,7 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: IdentificationRes
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
     poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
     assert value_and_interval(poor, "b") == ("withheld", "113 kg to 113 kg if explained so")
-    assert "not to be relied on" in elements_block(poor)
+    assert "unreliable estimates" in elements_block(poor)
 
 
 @pytest.mark.parametrize("verdict", [Verdict.WITHHELD, Verdict.CONDITIONAL, Verdict.UNPREDICTABLE])
@@ -202,8 +202,8 @@ def test_single_values_and_shares() -> None:
     assert format_handy(9.5e-9, "m") == "0.0095 um"
     assert format_handy(0.0021, "s") == "2.1 ms"
     assert format_handy(5000.0, "kg") == "5000 kg"
-    assert share(0.5) == "50.0 %"
-    assert share(1.0) == "100.0 %"
+    assert format_variance_share(0.5) == "50.0 %"
+    assert format_variance_share(1.0) == "100.0 %"
 
 
 @pytest.mark.parametrize("text", ["b", "k | c", "(ks | cs) - gap - (b | f)", "k | c - (a - b | f)", "(a | b) - c | d"])
@@ -216,7 +216,7 @@ def test_expressions_are_read_back_as_they_were(text: str) -> None:
 
 def test_the_window_is_a_few_periods_of_what_was_fitted(found: IdentificationResult) -> None:
     (comparison,) = found.fit.comparisons
-    first, last = window(comparison)
+    first, last = last_periods(comparison)
     assert comparison.fitted[last]
     assert last - first <= 1.2 * 400
 
@@ -241,7 +241,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
     left = NormalisedResidual(1.0 if sound else 3.0, 1.0 if sound else 3.0, (1.2, 1.2))
     proposed = [
         Explanation(h.name, 0.9, left, {}, {"b": (113.0, 0.1), "f": (10.0, 0.1)}, h.details(middle(h)))
-        for h in laws(chain, 0.02, 1e-3)
+        for h in law_hypotheses(chain, 0.02, 1e-3)
         if h.device is None
     ]
     status = Status(StatusKind.INACCURATE, "the model leaves 3 times what the errors of the sensors would leave")
@@ -249,7 +249,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
         doubted = replace(found, fit=replace(found.fit, status=status, explanations=(one,)))
         for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
             told = " ".join(text.split())
-            assert ("113 kg" in told.partition("estimates")[0].partition("Parameters")[0]) == sound
+            assert ("113 kg" in told.partition("estimates value")[0].partition("Parameters")[0]) == sound
             assert "use the values under this hypothesis, where" in told
             assert "above" not in told.partition("records")[0]
     assert len(proposed) == 6
@@ -331,7 +331,7 @@ def test_a_misfit_that_nothing_explains_begins_with_what_records_were_warned_of(
         status=Status(StatusKind.INACCURATE, "it leaves much"),
         reliability_warning=SimpleNamespace(numbers={"likeliest": likeliest}),
     )
-    said = unreliable(SimpleNamespace(readings=readings, fit=fit))
+    said = unreliability_reason(SimpleNamespace(readings=readings, fit=fit))
     assert said.startswith("it leaves much")
     assert ("Begin with the warning about b.csv below" in said) == is_named
-    assert unreliable(SimpleNamespace(readings=readings, fit=SimpleNamespace(status=OK))) == ""
+    assert unreliability_reason(SimpleNamespace(readings=readings, fit=SimpleNamespace(status=OK))) == ""

@@ -169,7 +169,7 @@ def test_words_in_a_table_may_go_over_several_lines_and_a_last_column_of_words_i
         2,
     ]
     assert source.count("<span>a – it is long</span>") == 2
-    assert not replace(table, rows=[Row("a", [Cell("1 m"), Cell("2 m")])]).judged
+    assert not replace(table, rows=[Row("a", [Cell("1 m"), Cell("2 m")])]).has_verdict
 
 
 @pytest.mark.campaign

@@ -23,12 +23,12 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, by_task, parts_of
 from inerter.methods.compare import compare
-from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, statement, within
-from inerter.report.answers import answers
+from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
+from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.text import summary_table
-from inerter.scatter.spread import scatter_of
+from inerter.uncertainty.distributions import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)
@@ -141,7 +141,7 @@ def judged_study(tmp_path, text=TEXT):
     }
     sentences = {key: next(task.sentences(results, with_unit), "") for key, (task, results) in told.items()}
     return {
-        "headline": answers(data, study, found)[0],
+        "headline": conclusion_sentences(data, study, found)[0],
         "answer box": answer[1].replace("<li>", "").strip(),
         "front": sentences.get("fronts", ""),
         "budget": lines.get("budgets", "").partition("  S2")[2],
@@ -186,9 +186,14 @@ def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path
 
 
 def test_a_claim_that_rests_on_a_doubtful_estimate_is_undetermined_and_says_why_first():
-    sure, doubtful = Measured(5.0, 0.1), Measured(5.0, 0.1, doubt="inaccurate: it is so so")
+    sure, doubtful = EstimatedQuantity(5.0, 0.1), EstimatedQuantity(5.0, 0.1, doubt="inaccurate: it is so so")
     for measured, verdict in ((sure, ClaimVerdict.SHOWN), (doubtful, ClaimVerdict.UNDETERMINED)):
-        for one in (measured, measured.minus(Measured(0.5)), Measured(9.0).minus(measured), measured.times(1.0)):
+        for one in (
+            measured,
+            measured.minus(EstimatedQuantity(0.5)),
+            EstimatedQuantity(9.0).minus(measured),
+            measured.times(1.0),
+        ):
             assert within(one, 1.0, 9.0) is verdict
     said = statement("5 %", within(doubtful, 1.0, 9.0), by=[doubtful])
     assert said.found == "unreliable (inaccurate: it is so so): 5 %"

@@ -9,7 +9,7 @@ from synthetic import LONG, designs, improved, judged, sweep, with_value
 
 from inerter.figures.labels import with_unit
 from inerter.methods.registry import brief_words_of
-from inerter.report.findings import best_layout, crossings, headlines
+from inerter.report.index_summary import best_layout, crossings, headlines
 from inerter.report.text import WIDTH, summary_table
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)

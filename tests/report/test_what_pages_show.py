@@ -20,12 +20,12 @@ from inerter.files.study.limits import StudyLimit
 from inerter.files.study.loading import load_study
 from inerter.files.study.responses import responses
 from inerter.methods.registry import METHODS
-from inerter.report.answers import answers
-from inerter.report.by_method import method_tables
-from inerter.report.findings import headlines, over_the_sweep
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.index_summary import headlines, over_the_sweep
 from inerter.report.limits import limit_tables
+from inerter.report.method_comparison import method_tables
 from inerter.report.page import report
-from inerter.report.question import vehicle_rows
+from inerter.report.problem_statement import vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables
 from inerter.report.text import WIDTH, summary_table
 from inerter.signals.road import ROAD_CLASSES
@@ -93,10 +93,8 @@ def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
             assert count_of(row.cells[2].text) == missed[i, j].sum()
     figures = [f for f in study_figures(results) if f.name in ("sweep-J1", "map-J1")]
     mark = "Open markers" if make is sweep else "Black dots"
-    assert (f"{mark}: a limit holds the design back." in figures[0].caption) == bool(
-        (active.any(-1) & ~missed)[:, 0].any()
-    )
-    assert ("no design keeps the limits." in figures[0].caption) == bool(missed[:, 0].any())
+    assert (f"{mark}: active constraint." in figures[0].caption) == bool((active.any(-1) & ~missed)[:, 0].any())
+    assert ("no feasible design." in figures[0].caption) == bool(missed[:, 0].any())
     with style_context():
         panels = figures[0].draw().axes
     marks = sum(len(line.get_xdata()) for ax in panels for line in ax.lines if marked(line, make is sweep))
@@ -121,18 +119,18 @@ def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_
     missed = np.ones(data["status"].shape, dtype=bool)
     results = limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed)
     results["limit_value"].loc[{"layout": "S2", "index": "J3"}] = [9.9e-3, 1290.0]
-    told = answers(results, replace(study, limits=LIMITS))
+    told = conclusion_sentences(results, replace(study, limits=LIMITS))
     assert told[-1] == (
-        "No design has suspension travel at most 9 mm and tyre load at most 1.3 kN; the nearest, one of S2, has "
+        "No feasible design with suspension travel at most 9 mm and tyre load at most 1.3 kN; closest: S2 with "
         "suspension travel 9.9 mm and tyre load 1.29 kN."
     )
-    assert not any("best of all designs" in sentence for sentence in told)
+    assert not any("All designs satisfy" in sentence for sentence in told)
     assert "improvement" not in [figure.name for figure in study_figures(results)]
     for figure in study_figures(results):
-        assert figure.caption.endswith("Of a layout that does not keep the limits, that of the design nearest to them.")
+        assert figure.caption.endswith("Of a layout without a feasible design, that of the closest design.")
     for table, index in zip(trade_off_tables(results), ["J1", "J3", "J5"], strict=True):
         assert [[cell.remark for cell in row.cells] for row in table.rows] == [
-            ["misses the limits" if other == index else "" for other in ("J1", "J3", "J5")]
+            ["infeasible" if other == index else "" for other in ("J1", "J3", "J5")]
         ] * 3
 
 
@@ -160,10 +158,12 @@ def test_layouts_that_keep_no_limit_are_named(study, sweep_study, where):
             missed[["S1", "S2", "S3"].index(name)] = True
         if make is sweep:
             missed[..., 1:] = False
-        told = answers(limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed), replace(asked, limits=LIMITS))
+        told = conclusion_sentences(
+            limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed), replace(asked, limits=LIMITS)
+        )
         at = " at 1 of 5 values of k" if make is sweep else ""
-        assert told[-1].split(". ")[1:] == [f"Of {name} there is none{at}".rstrip(".") for name in where[:-1]] + [
-            f"Of {name} there is none{at}." for name in where[-1:]
+        assert told[-1].split(". ")[1:] == [f"{name} has no feasible design{at}".rstrip(".") for name in where[:-1]] + [
+            f"{name} has no feasible design{at}." for name in where[-1:]
         ]
 
 
@@ -290,7 +290,7 @@ def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
         budget_answer(index, at_most=False, value=None, crossings=[], status="unbounded", message=f"{reason} it is.")
         for index, reason in zip(("J1", "J3", "J5"), reasons, strict=True)
     ]
-    told = " ".join(answers(data, replace(study, budgets=("b",)), outcomes)[3:])
+    told = " ".join(conclusion_sentences(data, replace(study, budgets=("b",)), outcomes)[3:])
     assert [told.count(f"{reason} it is") for reason in dict.fromkeys(reasons)] == [1] * len(set(reasons))
     assert [told.count(title) for title in ("ride comfort", "dynamic tyre load", "dynamic load carrying")] == [1, 1, 1]
 
@@ -311,7 +311,7 @@ def test_a_budget_is_told_with_both_ends_of_the_range_that_it_is_the_end_of(stud
     found = budget_answer("J1", at_most=at_most, value=20.0, crossings=crossings, status="ok")
     assert (
         f"S3 is better than S1 {told} in ride comfort."
-        in answers(designs(), replace(study, budgets=("b",)), [found])[3]
+        in conclusion_sentences(designs(), replace(study, budgets=("b",)), [found])[3]
     )
 
 

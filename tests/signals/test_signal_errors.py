@@ -99,7 +99,7 @@ WRONG = {
     ),
     "a grid at rest": (lambda: SINE.grid(0.0, 0.0, 5), "step of a grid must be a positive number of s"),
     "a grid from nowhere": (lambda: SINE.grid(math.nan, 0.1, 5), "start of a grid must be a finite number"),
-    "half a point": (lambda: SINE.grid(0.0, 0.1, 2.5), "count of a grid must be a whole number .* got 2.5"),
+    "half a point": (lambda: SINE.grid(0.0, 0.1, 2.5), "count of a grid must be an integer .* got 2.5"),
     "fewer than no points": (lambda: SINE.grid(0.0, 0.1, -1), "count of a grid"),
     "breaks of no span": (lambda: Signal.sampled(T, V).breaks(0.0, math.nan), "end of a span must be a finite number"),
     "countless breaks": (lambda: held_noise(0, 1.0).breaks(0.0, 1e12), "more than 1e8 knots from 0 to"),

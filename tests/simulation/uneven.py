@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from inerter.fields import Field
+from inerter.field_metadata import Field
 from inerter.networks.elements import Damper, Element, Network, Value
 from inerter.networks.elements.roles import GuardRole, LinearRole, SwitchRole
 

@@ -414,12 +414,12 @@ BAD = {
     "an intensity per radian or per Hz": (
         SWAY + OUTPUTS + 'excitation = { ground_acceleration = "1 m^2/s^3" }',
         "asked.excitation.ground_acceleration",
-        ["per Hz and one per rad/s are not the same"],
+        ["ambiguous density, per Hz or per rad/s"],
     ),
     "an intensity of another kind": (
         SWAY + OUTPUTS + 'excitation = { force = "primary_force", intensity = "1 N" }',
         "asked.excitation.intensity",
-        ["of no white force", "N^2/Hz (force)"],
+        ["of any white force", "N^2/Hz (force)"],
     ),
     "a moment on a mass": (
         SWAY + OUTPUTS + 'excitation = { force = "primary_force", intensity = "1 (N m)^2/Hz" }',

@@ -25,10 +25,10 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.networks.elements.values import NAME
-from inerter.report.answers import answers
-from inerter.report.findings import headlines
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.index_summary import headlines
 from inerter.report.page import report
-from inerter.report.question import condition_rows
+from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table
 
@@ -87,7 +87,7 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     text = summary_table(result.data)
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "at its limit: 1 % more" in text
-    assert "Every design keeps these limits" in report(result.data, study, tmp_path)
+    assert "Every design satisfies these constraints" in report(result.data, study, tmp_path)
 
 
 @pytest.mark.parametrize("of", ["dynamic-load-coefficient", "transmissibility"])
@@ -111,7 +111,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
     assert not result.failed
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
-    assert headlines(result.data) == ["Best ride comfort: no layout keeps the limits."]
+    assert headlines(result.data) == ["Best ride comfort: no layout satisfies the constraints."]
     assert "the nearest design" in report(result.data, study, tmp_path)
 
 
@@ -244,8 +244,13 @@ BAD = {
         "study.subject_to.J3",
         ["at_most below at_least"],
     ),
-    "limit in another unit": (LIMIT + '{ J3 = { at_most = "3 mm" } }', "", "study.subject_to.J3", ["another kind"]),
-    "limit without unit": (LIMIT + "{ J3 = { at_most = 3 } }", "", "study.subject_to.J3", ["without a unit"]),
+    "limit in another unit": (
+        LIMIT + '{ J3 = { at_most = "3 mm" } }',
+        "",
+        "study.subject_to.J3",
+        ["incompatible unit"],
+    ),
+    "limit without unit": (LIMIT + "{ J3 = { at_most = 3 } }", "", "study.subject_to.J3", ["unit missing"]),
     "limit of zero": (LIMIT + '{ J3 = { at_most = "0 N" } }', "", "study.subject_to.J3", ["not positive"]),
     "limit is a text": (LIMIT + '{ J3 = "3 N" }', "", "study.subject_to.J3", ["not a table"]),
     "limits are a text": (LIMIT + '"J3"', "", "study.subject_to", ["not a table"]),
@@ -262,7 +267,7 @@ BAD = {
         ASK,
         TWO + '[[conditions]]\nroad.speed = "1 m"\n',
         '"conditions[3]"."road.speed"',
-        ["another kind"],
+        ["incompatible unit"],
     ),
     "condition of zero": (
         ASK,
@@ -371,7 +376,7 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
     assert max(map(len, told.splitlines())) <= WIDTH
     named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
     page = report(result.data, study, tmp_path)
-    for shown in (" ".join(told.split()), " ".join(answers(result.data, study)), page):
+    for shown in (" ".join(told.split()), " ".join(conclusion_sentences(result.data, study)), page):
         assert named in shown
         assert not kind or f"{said} at most" not in shown
     for shown in (told, page):

@@ -19,7 +19,7 @@ from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
-from inerter.report.findings import headlines
+from inerter.report.index_summary import headlines
 from inerter.report.page import report
 from inerter.report.tables import map_tables
 from inerter.report.text import WIDTH, summary_table

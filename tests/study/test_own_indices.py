@@ -113,7 +113,7 @@ BAD = {
         '[indices.grip]\nkind = "tyre-load"\nhigh_pass = "1 m"\n',
         '"grip"',
         "indices.grip.high_pass",
-        ["another kind"],
+        ["incompatible unit"],
     ),
     "name of an index": ('[indices.J1]\nkind = "tyre-load"\n', '"J1"', "indices.J1", ["has already", "comfort"]),
     "name in words": (

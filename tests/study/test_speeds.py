@@ -24,7 +24,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.methods.method import Estimate
 from inerter.networks.elements.values import NAME
-from inerter.report.answers import answers
+from inerter.report.conclusions import conclusion_sentences
 from inerter.report.study_data import as_text
 
 QUARTER = {"vehicle": 'sprung_mass = "250 kg"\nunsprung_mass = "35 kg"\ntyre_stiffness = "150 kN/m"'}
@@ -92,7 +92,7 @@ def test_the_answer_tells_what_designs_of_half_cars_become_at_other_speeds(numbe
     gains = [100.0 * (1.0 - values[best, i] / values["S1", i]) for i in range(3)]
     scaled = [values[best, i] / values[best, 1] / math.sqrt((0.8, 1.0, 1.2)[i]) for i in (0, 2)]
     lost = (best != "S1" and gains[1] >= 0.05 and min(gains[0], gains[2]) < 0.5 * gains[1]) or max(scaled) > 1.1
-    sentences = answers(results, study)
+    sentences = conclusion_sentences(results, study)
     assert sentences[0].startswith("Not certain away from") == lost
     (sentence,) = [one for one in sentences if "km/h" in one and one.count("km/h") >= 3]
     for speed in (0.8, 1.2):
@@ -104,7 +104,7 @@ def test_what_is_tuned_to_one_speed_is_doubted_first(tmp_path):
     doubts = []
     for number in range(12):
         study, results = found(tmp_path, half_car(number, 'indices = ["J1", "J3"]\nbaseline = "S1"'))
-        doubts.append(answers(results, study)[0].startswith("Not certain away from"))
+        doubts.append(conclusion_sentences(results, study)[0].startswith("Not certain away from"))
     assert any(doubts)
     assert not all(doubts)
 
@@ -118,7 +118,7 @@ def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulate
         there = at(study, 1.2)
         value = it.evaluate(there.design("S4"), it.RideComfort(there.road), it.StatisticalLinearisation()).value
         assert results["at_speeds.value"].sel(layout="S4", index="J1").values[2] == pytest.approx(value, rel=1e-12)
-        assert any("by linearisation" in sentence for sentence in answers(results, study))
+        assert any("by linearisation" in sentence for sentence in conclusion_sentences(results, study))
 
 
 @pytest.mark.parametrize(
@@ -134,7 +134,7 @@ def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulate
 def test_where_speed_only_scales_or_is_varied_nothing_is_said(text, tmp_path):
     study, results = found(tmp_path, text)
     assert "at_speeds.value" not in results or not np.isfinite(results["at_speeds.value"]).any()
-    assert not any("by exact norms" in one and "km/h" in one for one in answers(results, study))
+    assert not any("by exact norms" in one and "km/h" in one for one in conclusion_sentences(results, study))
 
 
 def test_over_a_sweep_the_answer_is_about_the_place_that_it_names(tmp_path):
@@ -144,7 +144,7 @@ def test_over_a_sweep_the_answer_is_about_the_place_that_it_names(tmp_path):
     there = at(study, 0.8).design("S3", 20e3)
     value = it.evaluate(there, it.RideComfort(at(study, 0.8).road), it.Norm()).value
     assert results["at_speeds.value"].sel(layout="S3", index="J1", k=20e3).values[0] == pytest.approx(value, rel=1e-12)
-    assert any("k = " in one and one.count("km/h") >= 3 for one in answers(results, study))
+    assert any("k = " in one and one.count("km/h") >= 3 for one in conclusion_sentences(results, study))
     assert Case("S3", "J1") in list(cases(study))
 
 
@@ -163,7 +163,7 @@ def test_values_that_their_method_doubts_are_told_so_first(tmp_path):
         message = results["at_speeds.message"].sel(layout=layout, index="J1").item()
         assert message.startswith("inaccurate") or not is_doubted
     assert any("friction" in message for message in results["at_speeds.message"].sel(index="J1").values)
-    assert answers(results, study)[0].startswith("Not certain at other speeds: inaccurate")
+    assert conclusion_sentences(results, study)[0].startswith("Not certain at other speeds: inaccurate")
 
 
 REASONS = {
@@ -194,7 +194,7 @@ def test_what_cannot_be_computed_at_another_speed_is_said(why, factor, tmp_path,
     own, _ = found(tmp_path, text)
     monkeypatch.setattr("inerter.files.study.speeds.evaluate", fails)
     study, results = found(tmp_path, text)
-    sentence = answers(results, study)[0]
+    sentence = conclusion_sentences(results, study)[0]
     assert sentence.startswith("Not certain away from ")
     assert f"could not be computed: at {3.6 * factor * own.road.speed:.4g} km/h" in sentence
     assert words in sentence

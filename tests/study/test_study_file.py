@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.errors import NetworkError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of
@@ -404,21 +404,29 @@ def sweep(text):
 
 BAD = {
     # quantities
-    "no unit": ([('"300 kg"', '"3000"')], "elements.b", ['"3000"', "no unit", "N/m, N s/m, kg, N, m", '"3000 N s/m"']),
-    "number": ([('"300 kg"', "300")], "elements.b", ["300", "without a unit"]),
+    "no unit": (
+        [('"300 kg"', '"3000"')],
+        "elements.b",
+        ['"3000"', "unit missing", "N/m, N s/m, kg, N, m", '"3000 N s/m"'],
+    ),
+    "number": ([('"300 kg"', "300")], "elements.b", ["300", "unit missing"]),
     "true": ([('"300 kg"', "true")], "elements.b", ["true", "not a quantity"]),
     "date": ([('"300 kg"', "2008-05-01")], "elements.b", ["2008-05-01", "not a quantity"]),
-    "huge number": ([('"300 kg"', "9" * 400)], "elements.b", ["without a unit"]),
-    "unknown unit": ([('"300 kg"', '"300 kq"')], "elements.b", ['"kq"', "not known"]),
-    "no element's unit": ([('"300 kg"', '"300 N m"')], "elements.b", ["no element", "inerter", "gap"]),
-    "wrong unit": ([('"181.75 kg"', '"181.75 N"')], "vehicle.sprung_mass", ["another kind", '"181.75 kg"']),
-    "speed in metres": ([('"25 m/s"', '"25 m"')], "road.speed", ["another kind", '"25 m/s"']),
-    "roughness in square metres": ([("5e-7 m^3/cycle", "5e-7 m^2")], "road.roughness", ["another kind", "m^3/cycle"]),
-    "vehicle number": ([('"25 kg"', "25")], "vehicle.unsprung_mass", ["without a unit", '"25 kg"']),
+    "huge number": ([('"300 kg"', "9" * 400)], "elements.b", ["unit missing"]),
+    "unknown unit": ([('"300 kg"', '"300 kq"')], "elements.b", ['"kq"', "unknown unit"]),
+    "no element's unit": ([('"300 kg"', '"300 N m"')], "elements.b", ["not the unit of any element", "inerter", "gap"]),
+    "wrong unit": ([('"181.75 kg"', '"181.75 N"')], "vehicle.sprung_mass", ["incompatible unit", '"181.75 kg"']),
+    "speed in metres": ([('"25 m/s"', '"25 m"')], "road.speed", ["incompatible unit", '"25 m/s"']),
+    "roughness in square metres": (
+        [("5e-7 m^3/cycle", "5e-7 m^2")],
+        "road.roughness",
+        ["incompatible unit", "m^3/cycle"],
+    ),
+    "vehicle number": ([('"25 kg"', "25")], "vehicle.unsprung_mass", ["unit missing", '"25 kg"']),
     "comma": ([('"300 kg"', '"300,5 kg"')], "elements.b", ["comma"]),
     "nan": ([('"300 kg"', '"nan kg"')], "elements.b", ["not a finite number"]),
     "infinite": ([('"181.75 kg"', '"inf kg"')], "vehicle.sprung_mass", ["not a finite number"]),
-    "bare nan": ([('"300 kg"', "nan")], "elements.b", ["without a unit"]),
+    "bare nan": ([('"300 kg"', "nan")], "elements.b", ["unit missing"]),
     "negative element": ([('"300 kg"', '"-300 kg"')], "elements.b", ["not positive", "leave the element out"]),
     "zero element": ([('"60 kN/m"', '"0 kN/m"')], "elements.k", ["not positive", "more than 0 N/m"]),
     "negative friction": ([('"300 kg"', '"-3 N"')], "elements.b", ["not positive"]),
@@ -498,7 +506,7 @@ BAD = {
         ["no method averages", '"expected-value"', '"approximate-linear"'],
     ),
     "no force": ([*FRICTION, asked("", "J5")], "study.force", ["missing", "expected-value", "S2", 'force = "1 kN"']),
-    "force unit": ([asked('force = "1 kN/m"', "J5")], "study.force", ["another kind", '"1 kN"']),
+    "force unit": ([asked('force = "1 kN/m"', "J5")], "study.force", ["incompatible unit", '"1 kN"']),
     "idle force": ([asked('force = "1 kN"')], "study.force", ["J5", "in indices", "no force"]),
     "gap": (
         [
@@ -545,7 +553,7 @@ BAD = {
     "conventions": ([(INDICES, INDICES + '\nconventions = "paper"')], "study.conventions", ['"paper2008"']),
     "seed": ([(INDICES, INDICES + "\nseed = -1")], "study.seed", ["got -1", "whole number"]),
     "seed text": ([(INDICES, INDICES + '\nseed = "1"')], "study.seed", ['got "1"', "without quotes"]),
-    "high pass unit": ([(INDICES, INDICES + '\nhigh_pass = "1 s"')], "study.high_pass", ["another kind", "rad/s"]),
+    "high pass unit": ([(INDICES, INDICES + '\nhigh_pass = "1 s"')], "study.high_pass", ["incompatible unit", "rad/s"]),
     "idle high pass": (
         [(INDICES, 'indices = ["J1"]\nhigh_pass = "1 Hz"')],
         "study.high_pass",
@@ -626,7 +634,7 @@ BAD = {
         'study.sweep."road.speed"',
         ["not positive"],
     ),
-    "sweep of a number": ([sweep('{ "road.speed" = [10, 20] }')], 'study.sweep."road.speed"', ["without a unit"]),
+    "sweep of a number": ([sweep('{ "road.speed" = [10, 20] }')], 'study.sweep."road.speed"', ["unit missing"]),
     "sweep in no unit": ([sweep('{ "road.speed" = ["1 xyz/s", "2 xyz/s"] }')], 'study.sweep."road.speed"', ['"xyz/s"']),
     "sweep of bounds beyond each other": (
         [sweep('{ "elements.c.to" = ["1 N s/m", "200 kN s/m"] }')],

@@ -26,7 +26,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study
-from inerter.report.answers import answers
+from inerter.report.conclusions import conclusion_sentences
 
 ROUGH = 'roughness = "5e-7 m^3/cycle"'
 CAR = """model = "full-car"
@@ -222,8 +222,8 @@ def test_a_warning_is_the_first_line_of_the_answer(load, tmp_path):
     study = load('profile = "road.csv"')
     case = next(iter(cases(study)))
     data = dataset(study, {case: run_case(study, case)})
-    assert answers(data, study)[0] == next(iter(study.line.warnings))
-    assert len(answers(data, study)) > 1
+    assert conclusion_sentences(data, study)[0] == next(iter(study.line.warnings))
+    assert len(conclusion_sentences(data, study)) > 1
 
 
 def test_a_line_through_few_bands_is_told_first(load, tmp_path):

@@ -17,7 +17,7 @@ from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
-from inerter.report.question import vehicle_rows
+from inerter.report.problem_statement import vehicle_rows
 
 ROOT = Path(__file__).parents[2]
 OURS = ("full-car", "seat", "absorber", "train")

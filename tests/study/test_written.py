@@ -9,7 +9,7 @@ from study_text import study_text
 
 from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import as_written, write_resolved
-from inerter.report.question import element_rows, vehicle_rows
+from inerter.report.problem_statement import element_rows, vehicle_rows
 
 UNITS = ["N/m", "kN/m", "N/mm", "MN/m", "lbf/in"]
 SPACE = "\N{NO-BREAK SPACE}"

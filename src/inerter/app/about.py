@@ -12,7 +12,7 @@ from typing import Any
 import inerter
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
-from inerter.fields import Field, fields_of, mounts_of
+from inerter.field_metadata import Field, fields_of, mounts_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.sections import CHOOSE

@@ -16,7 +16,7 @@ from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encode_json
 from inerter.errors import DesignError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import responses
@@ -29,10 +29,10 @@ from inerter.networks.elements.algebra import Network, Parallel
 from inerter.optimisation.budget import break_even as find_break_even
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
-from inerter.scatter.tolerance import tolerance_analysis
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import budget_method
+from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]

@@ -12,7 +12,7 @@ from inerter.errors import DesignError
 from inerter.files.study.study import Study
 from inerter.methods.composite_index import IndexLike
 from inerter.networks.elements import Free
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -65,7 +65,9 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     for key in values:
         if key not in study.elements and key not in units:
             known = ", ".join(dict.fromkeys([*study.elements, *units]))
-            raise DesignError(f"Got a value of {shown(key)}, which is not in [elements], where there are {known}.")
+            raise DesignError(
+                f"Got a value of {quote_value(key)}, which is not in [elements], where there are {known}."
+            )
     all_free = vehicle.free_values()
     chosen = {
         key: _number(key, values[key], units[key]) if key in values else _middle(free) for key, free in all_free.items()
@@ -82,7 +84,7 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
     if body.get("designs"):
         if other := [d.get("name") or d["layout"] for d in body["designs"] if d.get("study")]:
             raise DesignError(
-                f"Got {shown(other[0])}, a design of another study; such are only compared (panel compare)."
+                f"Got {quote_value(other[0])}, a design of another study; such are only compared (panel compare)."
             )
         return [design_of(study, d["layout"], d.get("values") or {}, d.get("name") or "") for d in body["designs"]]
     values = body.get("values") or {}
@@ -106,7 +108,9 @@ def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]
 def _number(name: str, given: str | float, unit: str) -> float:
     value = parse_quantity(given, unit) if isinstance(given, str) else float(given)
     if not isfinite(value) or value < 0.0:
-        raise DesignError(f"The value of {shown(name)} must be a positive number of {unit}, got {shown(given)}.")
+        raise DesignError(
+            f"The value of {quote_value(name)} must be a positive number of {unit}, got {quote_value(given)}."
+        )
     return value
 
 

@@ -15,7 +15,7 @@ from inerter.files.common.toml import tables_of
 from inerter.files.study.loading import WHAT, study_of
 from inerter.files.study.study import Study
 from inerter.report.json_data import json_data
-from inerter.units import shown
+from inerter.units import quote_value
 
 Document = Mapping[str, Any]
 _Stamp = tuple[int, int] | None
@@ -69,7 +69,9 @@ def _stamp(document: Document) -> _Stamp:
     if Path(name).name != name or not Path(name).is_file():
         fault = "the page reads only profiles that lie in the folder in which inerter serve was started"
         hint = "Start it there, or replace the profile by the roughness that inerter check reports."
-        raise refusal(PATH, [at(("road", "profile"), got=shown(name), fault=fault, expected="one of them", hint=hint)])
+        raise refusal(
+            PATH, [at(("road", "profile"), got=quote_value(name), fault=fault, expected="one of them", hint=hint)]
+        )
     there = Path(name).stat()
     return there.st_mtime_ns, there.st_size
 

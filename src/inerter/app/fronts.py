@@ -9,13 +9,13 @@ from typing import Any
 from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
+from inerter.atomic_io import write_text
 from inerter.errors import Status, StudyError
 from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of, csv_text
 from inerter.files.study.study import Study
 from inerter.methods.registry import methods_that, searches
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
-from inerter.writing import write_text
 
 _POINTS = 15
 

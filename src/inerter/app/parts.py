@@ -10,7 +10,7 @@ from inerter.files.common.entries import expression
 from inerter.files.common.problem import EntryError
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import ExpressionError, ExpressionPart, parse_expression
-from inerter.units import format_quantity, is_unit, parse_quantity, shown
+from inerter.units import format_quantity, is_unit, parse_quantity, quote_value
 
 _JOINED = {"|": "parallel", "-": "series"}
 
@@ -48,7 +48,7 @@ def quantity(asked: Mapping[str, Any]) -> dict[str, Any]:
             return {"value": value, "unit": unit, "text": format_quantity(float(str(value)), str(unit), digits or 4)}
         if unit is not None:
             if not is_unit(unit):
-                return {"sentence": f"{shown(unit)} is not known as a unit."}
+                return {"sentence": f"{quote_value(unit)} is not known as a unit."}
             found, more = parse_quantity(text, unit), {}
         else:
             unit, found = parse_element(text)

@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.app.answers import answer_panel
 from inerter.errors import StudyError
-from inerter.units import headed
+from inerter.units import label_with_unit
 
 Rows = Iterable[list[Any]]
 
@@ -50,7 +50,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
     )
     names = list(dict.fromkeys(chain.from_iterable(design["values"] for design in answer["designs"])))
     units = {name: told["unit"] for design in answer["designs"] for name, told in design["values"].items()}
-    yield ["design", "layout", *said, *(headed(name, units[name]) for name in names)]
+    yield ["design", "layout", *said, *(label_with_unit(name, units[name]) for name in names)]
     for design in answer["designs"]:
         values = [design["values"].get(name, {}).get("value") for name in names]
         for result in design["results"]:
@@ -59,7 +59,7 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
 
 def _response(answer: Mapping[str, Any]) -> Rows:
     curves = answer["curves"]
-    yield ["frequency [Hz]", *(headed(f"{c['name']} {c['index']} {c['label']}", c["unit"]) for c in curves)]
+    yield ["frequency [Hz]", *(label_with_unit(f"{c['name']} {c['index']} {c['label']}", c["unit"]) for c in curves)]
     yield from (
         list(row) for row in zip(answer["frequency"].tolist(), *(c["gain"].tolist() for c in curves), strict=True)
     )
@@ -75,7 +75,7 @@ def _history(answer: Mapping[str, Any]) -> Rows:
 
 def _tolerance(answer: Mapping[str, Any]) -> Rows:
     """Rows on the distribution of the index, then first- and total-order Sobol' indices of each value."""
-    yield [headed(answer["index"], answer["unit"]), "value"]
+    yield [label_with_unit(answer["index"], answer["unit"]), "value"]
     yield ["status", ": ".join(filter(None, (answer["status"], answer["message"])))]
     for name in ("nominal", "mean", "standard_deviation"):
         yield [name, answer[name]]

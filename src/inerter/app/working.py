@@ -13,8 +13,8 @@ from typing import Any
 from inerter.app.calls import run_call
 from inerter.app.kinds import KINDS, JobStopped
 from inerter.app.wire import decode_json, encode_json
+from inerter.atomic_io import atomic_write
 from inerter.work.progress import ProgressStep, progress
-from inerter.writing import whole
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
 _OFTEN = 0.05  # seconds between two lines about progress
@@ -65,7 +65,7 @@ def work(folder: str) -> dict[str, Any]:
         return {"event": "stopped"}
     if status != 200:
         return {"event": "failed", **found}
-    with whole(place / RESULT) as draft:
+    with atomic_write(place / RESULT) as draft:
         draft.write_bytes(found)
     return {"event": "done"}
 

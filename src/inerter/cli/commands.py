@@ -28,7 +28,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults, by_task, tasks
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
-from inerter.report.answers import answers
+from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, summary_table, wrap_text
@@ -86,7 +86,7 @@ def run(
             print("\n".join(task.lines(TaskResults(loaded, result.data, own), WIDTH)))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
-        told = answers(result.data, loaded, result.answers)
+        told = conclusion_sentences(result.data, loaded, result.answers)
         print("\n".join(["", *(line for text in told for line in wrap_text(text, subsequent_indent="  "))]))
     return _judge(result)
 

@@ -18,7 +18,7 @@ from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import METHODS
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.registry import VEHICLES
 
 _WIDTH = 80
@@ -60,11 +60,11 @@ def _words() -> dict[str, Mapping[str, Any]]:
 def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     other = kind_with(wanted.partition(".")[0])
     if other is not None:
-        return f"{shown(wanted)} is a key of {other.plural}, for: inerter {other.command}."
+        return f"{quote_value(wanted)} is a key of {other.plural}, for: inerter {other.command}."
     known = (
         [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
-    return f"Unknown key {shown(wanted)} of study files.{nearest(wanted, known)} All keys: inerter explain"
+    return f"Unknown key {quote_value(wanted)} of study files.{nearest(wanted, known)} All keys: inerter explain"
 
 
 def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:

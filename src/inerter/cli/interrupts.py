@@ -75,11 +75,11 @@ def _end_soon() -> None:
     time.sleep(_PATIENCE)
     from multiprocessing import active_children
 
-    from inerter.writing import sweep
+    from inerter.atomic_io import remove_temporary_folders
 
     for process in active_children():
         process.kill()
-    sweep()
+    remove_temporary_folders()
     tell(_kept[-1]() if _kept else "")
     os._exit(INTERRUPTED)
 

@@ -17,13 +17,13 @@ from cyclopts import App, CycloptsError, Parameter
 
 from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
+from inerter.atomic_io import remove_temporary_folders
 from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem
 from inerter.errors import InerterError, WorkError
-from inerter.writing import sweep
 
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
@@ -315,7 +315,7 @@ def main() -> int:
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     if came():
-        sweep()
+        remove_temporary_folders()
         os._exit(code)  # compiled code that was cut short may not survive the interpreter's own end
     return code
 

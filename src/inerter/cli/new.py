@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from inerter.atomic_io import write_text
 from inerter.errors import StudyError
 from inerter.files.study.sections import judged_models
 from inerter.files.study.starting import starting_text
-from inerter.writing import write_text
 
 _STDOUT = Path("-")
 

@@ -12,7 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from inerter.errors import Status, StatusKind
-from inerter.units import digits_at, format_number, format_quantity, headed, is_prefixed, parse_quantity, places_borne
+from inerter.units import (
+    decimal_places,
+    digits_at,
+    format_number,
+    format_quantity,
+    is_prefixed,
+    label_with_unit,
+    parse_quantity,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -240,7 +248,7 @@ def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.
 
 def digits_of(value: float, bound: float = np.nan) -> int:
     """Significant digits, four at most, of a value with a relative error `bound`."""
-    return digits_at(value, places_borne(value, bound * abs(value), digits=_DIGITS))
+    return digits_at(value, decimal_places(value, bound * abs(value), digits=_DIGITS))
 
 
 def decimals_of(value: float, error: float, bound: float, digits: int) -> int | None:
@@ -248,7 +256,7 @@ def decimals_of(value: float, error: float, bound: float, digits: int) -> int | 
     if not np.isfinite(value):
         return None
     shown = error if shows_error(value, error, bound) else np.nan
-    return places_borne(value, bound * abs(value), shown, digits)
+    return decimal_places(value, bound * abs(value), shown, digits)
 
 
 def plain_number(value: float, bound: float = np.nan) -> str:
@@ -267,7 +275,7 @@ def format_uncertain(value: float, error: float, bound: float = np.nan, sign: st
     """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always."""
     if not _SMALLEST < error < _LARGEST:
         return f"{value:{sign}.4g} +- {error:.2g}"
-    decimals = places_borne(value, bound * abs(value), error)
+    decimals = decimal_places(value, bound * abs(value), error)
     shown = max(decimals, 0)
     return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
 
@@ -330,5 +338,5 @@ def scale(values: ArrayLike, unit: str) -> Scale:
 
 def axis_label(what: str, unit: str) -> str:
     """Label of an axis: quantity and unit in brackets; on two lines if long."""
-    text = headed(what, typeset(unit).replace(" ", _NO_BREAK_SPACE))
+    text = label_with_unit(what, typeset(unit).replace(" ", _NO_BREAK_SPACE))
     return text if len(text) <= _LONGEST_LABEL else fill(text, _LONGEST_LABEL, break_long_words=False)

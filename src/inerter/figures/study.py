@@ -96,7 +96,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
                 f"response-{index}",
                 f"{linear} of the designs that are best for {title_with_name(index_title(results, index), index)}."
                 + _still(results, index)
-                + _nearest(results.sel(index=index), "Of a layout that does not keep the limits, that"),
+                + _nearest(results.sel(index=index), "Of a layout without a feasible design, that"),
                 partial(_response, results, index),
             )
 
@@ -124,7 +124,7 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
                 f"Parameters that are best for {title} for each value of {element}."
                 + (" Open markers: at a bound." if markers_shown(results) and _any(at_bound != "") else "")
                 + (" Bands: equally good designs." if _any(flat) else "")
-                + _nearest(here, "Where no design keeps the limits, those"),
+                + _nearest(here, "Without a feasible design, those"),
                 partial(_parameters, results, index),
             )
 
@@ -154,7 +154,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
                     f"Best {parameter} for {title}, over {words}."
                     + (" Open circles: at a bound." if _any(here["at_bound"].sel(parameter=parameter) != "") else "")
                     + _limits(here, "Black dots", "")
-                    + _nearest(here, "Where no design keeps the limits, that"),
+                    + _nearest(here, "Without a feasible design, that"),
                     partial(_parameter_map, results, index, parameter),
                 )
 
@@ -162,14 +162,14 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
 def _limits(here: xr.Dataset, held: str, missed: str) -> str:
     """Sentences on the markers of designs with active constraints and of infeasible ones, if any."""
     told = [
-        (held, "a limit holds the design back", held_back(here)),
-        (missed, "no design keeps the limits", infeasible(here)),
+        (held, "active constraint", held_back(here)),
+        (missed, "no feasible design", infeasible(here)),
     ]
     return "".join(f" {mark}: {meaning}." for mark, meaning, where in told if mark and _any(where))
 
 
 def _nearest(here: xr.Dataset, what: str) -> str:
-    return f" {what} of the design nearest to them." if _any(infeasible(here)) else ""
+    return f" {what} of the closest design." if _any(infeasible(here)) else ""
 
 
 def _cut(results: xr.Dataset) -> xr.DataArray:

@@ -20,8 +20,8 @@ from matplotlib.legend import Legend
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, ScalarFormatter
 from numpy.typing import ArrayLike
 
+from inerter.atomic_io import atomic_write
 from inerter.figures.labels import typeset
-from inerter.writing import whole
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
@@ -201,6 +201,6 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
             engine.execute(figure)  # once for all files
             figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:
-            with whole(file) as draft:
+            with atomic_write(file) as draft:
                 figure.savefig(draft, dpi=_DPI, metadata=_UNDATED[file.suffix])
     return files

@@ -102,10 +102,10 @@ def _widening_table(draws: int) -> Matrix:
         likelihood = chi2.logpdf(freedom * ratio / true, freedom) - np.log(true)
         weight = prior * np.exp(likelihood - likelihood.max())
 
-        def missed(factor: float) -> float:
+        def excess_miss_probability(factor: float) -> float:
             return float(2.0 * weight @ norm.sf(factor * quantile / np.sqrt(true)) / weight.sum() - (1.0 - LEVEL))
 
-        return float(brentq(missed, 0.5, 1e4) ** 2)
+        return float(brentq(excess_miss_probability, 0.5, 1e4) ** 2)
 
     return np.array([widening(float(ratio)) / max(float(ratio), 1.0) for ratio in _RATIOS])
 

@@ -19,7 +19,7 @@ from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit
 from inerter.identification.identify import solution_of
 from inerter.identification.models import MODELS, VISCOUS
-from inerter.identification.noise import Whitening, yardstick
+from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
 from inerter.identification.solving import SolvedFit, part
 from inerter.kernels.prepare import prepare_on
@@ -162,7 +162,7 @@ class _Selection:
             candidates=tuple(replace(c, status=self.fits[c.name].status) for c in ranked),
             device=with_values(Rig(self.models[name]).device, values),
             status=_status(fit),
-            findings=(_reason(ranked, name), *stuck, *self.failed),
+            findings=(_selection_finding(ranked, name), *stuck, *self.failed),
         )
 
     def _add_solution(self, name: str, solution: SolvedFit) -> None:
@@ -173,7 +173,9 @@ class _Selection:
         """Refit candidates that have not converged near the fit of the related candidate that shows it."""
         for name, relative in _not_converged(ranking(self.fits), self.fits):
             with suppress(InerterError):
-                near = solution_of(self.records, _near(self.models[name], self.fits[relative]), self.asked, None)
+                near = solution_of(
+                    self.records, _bounded_near(self.models[name], self.fits[relative]), self.asked, None
+                )
                 other = fit_of(near, explain=False)
                 fits = {relative: self.fits[relative], name: self.fits[name], _AGAIN: other}
                 losses = {c.name: c.loss for c in ranking(fits)}
@@ -196,7 +198,7 @@ def ranking(fits: Mapping[str, Fit]) -> tuple[Candidate, ...]:
     ]
     if sum(int(mask.sum()) for mask in masks) < 2 * _BLOCKS:
         raise IdentificationError("check: too few validation samples to compare candidates. Increase `check`.")
-    left = {name: _spread(fit, masks) for name, fit in fits.items()}
+    left = {name: _relative_residual(fit, masks) for name, fit in fits.items()}
     whitenings = _whitenings(fits[min(left, key=lambda name: left[name])], masks)
     losses = {name: _losses(fit, whitenings) for name, fit in fits.items()}
     mean = {name: float(loss.mean()) for name, loss in losses.items()}
@@ -229,7 +231,7 @@ def _models_by_name(models: Mapping[str, Network] | Iterable[str] | None) -> dic
     return chosen
 
 
-def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
+def _relative_residual(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
     """R.m.s. residual on the validation data, relative to the force of each record."""
     shares = [
         np.mean(c.residual[mask] ** 2) / np.var(c.record.force)
@@ -241,7 +243,7 @@ def _spread(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> float:
 
 def _whitenings(fit: Fit, masks: Sequence[NDArray[np.bool_]]) -> list[Whitening]:
     return [
-        yardstick(c.draws, c.experiment.noise, mask)
+        noise_whitening(c.draws, c.experiment.noise, mask)
         for c, mask in zip(fit.comparisons, masks, strict=True)
         if mask.any()
     ]
@@ -261,7 +263,7 @@ def _status(fit: Fit) -> Status:
     return fit.status
 
 
-def _reason(ranked: Sequence[Candidate], name: str) -> Finding:
+def _selection_finding(ranked: Sequence[Candidate], name: str) -> Finding:
     """Finding with the reason for the selection."""
     chosen, best = next(c for c in ranked if c.name == name), ranked[0]
     others = [c for c in ranked if not c.as_good]
@@ -286,20 +288,20 @@ def _not_converged(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iter
     for c in ranked:
         mine = set(fits[c.name].parameters)
         part = next((p.name for p in ranked if set(fits[p.name].parameters) < mine), None)
-        if part is not None and _worse(ranked, c.name, part):
+        if part is not None and _is_worse(ranked, c.name, part):
             yield c.name, part
         whole = fits[best.name]
         idle = not any(whole.identifiable[name] for name in set(whole.parameters) - mine)
-        if mine < set(whole.parameters) and idle and _worse(ranked, c.name, best.name):
+        if mine < set(whole.parameters) and idle and _is_worse(ranked, c.name, best.name):
             yield c.name, best.name
 
 
-def _worse(ranked: Sequence[Candidate], one: str, other: str) -> bool:
+def _is_worse(ranked: Sequence[Candidate], one: str, other: str) -> bool:
     losses = {c.name: c.loss for c in ranked}
     return losses[one] > (1.0 + MOST) * losses[other]
 
 
-def _near(model: Network, fit: Fit) -> Network:
+def _bounded_near(model: Network, fit: Fit) -> Network:
     """The model with its common values with a fit bounded to a range about them."""
 
     def bound(element: Element) -> Network:

@@ -18,7 +18,7 @@ from inerter.identification.intervals import BestFit
 from inerter.identification.localising import localisation_of
 from inerter.identification.models import without_mount
 from inerter.identification.options import FitOptions
-from inerter.identification.planning import advice
+from inerter.identification.planning import recommended_experiments
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit
 from inerter.identification.sticking import is_unobservable
@@ -76,7 +76,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
     planned = [] if doubt is not None else list(suggestions(space, parameters, identifiable, comparisons))
     if doubt is None and explain:
-        planned += advice(solution, parameters)
+        planned += recommended_experiments(solution, parameters)
     return replace(
         draft,
         parameters=parameters,
@@ -91,26 +91,26 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
 def find_doubt(fit: Fit) -> Finding | None:
     """Reason why the estimates are unreliable, with the most likely cause; None if they are reliable."""
     lost = sum(float(saturated_samples(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
-    best = _likeliest(fit)
+    best = _main_cause(fit)
     if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)
         return Finding(FitFinding.UNPREDICTABLE, "warning", numbers={"changed": changed})
     if fit.misfit.is_noise_limited and best is not None:
         return Finding(FitFinding.SUSPECTED, "warning", numbers={"likeliest": best})
     if not fit.misfit.is_noise_limited or fit.variance_explained < ENOUGH:
-        return _misfit(fit, best)
+        return _misfit_finding(fit, best)
     if lost > _SATURATED:
         return Finding(FitFinding.SATURATED, "warning", numbers={"share": lost})
     return None
 
 
-def _likeliest(fit: Fit) -> Explanation | None:
+def _main_cause(fit: Fit) -> Explanation | None:
     """The best explanation, if it explains most of the misfit."""
     best = fit.explanations[0] if fit.explanations else None
     return best if best is not None and best.explained >= _MOST else None
 
 
-def _misfit(fit: Fit, best: Explanation | None) -> Finding:
+def _misfit_finding(fit: Fit, best: Explanation | None) -> Finding:
     """Finding of a wrong model or sensor."""
     explained = 100.0 * max(fit.variance_explained, 0.0) if fit.variance_explained < ENOUGH else None
     as_good = [e for e in fit.explanations[1:] if e.misfit.is_noise_limited][:_OTHERS]
@@ -154,12 +154,12 @@ def _withhold(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Paramet
     if fit.predicted < ENOUGH or not right or any(p.name not in e.estimates for e in right):
         kind = Verdict.UNPREDICTABLE if fit.predicted < ENOUGH else Verdict.WITHHELD
         return replace(none, interval=(math.nan, math.nan)), replace(verdict, verdict=kind)
-    ends = [end for e in right for end in _ends(*e.estimates[p.name])]
+    ends = [end for e in right for end in _interval_ends(*e.estimates[p.name])]
     interval = min(p.interval[0], *ends), max(p.interval[1], *ends)
     return replace(none, interval=interval), replace(verdict, verdict=Verdict.CONDITIONAL, interval=interval)
 
 
-def _ends(value: float, error: float) -> tuple[float, float]:
+def _interval_ends(value: float, error: float) -> tuple[float, float]:
     return value - _ERRORS * error, value + _ERRORS * error
 
 

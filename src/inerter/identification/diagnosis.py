@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
-from inerter.identification.hypotheses import Hypothesis, Values, sensors
+from inerter.identification.friction_models import law_hypotheses
+from inerter.identification.hypotheses import Hypothesis, Values, sensor_hypotheses
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
-from inerter.identification.laws import laws
 from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.possible_causes import Suspect
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import faulty_samples, recording_faults
-from inerter.identification.residual_tests import Judge
+from inerter.identification.residual_tests import NoiseReference
 from inerter.identification.search import improve
 from inerter.networks.elements import Free
 from inerter.records.dropouts import find_dropouts, insert_samples
@@ -80,7 +80,11 @@ class Attempt:
 
 
 def explanations(
-    problem: FitProblem, optimum: BestFit, by: Judge, before: NormalisedResidual, places: Sequence[Localisation] = ()
+    problem: FitProblem,
+    optimum: BestFit,
+    by: NoiseReference,
+    before: NormalisedResidual,
+    places: Sequence[Localisation] = (),
 ) -> list[Explanation]:
     """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
@@ -121,8 +125,8 @@ def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     peak = max(float(np.abs(e.record.force[e.kept]).max()) for e in problem.experiments)
-    found = [*sensors(problem.offset), *recording_faults(problem, places)]
-    found += [] if chain is None else laws(chain, fastest, stroke, peak)
+    found = [*sensor_hypotheses(problem.offset), *recording_faults(problem, places)]
+    found += [] if chain is None else law_hypotheses(chain, fastest, stroke, peak)
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
 
@@ -165,7 +169,7 @@ def _with_hypothesis(problem: FitProblem, hypothesis: Hypothesis) -> FitProblem:
 
 
 def _fit_roughly(
-    causes: Causes, by: Judge, optimum: BestFit, slopes: Matrix, problem: FitProblem, number: int
+    causes: Causes, by: NoiseReference, optimum: BestFit, slopes: Matrix, problem: FitProblem, number: int
 ) -> Attempt:
     """The best of a few steps from each start of a hypothesis, and further ones with derivatives at its end.
 
@@ -178,7 +182,7 @@ def _fit_roughly(
     shared = [n for n in space.names if n in names and hypothesis.device is None]
     own = [i for i, n in enumerate(space.names) if n not in shared]
     found = []
-    for point, steps in _starts(problem, optimum, other, hypothesis):
+    for point, steps in _starting_points(problem, optimum, other, hypothesis):
         jacobian = np.zeros((slopes.shape[0], len(space.names)))
         jacobian[:, [i for i, n in enumerate(space.names) if n in shared]] = slopes[:, [names.index(n) for n in shared]]
         if own:
@@ -191,7 +195,7 @@ def _fit_roughly(
     return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes.before))
 
 
-def _fit_fully(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+def _fit_fully(causes: Causes, by: NoiseReference, problem: FitProblem, attempt: Attempt) -> Attempt:
     """The attempt fitted to convergence."""
     hypothesis = causes.of(problem)[attempt.number]
     other = _with_hypothesis(problem, hypothesis)
@@ -201,7 +205,7 @@ def _fit_fully(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt)
     )
 
 
-def _refit_from_stiff_shaft(causes: Causes, by: Judge, problem: FitProblem, attempt: Attempt) -> Attempt:
+def _refit_from_stiff_shaft(causes: Causes, by: NoiseReference, problem: FitProblem, attempt: Attempt) -> Attempt:
     """The attempt refitted from a stiff shaft, first over the first part of the records; or the attempt if better."""
     other = _with_hypothesis(problem, causes.of(problem)[attempt.number])
     start = _with_stiff_shaft(other, attempt.point)
@@ -232,7 +236,7 @@ def _with_stiff_shaft(problem: FitProblem, point: Matrix) -> Matrix | None:
     return problem.space.coordinates_of(values)
 
 
-def _starts(
+def _starting_points(
     problem: FitProblem, optimum: BestFit, other: FitProblem, hypothesis: Hypothesis
 ) -> Iterator[tuple[Matrix, Matrix]]:
     """Starting points of a fit, and the steps of differences there."""
@@ -240,21 +244,24 @@ def _starts(
     widths = dict(zip(problem.space.names, steps_of(optimum), strict=True))
     sizes = {u.name: u.size for u in hypothesis.unknowns}
     zero = {u.name: _LITTLE * u.size if u.lower >= 0.0 else 0.0 for u in hypothesis.unknowns}
-    begun = {other: known[name] for name, other in hypothesis.alike.items()}
-    alike = {other: widths[name] for name, other in hypothesis.alike.items()}
+    begun = {other: known[name] for name, other in hypothesis.counterparts.items()}
+    equal = {other: widths[name] for name, other in hypothesis.counterparts.items()}
     for start in hypothesis.starts:
         seen = {**sizes, **start}
-        steps = [widths.get(n) or alike.get(n) or _step(space, i, seen.get(n, 1.0)) for i, n in enumerate(space.names)]
+        steps = [
+            widths.get(n) or equal.get(n) or _difference_step(space, i, seen.get(n, 1.0))
+            for i, n in enumerate(space.names)
+        ]
         yield space.coordinates_of({**known, **zero, **begun, **start}), np.array(steps)
 
 
-def _step(space: Space, i: int, size: float) -> float:
+def _difference_step(space: Space, i: int, size: float) -> float:
     """Step of a coordinate for differences, from its detectable size."""
     return _STEP if space.lower[i] > 0.0 else _STEP * abs(size) / float(space.upper[i])
 
 
 def _explanation(
-    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: Judge, before: NormalisedResidual
+    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: NoiseReference, before: NormalisedResidual
 ) -> Explanation:
     space, point = problem.space, fit.point
     after = by.misfit(problem, point, hypothesis.slow)

@@ -30,7 +30,7 @@ _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts
 _AT_REST = 0.02  # of the largest velocity
 
 
-class Tally:
+class SimulationCount:
     """Number of simulations of a record, counted over all threads."""
 
     def __init__(self) -> None:
@@ -42,9 +42,9 @@ class Tally:
         with self._lock:
             self.total += count
 
-    def __reduce__(self) -> tuple[type[Tally], tuple[()]]:
+    def __reduce__(self) -> tuple[type[SimulationCount], tuple[()]]:
         """Pickle as an empty count: each process counts separately."""
-        return Tally, ()
+        return SimulationCount, ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,7 @@ class Experiment:
     noise: float  # [N] r.m.s. of the noise of the force
     information: Matrix  # (samples,) cumulative share of the squared force of all samples kept
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
-    tally: Tally = field(default_factory=Tally)
+    tally: SimulationCount = field(default_factory=SimulationCount)
 
     def __getstate__(self) -> dict[str, object]:
         """State for another process, without tables, which are faster to compute than to send."""
@@ -101,7 +101,7 @@ class Experiment:
     def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
         """Load cell force [N] of this device at the first `samples` samples; None if the simulation fails."""
         run = self.run(system, samples)
-        return None if run is None else run[reading_of(self.record)]
+        return None if run is None else run[load_cell_output(self.record)]
 
     def run(self, system: PiecewiseSystem, samples: int | None = None, moving: bool = False) -> Trajectory | None:
         """The motion of the device, from rest or (`moving`) moving with the table; None if the simulation fails."""
@@ -111,7 +111,7 @@ class Experiment:
             state = _consistent_velocities(system, state, self.table.slope[0])
         count = self.size if samples is None else min(samples, self.size)
         integration = event_driven.start(system, _truncate(self.table, count - 1), state)
-        parts = parts_for(integration)
+        parts = steps_per_interval(integration)
         if parts > 1:
             integration = event_driven.start(system, _truncate(self.table_in(parts), (count - 1) * parts), state)
         integration.advance(integration.table.time.size - 1)
@@ -184,7 +184,7 @@ def _information(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:
     return np.asarray(total / total[-1])
 
 
-def reading_of(record: Record) -> str:
+def load_cell_output(record: Record) -> str:
     """The output of the rig that the load cell of a record reads."""
     return "device_force" if record.force_bandwidth is None else "reading_force"
 
@@ -199,12 +199,12 @@ def transient_samples(experiment: Experiment, system: PiecewiseSystem, level: fl
     runs = [experiment.run(system, moving=moving) for moving in (False, True)]
     if runs[0] is None or runs[1] is None:
         return 0
-    name = reading_of(experiment.record)
+    name = load_cell_output(experiment.record)
     map_problems = np.abs(runs[0][name] - runs[1][name]) > level
     return int(np.flatnonzero(map_problems)[-1]) + 1 if map_problems.any() else 0
 
 
-def parts_for(integration: event_driven.Integration) -> int:
+def steps_per_interval(integration: event_driven.Integration) -> int:
     """Number of steps per interval, so that a fast device is resolved by whole steps.
 
     Otherwise each interval would be subdivided by the integrator, which takes a hundred times as long.

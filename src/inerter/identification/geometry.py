@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
+from inerter.validation import check_positive, is_number
 
 
 def ball_screw_inertance(flywheel_inertia: float, pitch: float) -> float:

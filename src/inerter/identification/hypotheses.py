@@ -63,7 +63,7 @@ class Hypothesis:
     details: Callable[[Values], Details] = _no_details  # the numbers of its sentence
     slow: int | None = None  # degree of the polynomial over time that is free in each part of a record
     starts: tuple[Values, ...] = ({},)  # starting values; default: the sizes, or zero if it may be negative
-    alike: Mapping[str, str] = field(default_factory=dict)  # unknowns that start at these values of the model
+    counterparts: Mapping[str, str] = field(default_factory=dict)  # unknowns that start at these values of the model
 
 
 def gain() -> Hypothesis:
@@ -145,12 +145,12 @@ def fixture() -> Hypothesis:
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         acceleration = e.motion.acceleration[: force.size]
-        return np.asarray(force + values[name] * through_cell(acceleration, e))
+        return np.asarray(force + values[name] * read_by_load_cell(acceleration, e))
 
     return Hypothesis(Suspect.FIXTURE_MASS, (unknown,), read=read, details=lambda values: {"mass": values[name]})
 
 
-def sensors(offset: bool) -> list[Hypothesis]:
+def sensor_hypotheses(offset: bool) -> list[Hypothesis]:
     """Hypotheses on the sensors, with an offset of the load cell if that is not free."""
     found = [
         delay(LONGEST_DELAY),
@@ -183,7 +183,7 @@ def filter_force(values: Matrix, interval: float, time: float) -> Matrix:
     return np.asarray(lfilter(b, a, values))
 
 
-def through_cell(force: Matrix, experiment: Experiment) -> Matrix:
+def read_by_load_cell(force: Matrix, experiment: Experiment) -> Matrix:
     """The force read by the load cell of the record, if its bandwidth is known."""
     bandwidth = experiment.record.force_bandwidth
     return force if bandwidth is None else filter_force(force, experiment.record.interval, 0.5 / math.pi / bandwidth)

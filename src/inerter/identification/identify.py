@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from typing import Unpack
 
-from inerter.checks import is_number
 from inerter.errors import IdentificationError
 from inerter.identification import hypotheses
 from inerter.identification.arguments import checked_records, model_of
@@ -23,6 +22,7 @@ from inerter.networks.elements.roles import LinearRole
 from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
+from inerter.validation import is_number
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 

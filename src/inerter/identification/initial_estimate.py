@@ -33,7 +33,7 @@ _SLIGHT = 0.3  # share of the apparent power, below which the sign of the power 
 _WELL, _POORLY = 0.04, 0.6  # relative half-widths of the search ranges
 
 
-_PLACES = {  # in a chain, of what is beside an inertia or not
+_PLACES = {  # in a chain: in parallel with an inertia or not
     (LinearRole.MASS, True): "inerter",
     (LinearRole.OPEN, True): "friction",
     (LinearRole.DAMPING, True): "drag",
@@ -57,8 +57,8 @@ class Chain:
     def network(self) -> Network:
         """The chain as a device."""
         shaft, turning = (self.spring, self.damper), (self.inerter, self.friction, self.drag)
-        beside = [[e for e in part if e is not None] for part in (shaft, (self.gap,), turning)]
-        return reduce(sub, (reduce(or_, elements) for elements in beside if elements))
+        parallel = [[e for e in part if e is not None] for part in (shaft, (self.gap,), turning)]
+        return reduce(sub, (reduce(or_, elements) for elements in parallel if elements))
 
 
 def chain_of(device: Network) -> Chain | None:

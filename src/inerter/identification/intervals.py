@@ -158,7 +158,9 @@ def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None 
     """The profile of every coordinate, or of those `among` them."""
     coordinates = list(range(optimum.point.size)) if among is None else among
     tasks = [(problem, (i, sign)) for i in coordinates for sign in (-1, 1)]
-    found = map_problems(partial(_walk, optimum), tasks, over_threads, counter("sides of intervals", len(tasks)))
+    found = map_problems(
+        partial(_profile_side, optimum), tasks, over_threads, counter("sides of intervals", len(tasks))
+    )
     result = []
     for n, i in enumerate(coordinates):
         (below, points, better), (above, more, other) = found[2 * n], found[2 * n + 1]
@@ -167,7 +169,7 @@ def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None 
     return result
 
 
-def _walk(
+def _profile_side(
     optimum: BestFit, problem: FitProblem, way: tuple[int, int]
 ) -> tuple[Side, list[tuple[float, float]], tuple[float, Matrix] | None]:
     """Walk from the optimum along a coordinate, up or down, until the rise of the cost reaches its threshold."""
@@ -183,7 +185,7 @@ def _walk(
     reach = float(np.sqrt(2.0 * threshold / max(_stiffness(optimum, i), 1e-300)))
     away = min(max(reach, 1e-9), room)
     for _ in range(_SEARCHING):
-        cost, point = follow(problem, optimum, i, start + sign * away)
+        cost, point = constrained_optimum(problem, optimum, i, start + sign * away)
         root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
         points.append((start + sign * away, max(root, 0.0) ** 2))
         if root < -0.3:
@@ -210,7 +212,7 @@ def _stiffness(optimum: BestFit, i: int) -> float:
     return float(optimum.variance / max(optimum.covariance[i, i], 1e-300))
 
 
-def follow(problem: FitProblem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
+def constrained_optimum(problem: FitProblem, optimum: BestFit, i: int, value: float) -> tuple[float, Matrix]:
     """The least cost with coordinate i at `value`, by Gauss-Newton steps with the derivatives of the optimum."""
     lower, upper = problem.space.bounds
     others = np.array([j for j in range(optimum.point.size) if j != i], dtype=int)

@@ -21,7 +21,7 @@ from scipy.signal import get_window
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.misfit_patterns import FRICTION, TRAVEL, MisfitPattern
 from inerter.records.finding import Finding
-from inerter.records.gaps import runs
+from inerter.records.gaps import true_runs
 
 Matrix = NDArray[np.float64]
 SURE = 0.02  # p-value, of all tests together, below which a pattern is significant
@@ -76,34 +76,34 @@ class LocalisedSamples:
 def localisation_of(c: RecordFit, seed: int = 0) -> Localisation:
     """Patterns in the residual of one record, those that explain most of it first."""
     random = np.random.default_rng([seed, 7])
-    s = _samples(c)
+    s = _localised_samples(c)
     inside = _winsorise(s.residual)
     bounded = replace(s, residual=inside - float(inside.mean()))
     found = [
-        *_instants(s),
-        *_over_time(bounded, random),
+        *_outlier_instants(s),
+        *_level_changes(bounded, random),
         *_coefficients(bounded, random),
         *_dependences(bounded, random),
-        *_channels(bounded, random),
+        *_channel_dependences(bounded, random),
         *_spectral(s, c),
     ]
-    chosen = [f for f in found if _chance(f) * s.tests < SURE and f.numbers["share"] > NOTICED]
+    chosen = [f for f in found if _p_value_of(f) * s.tests < SURE and f.numbers["share"] > NOTICED]
     if not chosen:  # the largest, reported as not significant
-        chosen = [f for f in found if _chance(f) < _MAYBE and f.numbers["share"] > _MUCH]
+        chosen = [f for f in found if _p_value_of(f) < _MAYBE and f.numbers["share"] > _MUCH]
     chosen.sort(key=lambda f: -f.numbers["share"] - _TELLING * (f.kind in _COEFFICIENTS))
     return Localisation(c.record.source, tuple(replace(f, numbers=_with_corrected_p(f, s.tests)) for f in chosen))
 
 
-def _chance(f: Finding) -> float:
+def _p_value_of(f: Finding) -> float:
     """p-value of one test; 0 for a pattern that is found by its size alone and has none."""
     return float(f.numbers.get("p", 0.0))
 
 
 def _with_corrected_p(f: Finding, tests: int) -> dict[str, object]:
-    return {**f.numbers, "p": min(_chance(f) * tests, 1.0)} if "p" in f.numbers else dict(f.numbers)
+    return {**f.numbers, "p": min(_p_value_of(f) * tests, 1.0)} if "p" in f.numbers else dict(f.numbers)
 
 
-def _samples(c: RecordFit) -> LocalisedSamples:
+def _localised_samples(c: RecordFit) -> LocalisedSamples:
     used = c.fitted | c.checked
     motion, force = c.experiment.motion, c.model - c.offset
     velocity, interval = motion.velocity, c.record.interval
@@ -141,12 +141,12 @@ def _winsorise(residual: Matrix) -> Matrix:
     return np.clip(residual, -limit, limit)
 
 
-def _share(before: float, after: float) -> float:
+def _explained_share(before: float, after: float) -> float:
     """Share of a mean square that is explained."""
     return 1.0 - after / max(before, 1e-300)
 
 
-def _instants(s: LocalisedSamples) -> Iterator[Finding]:
+def _outlier_instants(s: LocalisedSamples) -> Iterator[Finding]:
     """A hundredth of the samples with most of the squared residual."""
     square = (s.residual / s.level) ** 2
     if not square.any():
@@ -155,7 +155,7 @@ def _instants(s: LocalisedSamples) -> Iterator[Finding]:
     number = max(int(_RARE * square.size), 1)
     most, rest = ordered[-number:], max(float(ordered[:-number].mean()), float(np.finfo(float).tiny))
     inside = float(most.mean())
-    share = _share(float(square.mean()), math.exp((1.0 - _RARE) * math.log(rest) + _RARE * math.log(inside)))
+    share = _explained_share(float(square.mean()), math.exp((1.0 - _RARE) * math.log(rest) + _RARE * math.log(inside)))
     share *= float(most.sum()) / float(square.sum())
     if most.sum() < 0.5 * square.sum() or inside < 30.0 * rest:
         return
@@ -166,14 +166,14 @@ def _instants(s: LocalisedSamples) -> Iterator[Finding]:
     leap = np.zeros(square.size) if s.leaps is None else maximum_filter1d(s.leaps, 3)
     numbers = {
         "count": count, "times": tuple(float(s.time[p]) for p in peaks[:6]),
-        "longest": max(stop - start for start, stop in runs(marked)), "share": share,
+        "longest": max(stop - start for start, stop in true_runs(marked)), "share": share,
         "leaps": float(np.median(leap[peaks] / np.abs(s.residual[peaks]))) > _LEAPS,
         "largest": float(np.abs(s.residual[peaks]).max()), "at": float(s.time[np.argmax(square)]),
     }  # fmt: skip
     yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
 
 
-def _over_time(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
+def _level_changes(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """A level of the residual that steps or grows."""
     square = (s.residual / s.level) ** 2
     sizes = np.bincount(s.block)
@@ -181,17 +181,17 @@ def _over_time(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Fin
     log = np.log(np.maximum(mean, 1e-12))
     order = np.argsort(random.random((_DRAWS, s.blocks)), axis=1)
     step, trend = _cusum(log), _slope(log)
-    p_step = _p(step, _cusum(log[order]))
-    p_trend = _p(trend, _slope(log[order]))
-    at = _split(square)
+    p_step = _p_value(step, _cusum(log[order]))
+    p_trend = _p_value(trend, _slope(log[order]))
+    at = _split_by_level(square)
     before, after = float(square[:at].mean()), float(square[at:].mean())
     w = at / square.size
-    of_step = _share(float(square.mean()), math.exp(w * math.log(before) + (1.0 - w) * math.log(after)))
+    of_step = _explained_share(float(square.mean()), math.exp(w * math.log(before) + (1.0 - w) * math.log(after)))
     place = np.arange(s.blocks) - 0.5 * (s.blocks - 1)
     slope = float(place @ (log - log.mean())) / float(place @ place)
     line = slope * place
     line += math.log(max(float(np.mean(mean * np.exp(-line))), 1e-300))
-    of_trend = _share(float(mean.mean()), math.exp(float(line.mean())))
+    of_trend = _explained_share(float(mean.mean()), math.exp(float(line.mean())))
     time = float(s.time[at])
     numbers = {
         "before": math.sqrt(before), "after": math.sqrt(after), "time": time, "motion": _motion_steps(s, at)
@@ -218,7 +218,7 @@ def _motion_steps(s: LocalisedSamples, at: int) -> bool:
     return not 0.25 < before / max(after, 1e-300) < 4.0
 
 
-def _split(square: Matrix) -> int:
+def _split_by_level(square: Matrix) -> int:
     """The sample at which the level of squares steps, by the likelihood of two levels."""
     n = square.size
     edge = max(int(_EDGE * n), 8)
@@ -239,7 +239,7 @@ def _slope(rows: Matrix) -> Matrix:
     return np.asarray(np.abs((rows - rows.mean(axis=-1, keepdims=True)) @ place))
 
 
-def _p(found: Matrix, drawn: Matrix) -> float:
+def _p_value(found: Matrix, drawn: Matrix) -> float:
     return (1.0 + float(np.sum(drawn >= found * (1.0 - 1e-12)))) / (1.0 + drawn.size)
 
 
@@ -264,15 +264,15 @@ def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[
         if min(of_trend, of_step) > (1.0 - NOTICED) * constant:
             continue
         shares = {
-            "share": _share(square, of_step), "time": float(s.time[at]), "change": change,
+            "share": _explained_share(square, of_step), "time": float(s.time[at]), "change": change,
             "motion": _motion_steps(s, at),
         }  # fmt: skip
-        if _share(constant, of_step) > 1.1 * _share(constant, of_trend):
-            p = _p(_cusum(score), _cusum(score[order]))
+        if _explained_share(constant, of_step) > 1.1 * _explained_share(constant, of_trend):
+            p = _p_value(_cusum(score), _cusum(score[order]))
             yield Finding(MisfitPattern.COEFFICIENT_STEP, "info", name, {**shares, "p": p})
         else:
-            p = _p(_slope(score), _slope(score[order]))
-            size = {"share": _share(square, of_trend), "change": float(linear[1]) * (s.blocks - 1)}
+            p = _p_value(_slope(score), _slope(score[order]))
+            size = {"share": _explained_share(square, of_trend), "change": float(linear[1]) * (s.blocks - 1)}
             yield Finding(MisfitPattern.COEFFICIENT_TREND, "info", name, {**size, "p": p})
 
 
@@ -291,16 +291,16 @@ def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, f
 
 def _dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """The quantity on which the residual depends, and that with which the scatter of the rest grows."""
-    best, fitted = _mean(s, random)
+    best, fitted = _mean_dependence(s, random)
     yield best
-    explains = _chance(best) * s.tests < SURE and best.numbers["share"] > NOTICED
+    explains = _p_value_of(best) * s.tests < SURE and best.numbers["share"] > NOTICED
     rest = replace(s, residual=s.residual - fitted) if explains else s
     remaining = float(rest.residual @ rest.residual) / max(float(s.residual @ s.residual), 1e-300)
-    for found in _spreads(rest, random):
+    for found in _scatter_dependence(rest, random):
         yield replace(found, numbers={**found.numbers, "share": remaining * found.numbers["share"]})
 
 
-def _mean(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Matrix]:
+def _mean_dependence(s: LocalisedSamples, random: np.random.Generator) -> tuple[Finding, Matrix]:
     """The quantity on which the mean residual depends, with equally good ones, and that function [N]."""
     found, laws = [], {}
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
@@ -335,7 +335,11 @@ def _sign_flip_test(
     found = float(np.sum(sums.sum(axis=0) ** 2 / size)) / max(square, 1e-300)
     drawn = np.sum((signs @ sums) ** 2 / size, axis=1) / max(square, 1e-300)
     chance = float(drawn.mean())
-    return sums.sum(axis=0) / size, max((found - chance) / max(1.0 - chance, 1e-9), 0.0), _p(np.array(found), drawn)
+    return (
+        sums.sum(axis=0) / size,
+        max((found - chance) / max(1.0 - chance, 1e-9), 0.0),
+        _p_value(np.array(found), drawn),
+    )
 
 
 def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
@@ -345,7 +349,7 @@ def _bins(q: Matrix, count: int) -> tuple[NDArray[np.int64], Matrix]:
     return bins, np.array([float(np.median(q[bins == i])) if np.any(bins == i) else 0.0 for i in range(edges.size + 1)])
 
 
-def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
+def _scatter_dependence(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """The quantity with whose size the scatter of the residual grows, and few positions with most of it."""
     signs = random.choice([-1.0, 1.0], (_DRAWS, s.blocks))
     scaled = np.abs(s.residual) / s.level * float(np.median(s.level))
@@ -363,15 +367,15 @@ def _spreads(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Findi
     found.sort(key=lambda f: -f.numbers["share"])
     others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * found[0].numbers["share"])
     yield replace(found[0], numbers={**found[0].numbers, "others": others})
-    yield from _positions(s, square, within, signs)
+    yield from _misfit_positions(s, square, within, signs)
 
 
 def _log_share(means: Matrix, weights: NDArray[np.int64]) -> float:
     w = weights / weights.sum()
-    return _share(float(w @ means), math.exp(float(w @ np.log(np.maximum(means, 1e-300)))))
+    return _explained_share(float(w @ means), math.exp(float(w @ np.log(np.maximum(means, 1e-300)))))
 
 
-def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
+def _misfit_positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matrix) -> Iterator[Finding]:
     """Up to three parts of the travel, together a quarter of it, with most of the misfit."""
     x = s.motion["displacement"]
     low, high = np.quantile(x, (0.002, 0.998))
@@ -392,7 +396,7 @@ def _positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs: Matri
     yield Finding(MisfitPattern.POSITIONS, "info", "displacement", {"share": share, "p": p, "places": at, "held": held})
 
 
-def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
+def _channel_dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
     """Further channels, such as a temperature, with which the level of the residual is correlated over blocks."""
     square = (s.residual / s.level) ** 2
     sizes = np.bincount(s.block)
@@ -403,8 +407,8 @@ def _channels(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Find
         usual = np.argsort(np.argsort(np.bincount(s.block, values) / sizes)).astype(float)
         usual -= usual.mean()
         r = float(usual @ rank) / max(float(np.linalg.norm(usual) * np.linalg.norm(rank - rank.mean())), 1e-300)
-        p = _p(np.array(abs(float(usual @ rank))), np.abs(rank[order] @ usual))
-        share = _share(float(np.mean(np.exp(log))), math.exp(float(np.mean(log)))) * r**2
+        p = _p_value(np.array(abs(float(usual @ rank))), np.abs(rank[order] @ usual))
+        share = _explained_share(float(np.mean(np.exp(log))), math.exp(float(np.mean(log)))) * r**2
         yield Finding(MisfitPattern.CHANNEL, "info", name, {"share": share, "p": p, "correlation": r})
 
 
@@ -432,12 +436,12 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
     resonance = _resonance(frequency, amplitudes(s.motion["force"] - s.motion["force"].mean()), highest)
     peak = int(np.argmax(excess))
     main = slice(max(peak - 3, 0), peak + 4)
-    beside = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
+    nearby = np.r_[max(int(peak / 1.4), 2) : max(peak - 4, 2), peak + 5 : min(int(1.4 * peak) + 8, amplitude.size)]
     share = float(np.sum(amplitude[main] ** 2)) / max(total, 1e-300)
-    if beside.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[beside])):
+    if nearby.size > 8 and amplitude[peak] > _CLEAR_LINE * float(np.median(amplitude[nearby])):
         multiple = _multiple(peak, moved)
-        foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[beside])))
-        above = float(amplitude[peak]) / max(float(np.median(amplitude[beside])), 1e-300)
+        foreign = multiple == 0 and bool(moved[peak] < _CLEAR_LINE * float(np.median(moved[nearby])))
+        above = float(amplitude[peak]) / max(float(np.median(amplitude[nearby])), 1e-300)
         chance = float(frequency.size) * math.exp(-math.log(2.0) * above**2)  # of a Rayleigh amplitude of that median
         resonates = resonance[0] <= frequency[peak] <= resonance[1]
         numbers = {

@@ -46,8 +46,8 @@ VISCOUS: Mapping[str, str] = MappingProxyType({name: f"{name}-viscous" for name 
 """Names of models without a damper in parallel with the inerter, and the name of each with one."""
 
 
-def _model(before: str, beside: str) -> Network:
-    text = f"{before}({beside})"
+def _model(before: str, parallel: str) -> Network:
+    text = f"{before}({parallel})"
     return network(text, **{name: element for name, element in _ELEMENTS.items() if name in _names(text)})
 
 
@@ -58,7 +58,7 @@ def _names(text: str) -> list[str]:
 MODELS: Mapping[str, Network] = MappingProxyType(
     {
         **{name: _model(*parts) for name, parts in _ROWS.items()},
-        **{VISCOUS[name]: _model(before, f"{beside} | c") for name, (before, beside) in _ROWS.items()},
+        **{VISCOUS[name]: _model(before, f"{parallel} | c") for name, (before, parallel) in _ROWS.items()},
     }
 )
 """From the ideal inerter to the ball screw of Wang and Su (2008): shaft `ks` [N/m] in parallel with `cs` [N s/m],

@@ -62,7 +62,7 @@ def whitening_of(residual: Matrix, by: Whitening) -> Whitening:
     return replace(by, weight=by.weight / max(size, _LEAST), offsets={})
 
 
-def yardstick(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> Whitening:
+def noise_whitening(draws: Matrix, noise: float, compared: NDArray[np.bool_]) -> Whitening:
     """The whitening by residuals of sensor noise (draws, samples) [N], on the samples that are compared.
 
     `noise` [N] is that of the load cell; the rest comes from the encoder, at some instants more than at others.

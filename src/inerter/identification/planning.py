@@ -20,7 +20,7 @@ from inerter.identification.experiment import MOST_SAMPLES, Experiment, experime
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Parameter
 from inerter.identification.intervals import steps_of
-from inerter.identification.noise import yardstick
+from inerter.identification.noise import noise_whitening
 from inerter.identification.sensors import encoder_noise, noise_residuals
 from inerter.identification.solving import SolvedFit
 from inerter.records.finding import Finding
@@ -48,7 +48,7 @@ class PlannedMotion:
     errors: Matrix
 
 
-def advice(solution: SolvedFit, parameters: Mapping[str, Parameter]) -> Iterator[Finding]:
+def recommended_experiments(solution: SolvedFit, parameters: Mapping[str, Parameter]) -> Iterator[Finding]:
     """For each identified parameter, the mildest change of the motion that halves its interval."""
     motions = list(_possible_motions(solution))
     present = next((m for m in motions if m.larger == m.faster == 1.0), None)
@@ -68,14 +68,14 @@ def advice(solution: SolvedFit, parameters: Mapping[str, Parameter]) -> Iterator
         ratios = [(m, float(m.errors[i] / present.errors[i])) for m in motions]
         found = [(m, r, n) for m, r in ratios if (n := math.ceil((r / wanted) ** 2 * (1.0 - 1e-9))) <= _LONGEST]
         if found:
-            best, ratio, times = min(found, key=lambda f: (_effort(f[0], f[2]), f[1]))
+            best, ratio, times = min(found, key=lambda f: (_motion_effort(f[0], f[2]), f[1]))
             expected = math.hypot(moving * ratio / math.sqrt(max(times, 1)), fixed)
             yield Finding(
                 FitFinding.NARROWER, "info", name, _motion_numbers(solution, best, max(times, 1), p, expected)
             )
 
 
-def _effort(motion: PlannedMotion, times: int) -> float:
+def _motion_effort(motion: PlannedMotion, times: int) -> float:
     """Effort of a motion: doublings of the amplitude, the speed and the length."""
     return abs(math.log2(motion.larger)) + abs(math.log2(motion.faster)) + math.log2(max(times, 1))
 
@@ -112,17 +112,17 @@ def _possible_motions(solution: SolvedFit) -> Iterator[PlannedMotion]:
                 continue
             other = replace(problem, experiments=[e for e in experiments if e is not None])
             forces = other.forces(optimum.point)
-            if any(f is None for f in forces) or not (present or _bearable(solution, forces, largest)):
+            if any(f is None for f in forces) or not (present or _within_force_range(solution, forces, largest)):
                 break  # a larger amplitude is no easier
             known = [f for f in forces if f is not None]
             other.experiments = [
                 replace(e, record=replace(e.record, force=f)) for e, f in zip(other.experiments, known, strict=True)
             ]
             left = noise_residuals(other, optimum.point, (solution.options.seed, 7), _DRAWS)
-            if left is None or not (present or _predictable(left, other.experiments)):
+            if left is None or not (present or _is_predictable(left, other.experiments)):
                 continue
             other.whitenings = [
-                yardstick(draws, e.noise, e.kept) for draws, e in zip(left, other.experiments, strict=True)
+                noise_whitening(draws, e.noise, e.kept) for draws, e in zip(left, other.experiments, strict=True)
             ]
             jacobian = other.jacobian(optimum.point, steps)
             covariance = np.linalg.pinv(jacobian.T @ jacobian, rcond=1e-14, hermitian=True)
@@ -132,7 +132,7 @@ def _possible_motions(solution: SolvedFit) -> Iterator[PlannedMotion]:
             yield PlannedMotion(larger, faster, np.sqrt(np.maximum(np.diag(covariance), 0.0) * share))
 
 
-def _bearable(solution: SolvedFit, forces: list[Matrix | None], largest: float) -> bool:
+def _within_force_range(solution: SolvedFit, forces: list[Matrix | None], largest: float) -> bool:
     """Whether each force is within the range of its load cell."""
     return all(
         f is not None
@@ -142,7 +142,7 @@ def _bearable(solution: SolvedFit, forces: list[Matrix | None], largest: float) 
     )
 
 
-def _predictable(left: list[Matrix], experiments: Sequence[Experiment]) -> bool:
+def _is_predictable(left: list[Matrix], experiments: Sequence[Experiment]) -> bool:
     """Whether encoder noise hardly changes the forces."""
     return all(
         float(np.mean(draws**2)) - e.noise**2 <= _UNPREDICTABLE * float(np.var(e.record.force))

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.identification.experiment import Experiment, Tally, reading_of
-from inerter.identification.hypotheses import Hypothesis, through_cell
+from inerter.identification.experiment import Experiment, SimulationCount, load_cell_output
+from inerter.identification.hypotheses import Hypothesis, read_by_load_cell
 from inerter.identification.models import on_rig
 from inerter.identification.noise import Whitening
 from inerter.identification.parameter_space import Space
@@ -83,9 +83,9 @@ class FitProblem:
         run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))
         if run is None:
             return None
-        force = run[reading_of(e.record)]
+        force = run[load_cell_output(e.record)]
         if e.record.fixture_mass is not None:
-            force = force + e.record.fixture_mass * through_cell(e.motion.acceleration[: force.size], e)
+            force = force + e.record.fixture_mass * read_by_load_cell(e.motion.acceleration[: force.size], e)
         for hypothesis in self.assumed:
             force = hypothesis.read(force, e, values)
         return force, run
@@ -169,7 +169,7 @@ def _run_on_problem(
     work: Callable[[FitProblem, Item], Result], call: tuple[FitProblem, Item]
 ) -> tuple[Result, list[int]]:
     problem, item = call
-    own = replace(problem, experiments=[replace(e, tally=Tally()) for e in problem.experiments])
+    own = replace(problem, experiments=[replace(e, tally=SimulationCount()) for e in problem.experiments])
     result = work(own, item)
     return result, [e.tally.total for e in own.experiments]
 

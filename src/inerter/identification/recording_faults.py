@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
-from inerter.identification.experiment import Experiment, experiment_of, reading_of
+from inerter.identification.experiment import Experiment, experiment_of, load_cell_output
 from inerter.identification.fit import Localisation
-from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.identification.possible_causes import Details, Suspect
 from inerter.identification.problem import FitProblem
@@ -28,7 +28,7 @@ Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
 _RESONANCES = (15.0, 40.0, 100.0)  # [Hz] starting values of a frame resonance
-_BESIDE = 10  # samples to either side of repaired ones that are not compared
+_MARGIN = 10  # samples to either side of repaired ones that are not compared
 _SETTLED = 0.3  # [s] after a joint that are not compared, until the transient has decayed
 _NOTHING = 1e-5  # of its largest value, below which a change of a parameter is ignored
 _FITTED = 0.75  # of a record, after which a change is hardly in the estimation data
@@ -97,7 +97,7 @@ def _cross_talk(signal: str, unit: str, size: float) -> Hypothesis:
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         reading = getattr(e.motion, signal)[: force.size]
-        return np.asarray(force + values[unknown.name] * through_cell(reading, e))
+        return np.asarray(force + values[unknown.name] * read_by_load_cell(reading, e))
 
     def details(values: Values) -> Details:
         return {"signal": signal, "unit": unit, "size": values[unknown.name]}
@@ -164,7 +164,7 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
         known = {n: values.get(n, bounds[n][0]) for n in space.names}
         system = bare.system(space.coordinates_of(known), e.record)
         run = None if system is None else e.run(system, size)
-        return None if run is None else run[reading_of(e.record)]
+        return None if run is None else run[load_cell_output(e.record)]
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         if e.record is not record:
@@ -180,7 +180,7 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
         shown = (p for p in pairs if abs(p[3] - p[2]) > max(0.01 * abs(p[2]), _NOTHING * bounds[p[0]][1]))
         return {"time": time, "values": tuple(shown)}
 
-    return Hypothesis(Suspect.CHANGED_DEVICE, unknowns, read=read, details=details, alike=later)
+    return Hypothesis(Suspect.CHANGED_DEVICE, unknowns, read=read, details=details, counterparts=later)
 
 
 def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
@@ -191,7 +191,7 @@ def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
     for name, kind in kinds:
         marked = {id(e.record): [i for role in getattr(f, kind).values() for i in role] for e, f in found}
         if any(marked.values()):
-            rows.append(_repair_hypothesis(name, experiments, marked, repair, _BESIDE))
+            rows.append(_repair_hypothesis(name, experiments, marked, repair, _MARGIN))
     joints = {id(e.record): f.joints for e, f in found}
     if any(joints.values()):
         rows.append(
@@ -205,7 +205,7 @@ def _repair_hypothesis(
     experiments: Sequence[Experiment],
     marked: dict[int, list[Instant]],
     mend: Callable[[Record], Record],
-    beside: int | None,
+    margin: int | None,
 ) -> Hypothesis:
     """Records with faulty samples repaired, near which no samples are compared."""
     whole: dict[int, Experiment] = {}
@@ -215,10 +215,10 @@ def _repair_hypothesis(
         instants = marked[id(e.record)]
         if not instants:
             continue
-        size, after = e.size, round(_SETTLED / e.record.interval) if beside is None else beside
+        size, after = e.size, round(_SETTLED / e.record.interval) if margin is None else margin
         mask = np.zeros(size, dtype=bool)
         for i in instants:
-            mask[max(i.start - (beside or _BESIDE), 0) : i.stop + after] = True
+            mask[max(i.start - (margin or _MARGIN), 0) : i.stop + after] = True
             places.append(float(e.record.time[i.start]))
         mended = mend(e.record)
         whole[id(e.record)] = replace(experiment_of(mended), record=e.record, kept=e.kept, tally=e.tally)

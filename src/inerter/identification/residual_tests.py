@@ -18,7 +18,7 @@ from scipy.stats import chi2
 from inerter.identification.experiment import Experiment
 from inerter.identification.fit import NormalisedResidual
 from inerter.identification.intervals import ROBUST
-from inerter.identification.noise import Whitening, yardstick
+from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.problem import FitProblem
 from inerter.identification.sensors import noise_residuals
 
@@ -30,7 +30,7 @@ _SOUND, _CHANCE = 1.1, 3.0  # allowed misfit, plus standard deviations of that o
 
 
 @dataclass(frozen=True, eq=False)
-class Judge:
+class NoiseReference:
     """Whitenings of each record by simulated sensor noise, and the draws of that noise."""
 
     fitted: Sequence[Whitening]
@@ -50,7 +50,8 @@ class Judge:
             centred.append(_without_offset(e.record.force - force, w) if problem.offset else e.record.force - force)
         fitted, checked = (
             math.sqrt(
-                _mean_square(_without_slow(_whiten(w, r), w, slow) for w, r in zip(ws, centred, strict=True)) / usual
+                _mean_square(_without_slow(_whitened_residual(w, r), w, slow) for w, r in zip(ws, centred, strict=True))
+                / usual
             )
             for ws, (usual, _) in zip((self.fitted, self.checked), self._sound, strict=True)
         )
@@ -66,25 +67,29 @@ class Judge:
         if not any(np.any(w.weight > 0.0) for w in whitenings):
             return math.nan, math.nan
         each = zip(*self.draws, strict=True)
-        squares = np.array([_mean_square(map(_whiten, whitenings, draws)) for draws in each])
+        squares = np.array([_mean_square(map(_whitened_residual, whitenings, draws)) for draws in each])
         sizes = np.sqrt(squares)
         return float(np.mean(squares)), _SOUND + _CHANCE * float(np.std(sizes, ddof=1) / np.mean(sizes))
 
     def pattern(self, number: int, residual: Matrix) -> float:
         """p-value of residuals of one record no more autocorrelated than those of sensor noise."""
         w = self.fitted[number]
-        usual = float(np.mean([portmanteau(_whiten(w, draw)) for draw in self.draws[number]]))
-        return float(chi2.sf(portmanteau(_whiten(w, _without_offset(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS))
+        usual = float(np.mean([portmanteau(_whitened_residual(w, draw)) for draw in self.draws[number]]))
+        return float(
+            chi2.sf(portmanteau(_whitened_residual(w, _without_offset(residual, w))) * _LAGS / max(usual, _LAGS), _LAGS)
+        )
 
 
-def judge_of(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: int) -> Judge | None:
+def noise_reference(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: int) -> NoiseReference | None:
     """The judge of a device at a point, with independent noise for draws and whitening; None if not simulated."""
     known, draws = noise_residuals(problem, point, (seed, 5)), noise_residuals(problem, point, (seed, 6))
     if known is None or draws is None:
         return None
     rows = list(zip(known, problem.experiments, checked, strict=True))
-    return Judge(
-        [yardstick(k, e.noise, e.kept) for k, e, _ in rows], [yardstick(k, e.noise, mask) for k, e, mask in rows], draws
+    return NoiseReference(
+        [noise_whitening(k, e.noise, e.kept) for k, e, _ in rows],
+        [noise_whitening(k, e.noise, mask) for k, e, mask in rows],
+        draws,
     )
 
 
@@ -114,7 +119,7 @@ def portmanteau(white: Matrix) -> float:
     return n * (n + 2.0) * float(np.sum(rho**2 / (n - np.arange(1, _LAGS + 1))))
 
 
-def _whiten(whitening: Whitening, residual: Matrix) -> Matrix:
+def _whitened_residual(whitening: Whitening, residual: Matrix) -> Matrix:
     return whitening(residual)[whitening.weight > 0.0]
 
 

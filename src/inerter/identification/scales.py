@@ -102,18 +102,18 @@ def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) ->
     follows = all(isinstance(e.value, Free) or e.value == 0.0 for e in problem.rig.device.elements())
     follows = follows and not any(e.record.fixture_mass for e in problem.experiments)
     rows, relative = [], np.zeros(len(space.names))
-    for column, (uncertainty, apply) in enumerate(_scales(options)):
+    for column, (uncertainty, apply) in enumerate(_stated_scales(options)):
         if uncertainty > 0.0:
             along = uncertainty * powers[:, column]
             rows.append(values * along if follows else _refit_difference(problem, optimum, uncertainty, apply))
             relative = np.hypot(relative, along)
     if any(e.record.fixture_mass_error for e in problem.experiments):
-        rows.append(_refit_difference(problem, optimum, 1.0, _heavier))
+        rows.append(_refit_difference(problem, optimum, 1.0, _add_fixture_mass))
     return ScaleEffects(np.array(rows), relative) if rows else None
 
 
-def _scales(options: FitOptions) -> Iterator[tuple[float, Callable[[Experiment, float], Experiment]]]:
-    for scale, apply in ((options.force_scale, _stronger), (options.displacement_scale, _longer)):
+def _stated_scales(options: FitOptions) -> Iterator[tuple[float, Callable[[Experiment, float], Experiment]]]:
+    for scale, apply in ((options.force_scale, _scale_force), (options.displacement_scale, _scale_displacement)):
         yield 0.0 if scale is None else scale.relative, apply
 
 
@@ -129,15 +129,15 @@ def _refit_difference(
     return np.asarray(0.5 * (ends[0] - ends[1]))
 
 
-def _stronger(e: Experiment, by: float) -> Experiment:
+def _scale_force(e: Experiment, by: float) -> Experiment:
     return replace(e, record=replace(e.record, force=e.record.force * (1.0 + by)))
 
 
-def _longer(e: Experiment, by: float) -> Experiment:
+def _scale_displacement(e: Experiment, by: float) -> Experiment:
     moved = replace(e, record=replace(e.record, displacement=e.record.displacement * (1.0 + by)))
     return moved.with_motion(e.motion.displacement * (1.0 + by), e.motion.velocity * (1.0 + by))
 
 
-def _heavier(e: Experiment, by: float) -> Experiment:
+def _add_fixture_mass(e: Experiment, by: float) -> Experiment:
     mass = (e.record.fixture_mass or 0.0) + by * (e.record.fixture_mass_error or 0.0)
     return replace(e, record=replace(e.record, fixture_mass=mass or None))

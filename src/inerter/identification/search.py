@@ -45,7 +45,7 @@ def search(
     candidates = starts(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
     report("starting points", 0, len(candidates))
-    costs = [soft(r) for r in first.residuals(candidates)]
+    costs = [robust_sum(r) for r in first.residuals(candidates)]
     halfway: list[float] = []
     for stage, (horizon, kept, evaluations) in enumerate(stages):
         part = replace(problem, horizon=horizon)
@@ -130,7 +130,7 @@ def basin_hopping(problem: FitProblem, start: Matrix, seed: int) -> Matrix:
     return point
 
 
-def soft(residual: Matrix) -> float:
+def robust_sum(residual: Matrix) -> float:
     """Robust sum of squares, linear beyond 10: far from the best fit every residual is an outlier."""
     return float(np.sum(2.0 * (np.sqrt(1.0 + (residual / 10.0) ** 2) - 1.0)) * 100.0)
 

@@ -16,13 +16,13 @@ from inerter.identification.fit import NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of, guess_of, sign_of
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
-from inerter.identification.noise import uniform_whitening, whitening_of, yardstick
+from inerter.identification.noise import noise_whitening, uniform_whitening, whitening_of
 from inerter.identification.options import FitOptions
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.residual_tests import Judge, check_parts, judge_of
+from inerter.identification.residual_tests import NoiseReference, check_parts, noise_reference
 from inerter.identification.scales import ScaleEffects, scale_effects
-from inerter.identification.search import QUICK, THOROUGH, basin_hopping, search, soft
+from inerter.identification.search import QUICK, THOROUGH, basin_hopping, robust_sum, search
 from inerter.identification.sensors import noise_residuals, unavoidable_residual
 from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adhesion
 from inerter.records.finding import Finding
@@ -51,7 +51,7 @@ class SolvedFit:
     costs: tuple[float, ...]
     findings: tuple[Finding, ...]
     predicted: float
-    judge: Judge
+    judge: NoiseReference
     misfit: NormalisedResidual
     options: FitOptions
     adhesion: Adhesion
@@ -73,7 +73,9 @@ def solve(
         turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
         whole.append(turned)
         findings += found_of_sign
-    problem = FitProblem(rig, space_of(rig, assumed), _for_fit(whole, asked.check), [], asked.offset, assumed)
+    problem = FitProblem(
+        rig, space_of(rig, assumed), _without_validation_part(whole, asked.check), [], asked.offset, assumed
+    )
     problem.whitenings = [
         uniform_whitening(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
     ]
@@ -81,7 +83,7 @@ def solve(
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _search_thoroughly(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
     report("start of records", 0, len(records))
-    problem.experiments, leads = _leads(problem, point, asked.lead)
+    problem.experiments, leads = _without_transients(problem, point, asked.lead)
     optimum, adhesion = with_adhesion(problem, _refine(problem, point, asked.seed))
     drawn = bootstrap(problem, optimum, asked.seed)
     if progress is not None:
@@ -90,9 +92,9 @@ def solve(
     report("errors of the sensors", 0, 1)
     optimum, found = _remove_bias(problem, optimum, found, drawn.bias)
     checked = tuple(check_parts(problem.experiments, whole, leads))
-    judge = judge_of(problem, optimum.point, checked, asked.seed)
+    judge = noise_reference(problem, optimum.point, checked, asked.seed)
     if judge is None:
-        raise _not_simulated(problem)
+        raise _simulation_error(problem)
     if progress is not None:
         progress(1.0)
     return SolvedFit(
@@ -102,12 +104,12 @@ def solve(
     )  # fmt: skip
 
 
-def _not_simulated(problem: FitProblem) -> IdentificationError:
+def _simulation_error(problem: FitProblem) -> IdentificationError:
     sources = ", ".join(repr(e.record.source) for e in problem.experiments)
     return IdentificationError(f"The best fit to {sources} cannot be simulated.")
 
 
-def _for_fit(experiments: Sequence[Experiment], check: float) -> list[Experiment]:
+def _without_validation_part(experiments: Sequence[Experiment], check: float) -> list[Experiment]:
     """The experiments with the last part of each left out."""
     result = []
     for e in experiments:
@@ -136,7 +138,7 @@ def _search_thoroughly(
         if stages is THOROUGH:
             point = basin_hopping(problem, point, seed)
         residual = problem.residual(point)
-        cost, left = soft(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
+        cost, left = robust_sum(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
         again = any(math.isclose(cost, earlier, rel_tol=_SAME) for earlier, _, _ in found)
         found.append((cost, point, costs))
         if again or left < _FINE or left < min(_FAIR * unavoidable_residual(problem, point, seed), _POOR):
@@ -145,7 +147,7 @@ def _search_thoroughly(
     return point, costs
 
 
-def _leads(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
+def _without_transients(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
     """Discard the start of records that begin in motion, as long as the unknown initial state of the device matters."""
     result, leads = [], []
     for e in problem.experiments:
@@ -168,9 +170,9 @@ def _refine(problem: FitProblem, start: Matrix, seed: int) -> BestFit:
         report("refinement", number, _ROUNDS)
         forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
         if left is None or any(force is None for force in forces):
-            raise _not_simulated(problem)
+            raise _simulation_error(problem)
         problem.whitenings = [
-            whitening_of(e.record.force - force, yardstick(draws, e.noise, e.kept))
+            whitening_of(e.record.force - force, noise_whitening(draws, e.noise, e.kept))
             for e, force, draws in zip(problem.experiments, forces, left, strict=True)
             if force is not None
         ]

@@ -11,7 +11,6 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import IdentificationError, Status
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit, Parameter
@@ -31,6 +30,7 @@ from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
+from inerter.validation import check_positive
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]

@@ -19,7 +19,7 @@ from inerter.identification.intervals import (
     CostProfile,
     Side,
     best_fit_of,
-    follow,
+    constrained_optimum,
     profiles,
     robust_cost,
     steps_of,
@@ -88,7 +88,7 @@ def profiles_at_rest(problem: FitProblem, optimum: BestFit, adhesion: Adhesion) 
         ends = float(lower[i]), float(upper[i])
         found[i] = CostProfile(Side(ends[0], False), Side(ends[1], False), tuple((end, 0.0) for end in ends), None)
     for i, force in adhesion.held.items():
-        found[i] = _from_below(problem, optimum, i, force)
+        found[i] = _profile_from_below(problem, optimum, i, force)
     return [found[i] for i in range(optimum.point.size)]
 
 
@@ -113,7 +113,7 @@ def _largest_held_force(problem: FitProblem, point: Matrix, i: int) -> float | N
     return largest
 
 
-def _from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> CostProfile:
+def _profile_from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> CostProfile:
     """The profile of a friction that held `force` [N], from the bound of the search down to the rise of the cost."""
     space, threshold = problem.space, float(optimum.threshold[i])
     top, bottom = float(space.bounds[1][i]), float(space.bounds[0][i])
@@ -125,11 +125,11 @@ def _from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> 
         root = np.sqrt(max(_least_cost(problem, optimum, i, at) - optimum.cost, 0.0) / threshold)
         points.append((at, float(root) ** 2))
         if abs(root - 1.0) < _NEAR:
-            return _one_sided(at, True, top, points)
+            return _one_sided_profile(at, True, top, points)
         if root < 1.0:
             inside = value
             if at <= bottom + 1e-12:
-                return _one_sided(bottom, False, top, points)
+                return _one_sided_profile(bottom, False, top, points)
         else:
             outside = value
         if outside == 0.0:
@@ -137,10 +137,10 @@ def _from_below(problem: FitProblem, optimum: BestFit, i: int, force: float) -> 
             value = force * max(1.0 - step, 0.0)
         else:
             value = 0.5 * (inside + outside)
-    return _one_sided(space.coordinate_of(i, outside), True, top, points)
+    return _one_sided_profile(space.coordinate_of(i, outside), True, top, points)
 
 
-def _one_sided(end: float, known: bool, top: float, points: list[tuple[float, float]]) -> CostProfile:
+def _one_sided_profile(end: float, known: bool, top: float, points: list[tuple[float, float]]) -> CostProfile:
     return CostProfile(Side(end, known), Side(top, False), tuple(sorted(points)), None)
 
 
@@ -152,5 +152,5 @@ def _least_cost(problem: FitProblem, optimum: BestFit, i: int, value: float) -> 
     costs = []
     for share in _BESIDE if free.any() else (0.0,):
         point = np.where(free, lower + share * (upper - lower), optimum.point)
-        costs.append(follow(problem, replace(optimum, point=point), i, value)[0])
+        costs.append(constrained_optimum(problem, replace(optimum, point=point), i, value)[0])
     return min(costs)

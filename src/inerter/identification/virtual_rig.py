@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import IdentificationError
 from inerter.identification.models import with_mount
 from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import RunSettings, check_simulation, simulate
+from inerter.validation import check_positive, is_number
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
@@ -26,7 +26,7 @@ _SEEN, _SMALL = 3.0, 1e-4  # least r.m.s. of relevant motion, over the encoder e
 
 
 @dataclass(frozen=True)
-class _Times:
+class _RunSteps:
     """The steps of a run and the samples among them."""
 
     parts: int  # steps in the interval of the samples
@@ -108,10 +108,10 @@ class VirtualRig:
         check_simulation(rig, {"displacement": table}, RunSettings(duration=end, step=times.step))
         return times.samples
 
-    def _times(self, duration: float, start: float) -> _Times:
+    def _times(self, duration: float, start: float) -> _RunSteps:
         parts = math.ceil(1.0 / self.sampling / _FINEST)
         first, count = round(start * self.sampling), round(duration * self.sampling) + 1
-        return _Times(parts, first, count, 1.0 / self.sampling / parts)
+        return _RunSteps(parts, first, count, 1.0 / self.sampling / parts)
 
     def run(self, command: Signal, duration: float, start: float = 0.0) -> Record:
         """The record of the sensors from `start` to `start` + `duration` [s] under the command.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from inerter.fields import choice_field
+from inerter.field_metadata import choice_field
 from inerter.indices.excitation import Excitation
 from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
-from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road, RoadShape
@@ -19,6 +18,7 @@ from inerter.systems.filters import Filter, as_filter
 from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.symmetry import half_of
 

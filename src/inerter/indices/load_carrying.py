@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.fields import quantity
+from inerter.field_metadata import quantity
 from inerter.indices.excitation import SingleInput
 from inerter.indices.question import Combination, IndexDefinition
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 

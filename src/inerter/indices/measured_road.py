@@ -9,13 +9,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import InputPath
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]

@@ -4,27 +4,29 @@ from __future__ import annotations
 
 import re
 
-from inerter.errors import RowError
+from inerter.errors import RegistryError
 from inerter.indices.registry import INDICES
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 
 _BEGINNING = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
-@made_of_rows
+@cache_until_registration
 def index_names() -> dict[str, str]:
     """The symbol of each index by its symbol and by its words, which are its `key` or those of its class.
 
-    Raises `RowError` if two indices have the same.
+    Raises `RegistryError` if two indices have the same.
     """
     found = {symbol: symbol for symbol in INDICES}
     for symbol, words in index_words().items():
         if found.setdefault(words, symbol) != symbol:
-            raise RowError(f"{found[words]} and {symbol} are both called {words!r} in files. Give one another `key`.")
+            raise RegistryError(
+                f"{found[words]} and {symbol} are both called {words!r} in files. Give one another `key`."
+            )
     return found
 
 
-@made_of_rows
+@cache_until_registration
 def index_words() -> dict[str, str]:
     """The words of each index by its symbol: its `key`, or else those of its class, unless another has them already."""
     found: dict[str, str] = {}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.fields import typed_field
+from inerter.field_metadata import typed_field
 from inerter.indices.excitation import SingleInput
 from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import input_unit, unit_of
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 

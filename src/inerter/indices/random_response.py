@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError
-from inerter.fields import typed_field
+from inerter.field_metadata import typed_field
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.signals.road import Road
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import unit_of
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Weights = Mapping[str, float]

@@ -6,8 +6,8 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
-from inerter.errors import PerformanceIndexError, RowError
-from inerter.fields import Field, Formed, TextChoice, choices_of, fields_of, formed_of
+from inerter.errors import PerformanceIndexError, RegistryError
+from inerter.field_metadata import Field, TextChoice, TypedField, choices_of, fields_of, typed_fields_of
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
 from inerter.indices.element_stroke import ElementStroke
@@ -19,10 +19,10 @@ from inerter.indices.random_response import RandomResponse
 from inerter.indices.ride_comfort import RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel
 from inerter.indices.tyre_load import TyreLoad
-from inerter.rows import Rows, made_of_rows
+from inerter.registry import Registry, cache_until_registration
 from inerter.signals.road import Road
 
-INDICES: Rows[type[Index]] = Rows(
+INDICES: Registry[type[Index]] = Registry(
     "index",
     "symbol",
     ("title", "unit", "response", "question"),
@@ -41,7 +41,7 @@ INDICES: Rows[type[Index]] = Rows(
 )
 _AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal input is
 _ROAD, _EXCITATION = "road", "excitation"
-_EXCITED = Formed(
+_EXCITED = TypedField(
     _ROAD,
     _EXCITATION,
     "What excites the vehicle; the road of the study if left out.",
@@ -50,17 +50,17 @@ _EXCITED = Formed(
 )
 
 
-@made_of_rows
+@cache_until_registration
 def index_settings() -> dict[str, Field]:
     """Settings of all indices by key; indices with the same key share the setting.
 
-    Raises `RowError` if two of them have it in unlike units.
+    Raises `RegistryError` if two of them have it in unlike units.
     """
     found: dict[str, Field] = {}
     for index in INDICES.values():
         for field in fields_of(index):
             if found.setdefault(field.key, field).unit != field.unit:
-                raise RowError(
+                raise RegistryError(
                     f"{index.symbol} has a setting {field.key!r} in {field.unit}, and another index has it in "
                     f"{found[field.key].unit}. Choose another key."
                 )
@@ -72,31 +72,31 @@ def index_choices(symbol: str) -> tuple[TextChoice, ...]:
     return choices_of(INDICES[symbol])
 
 
-def index_forms(symbol: str) -> tuple[Formed, ...]:
+def index_forms(symbol: str) -> tuple[TypedField, ...]:
     """Settings of an index that have value types other than quantities and texts; a `needed` one is required.
 
     An index on a road has its excitation among them, which is the road if nothing else is given.
     """
     kind: Any = INDICES[symbol]
-    stated = formed_of(kind)
+    stated = typed_fields_of(kind)
     if _ROAD in {field.name for field in dataclasses.fields(kind)}:
         stated += (_EXCITED,)
     return tuple(dataclasses.replace(one, needed=one.needed and one.form != _EXCITATION) for one in stated)
 
 
-def needed_settings(symbol: str) -> tuple[TextChoice | Formed, ...]:
+def needed_settings(symbol: str) -> tuple[TextChoice | TypedField, ...]:
     """The settings of an index that must be given."""
-    stated: list[TextChoice | Formed] = [*index_choices(symbol), *index_forms(symbol)]
+    stated: list[TextChoice | TypedField] = [*index_choices(symbol), *index_forms(symbol)]
     return tuple(one for one in stated if one.needed)
 
 
-def amplitude_of(symbol: str) -> Field | Formed | None:
+def amplitude_of(symbol: str) -> Field | TypedField | None:
     """Setting of an index that is the amplitude of its sinusoidal input; None if the index has none."""
-    stated: list[Field | Formed] = [*fields_of(INDICES[symbol]), *index_forms(symbol)]
+    stated: list[Field | TypedField] = [*fields_of(INDICES[symbol]), *index_forms(symbol)]
     return next((one for one in stated if one.name == _AMPLITUDE), None)
 
 
-def excitation_of(symbol: str) -> Formed | None:
+def excitation_of(symbol: str) -> TypedField | None:
     """Setting of an index that is its excitation, by default the road; None if the index has none."""
     return next((one for one in index_forms(symbol) if one.form == _EXCITATION), None)
 
@@ -118,7 +118,7 @@ def make_index(symbol: str, road: Road | None, settings: Mapping[str, Any]) -> I
     return index
 
 
-def as_line(setting: Field | TextChoice | Formed) -> str:
+def as_line(setting: Field | TextChoice | TypedField) -> str:
     """A setting with its example, as a line of a file."""
-    value = setting.example if isinstance(setting, Formed) else f'"{setting.example}"'
+    value = setting.example if isinstance(setting, TypedField) else f'"{setting.example}"'
     return f"{setting.key} = {value}"

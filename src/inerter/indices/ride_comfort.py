@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from inerter.errors import PerformanceIndexError
-from inerter.fields import choice_field
+from inerter.field_metadata import choice_field
 from inerter.indices.excitation import Excitation
 from inerter.indices.iso2631 import ROTATIONS, check_weighting, weighting_filter
 from inerter.indices.question import Combination, IndexDefinition, on_road

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.fields import quantity
+from inerter.field_metadata import quantity
 from inerter.indices.excitation import Excitation
 from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism
 
 

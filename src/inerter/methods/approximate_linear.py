@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
 from inerter.indices.excitation import shape_of, stand_ins_of
 from inerter.indices.question import Index, IndexDefinition
@@ -34,6 +33,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import InputPath
 from inerter.systems.piecewise import piecewise
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle
 

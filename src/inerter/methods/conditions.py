@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import PerformanceIndexError, Status, worst_of
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
@@ -22,6 +21,7 @@ from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Objective
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped

@@ -9,7 +9,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
 from inerter.signals.harmonics import flat_multisine
 from inerter.signals.records import held_noise
@@ -17,6 +16,7 @@ from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, parts_of, tabulate
 from inerter.simulation.observe import sampled_input
 from inerter.simulation.periodic_steady_state import repeating
+from inerter.validation import check_positive
 
 Array = NDArray[np.float64]
 _COARSEST = 5e-4  # [s] longest step for an input without steps of its own

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
 from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.error_bounds import with_error_sources
@@ -36,6 +35,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

@@ -6,15 +6,15 @@ import dataclasses
 from collections.abc import Callable, Container, Mapping
 from typing import Any
 
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import Method, NonlinearitySupport
 from inerter.methods.norm import Norm
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
-from inerter.rows import Rows
+from inerter.registry import Registry
 
-METHODS: Rows[type[Method]] = Rows(
+METHODS: Registry[type[Method]] = Registry(
     "method",
     "name",
     (

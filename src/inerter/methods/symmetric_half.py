@@ -9,7 +9,7 @@ from inerter.networks.elements.roles import LinearRole
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.symmetry import alike_half, opposed_half
+from inerter.vehicle.symmetry import antisymmetric_half, symmetric_half
 
 
 def on_one_side(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> tuple[Mechanism, tuple[InputPath, ...]] | None:
@@ -26,7 +26,7 @@ def on_one_side(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> tuple[Me
     if len(signs) != 1 or signs == {0.0}:
         return None
     alike = signs == {1.0}
-    half = alike_half(merged) if alike else opposed_half(mechanism)
+    half = symmetric_half(merged) if alike else antisymmetric_half(mechanism)
     if len(half.coordinates) == len(mechanism.coordinates):
         return None
     arriving = tuple(at[road.name] for road in half.roads)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
@@ -19,6 +18,7 @@ from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport,
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.units import format_quantity
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
@@ -125,8 +125,8 @@ def _budget(
     lower, upper = between
     known: dict[float, Comparison] = {}
     exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
-    fixed = _as_many_roads(design, index, method)
-    same = None if _has(baseline, parameter) else evaluate(baseline, index, fixed)
+    fixed = _with_fixed_roads(design, index, method)
+    same = None if _has_element(baseline, parameter) else evaluate(baseline, index, fixed)
 
     def difference(logarithm: float) -> float:
         if logarithm not in known:
@@ -146,7 +146,7 @@ def _budget(
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
-    asked = [known[at].status for at in grid if end is None or lies_on_the_way(at, end, grid[1] - grid[0])]
+    asked = [known[at].status for at in grid if end is None or is_within_range(at, end, grid[1] - grid[0])]
     return BreakEven(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -197,7 +197,7 @@ def _kinds() -> str:
     return " or ".join(f'"{kind.key}"' for kind in ELEMENTS.values() if kind.may_vanish)
 
 
-def _has(vehicle: Vehicle, parameter: str) -> bool:
+def _has_element(vehicle: Vehicle, parameter: str) -> bool:
     try:
         return bool(_elements(vehicle, parameter))
     except DesignError:
@@ -222,7 +222,7 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
     return present / _REACH, present * _REACH
 
 
-def _as_many_roads(design: Vehicle, index: IndexLike, method: Method) -> Method:
+def _with_fixed_roads(design: Vehicle, index: IndexLike, method: Method) -> Method:
     """The method with a fixed number of roads, so that differences are continuous in the parameter."""
     if not isinstance(method, AveragingMethod):
         return method
@@ -267,7 +267,7 @@ def _ranges(
     return tuple(found)
 
 
-def lies_on_the_way(at: float, end: Crossing, step: float) -> bool:
+def is_within_range(at: float, end: Crossing, step: float) -> bool:
     """Whether a point of the grid (a logarithm) belongs to the range on the better side of its end."""
     beyond = at - float(np.log(end.value))
     return beyond <= step if end.better == "below" else beyond >= -step
@@ -286,8 +286,8 @@ def _status(
 
 def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
     """Clause on the values for which the design is better."""
-    whole = f"{parameter} {_span(ranges[0].lower, ranges[-1].upper, unit)}"
-    better = [f"{_span(one.lower, one.upper, unit)}" for one in ranges if one.better]
+    whole = f"{parameter} {_format_range(ranges[0].lower, ranges[-1].upper, unit)}"
+    better = [f"{_format_range(one.lower, one.upper, unit)}" for one in ranges if one.better]
     if all(one.better for one in ranges):
         return f"the design is better for every {whole}"
     if not better:
@@ -295,5 +295,5 @@ def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
     return f"the design is better {' and '.join(better)} only, of all {whole}"
 
 
-def _span(lower: float, upper: float, unit: str) -> str:
+def _format_range(lower: float, upper: float, unit: str) -> str:
     return f"from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Bound, Sense
-from inerter.optimisation.local import LocalOptimum, tell_of_costly
+from inerter.optimisation.local import LocalOptimum, report_costly_search
 from inerter.optimisation.minimax_level import LogRows, lowest_level
-from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
+from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
 from inerter.work.progress import report
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ class ConstrainedProblem:
     def rows(self, point: Array, known: Known | None = None) -> LogRows:
         """Logarithms at a point and their slopes; constraints relative to their limits, not positive if satisfied."""
         which = (None,) * len(self.functions) if known is None else known
-        found = [_logs(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
+        found = [_log_rows(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
         own = [] if self.objective is None else [found.pop(0)]
         logs, slopes, under = [a for a, _ in own], [b for _, b in own], [np.ones(a.size) for a, _ in own]
         equal, equal_slopes = [np.zeros(0)], [np.zeros((0, point.size))]
@@ -97,7 +97,7 @@ class ConstrainedProblem:
         return LocalOptimum(point, value, evaluations, excess)
 
 
-def _logs(function: Differentiable, point: Array, which: Any, following: bool) -> tuple[Array, Array]:
+def _log_rows(function: Differentiable, point: Array, which: Any, following: bool) -> tuple[Array, Array]:
     peaks = function.active(point) if following else which
     if peaks is None:
         value, gradient = function.value_and_gradient(point)
@@ -126,8 +126,8 @@ def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalO
         same = next(here, None)
         if same is None:
             share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
-            report("ends", number, len(near), best=lowest([*ended, *near]), share=share)
-            ended.append(kept_search(local.point, partial(refine_minimax, problem, local)))
+            report("ends", number, len(near), best=lowest_feasible([*ended, *near]), share=share)
+            ended.append(resumable_search(local.point, partial(refine_minimax, problem, local)))
         else:
             ended.append(replace(same, evaluations=local.evaluations))
     return ended
@@ -147,7 +147,7 @@ def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOpt
         point, count = lowest_level(fixed, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
         found = problem.at(point, 0)
         evaluations += count + 2
-        if _better(found, best):
+        if _is_better(found, best):
             best = found
         seen = problem.active_peaks(point)
         if all(peaks is None for peaks in seen) or _is_converged(problem, point, known, found):
@@ -156,7 +156,7 @@ def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOpt
     return replace(best, evaluations=evaluations)
 
 
-def _better(one: LocalOptimum, other: LocalOptimum) -> bool:
+def _is_better(one: LocalOptimum, other: LocalOptimum) -> bool:
     """Whether `one` has a smaller violation than `other`, or a lower value if both are feasible."""
     if max(one.excess, other.excess) <= _EXACTLY:
         return one.value < other.value
@@ -186,9 +186,9 @@ def trust_region_within(problem: ConstrainedProblem, start: Array) -> LocalOptim
             point = np.clip(np.exp(x), problem.lower, problem.upper)[None]
             value = float(objective.values(point)[0])
             over = np.array([float(bound.excess(point)[0]) for bound in problem.bounds])
-            tell_of_costly(len(memory) + 1, most, best[0])
+            report_costly_search(len(memory) + 1, most, best[0])
             here = LocalOptimum(point[0], value, 0, float(over.max()))
-            if np.isfinite(value) and _no_worse(here, best[0]):
+            if np.isfinite(value) and _is_no_worse(here, best[0]):
                 best[0] = here
             log = float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
             memory[x.tobytes()] = log, np.clip(over, _HIDDEN, -_HIDDEN)
@@ -206,7 +206,7 @@ def trust_region_within(problem: ConstrainedProblem, start: Array) -> LocalOptim
     return replace(best[0], evaluations=len(memory))
 
 
-def _no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
+def _is_no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
     if max(one.excess, other.excess) <= KEPT_COSTLY:
         return one.value < other.value
     return one.excess < other.excess
@@ -217,7 +217,7 @@ def sensitivities(problem: ConstrainedProblem, point: Array) -> list[float]:
     known = problem.active_peaks(point)
     slopes, own, limit_of, signs = [], [], [], []
     for number, (peaks, function) in enumerate(zip(known, problem.functions, strict=True)):
-        logs, gradients = _logs(function, point, peaks, False)
+        logs, gradients = _log_rows(function, point, peaks, False)
         if number == 0:
             near = logs >= logs.max() - _TIGHT
             slopes += list(gradients[near])

@@ -15,7 +15,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
-from inerter.optimisation.minimax_level import LogRows, below, lowest_level
+from inerter.optimisation.minimax_level import LogRows, bounded_rows, lowest_level
 from inerter.work.progress import evaluated, report
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
         point = np.clip(np.exp(x), lower, upper)
         value = float(objective.values(point[None])[0])
         count[0] += 1
-        tell_of_costly(count[0], most, best[0])
+        report_costly_search(count[0], most, best[0])
         if value < best[0].value:
             best[0] = LocalOptimum(point, value, 0)
         return float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
@@ -80,7 +80,7 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
     return LocalOptimum(best[0].point, best[0].value, int(result.nfev))
 
 
-def tell_of_costly(count: int, most: int, best: LocalOptimum) -> None:
+def report_costly_search(count: int, most: int, best: LocalOptimum) -> None:
     """Report the number of evaluations, out of at most `most`, and the best value."""
     lowest = best.value if np.isfinite(best.value) else None
     report("evaluations", count, most, best=lowest, share=count / most)
@@ -90,11 +90,11 @@ def approach(objective: Differentiable, start: Array, lower: Array, upper: Array
     """Close to a minimax optimum: the level above the peaks, each followed as it moves."""
 
     def peaks(point: Array) -> LogRows:
-        which = _active(objective, point)[:_MOST_PEAKS]
+        which = _active_peaks(objective, point)[:_MOST_PEAKS]
         values, gradients = objective.components(point, which)
         logs, slopes = np.full(_MOST_PEAKS, _HIDDEN), np.zeros((_MOST_PEAKS, point.size))
         logs[: which.size], slopes[: which.size] = np.log(values), gradients * point / values[:, None]
-        return below(logs, slopes)
+        return bounded_rows(logs, slopes)
 
     point, count = lowest_level(peaks, start, lower, upper, tolerance=1e-7, most_steps=60)
     ends = np.vstack([start, point])
@@ -105,13 +105,13 @@ def approach(objective: Differentiable, start: Array, lower: Array, upper: Array
 
 def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: Array) -> LocalOptimum:
     """The minimax optimum near `start`: the level above fixed frequencies, to which exceeding peaks are added."""
-    best, known, evaluations = start, _active(objective, start.point), start.evaluations
+    best, known, evaluations = start, _active_peaks(objective, start.point), start.evaluations
     point = start.point
     for _ in range(20):
 
         def at_known_peaks(point: Array, which: Array = known) -> LogRows:
             values, gradients = objective.components(point, which)
-            return below(np.log(values), gradients * point / values[:, None])
+            return bounded_rows(np.log(values), gradients * point / values[:, None])
 
         point, count = lowest_level(at_known_peaks, point, lower, upper, tolerance=1e-13, most_steps=100)
         value, level = float(objective.values(point[None])[0]), float(np.exp(at_known_peaks(point).logs.max()))
@@ -120,11 +120,11 @@ def polish(objective: Differentiable, start: LocalOptimum, lower: Array, upper: 
             best = LocalOptimum(point, value, evaluations)
         if not np.isfinite(value) or value <= level * (1.0 + _LEVEL_TOLERANCE):
             break
-        known = np.concatenate([known, _active(objective, point)])
+        known = np.concatenate([known, _active_peaks(objective, point)])
     return LocalOptimum(best.point, best.value, evaluations)
 
 
-def _active(objective: Differentiable, point: Array) -> Array:
+def _active_peaks(objective: Differentiable, point: Array) -> Array:
     components = objective.active(point)
     assert components is not None
     return components

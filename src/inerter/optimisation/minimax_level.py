@@ -30,7 +30,7 @@ class LogRows:
     equal_slopes: Array
 
 
-def below(logs: Array, slopes: Array) -> LogRows:
+def bounded_rows(logs: Array, slopes: Array) -> LogRows:
     """Rows that are all bounded by the level."""
     none = np.zeros(0), np.zeros((0, slopes.shape[1]))
     return LogRows(logs, slopes, np.ones(logs.size), *none)

@@ -24,7 +24,7 @@ from inerter.optimisation.active_constraints import ConstraintResult, constraint
 from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
-from inerter.optimisation.starts import APPROACHED, kept_search, lowest, searches_from
+from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
 from inerter.optimisation.threads import one_blas_thread
 from inerter.renamed import RenamedAttribute
 from inerter.vehicle.vehicle import Vehicle
@@ -281,7 +281,7 @@ def _costly_searches(problem: ConstrainedProblem, tried: list[Array]) -> tuple[l
                 search = partial(trust_region_within, problem, tried[i])
             else:
                 search = partial(trust_region, objective, tried[i], lower, upper)
-            found.append(kept_search(tried[i], search))
+            found.append(resumable_search(tried[i], search))
     return found, len(tried)
 
 
@@ -304,8 +304,8 @@ def _searches(problem: ConstrainedProblem, first: list[Array]) -> list[LocalOpti
         same = next(here, None)
         if same is None:
             share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
-            report("ends", number, len(near), best=lowest([*ended, *near]), share=share)
-            ended.append(kept_search(local.point, partial(polish, objective, local, lower, upper)))
+            report("ends", number, len(near), best=lowest_feasible([*ended, *near]), share=share)
+            ended.append(resumable_search(local.point, partial(polish, objective, local, lower, upper)))
         else:
             ended.append(LocalOptimum(same.point, same.value, local.evaluations))
     return ended
@@ -326,7 +326,7 @@ def _starting_points(
     objective: Objective | ConstrainedProblem, lower: Array, upper: Array, starts: int, seed: int
 ) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
-    unit = _even(2 ** min(6 + lower.size, 12), lower.size, seed)
+    unit = _quasi_random_points(2 ** min(6 + lower.size, 12), lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
     report("samples", 0, len(points), share=0.0)
 
@@ -342,7 +342,7 @@ def _starting_points(
     return [points[int(i)] for i in resumed(points[:starts].tobytes(), best_first)], len(points)
 
 
-def _even(count: int, size: int, seed: int) -> Array:
+def _quasi_random_points(count: int, size: int, seed: int) -> Array:
     """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start.
 
     Its steps are the powers of the inverse root of x**(size + 1) = x + 1 (M. Roberts, The unreasonable effectiveness of

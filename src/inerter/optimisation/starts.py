@@ -1,4 +1,4 @@
-"""Local searches one after another: told of while they go on, and kept where long work keeps its parts."""
+"""Local searches one after another, with progress reports, saved for resumption of a long run."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 _SHORTER = 1.25  # later starts are further from an optimum, and many end early
-_KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is told as the lowest
+_KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is reported as the lowest
 SAMPLED, APPROACHED = 0.02, 0.95  # shares of a search that are done with its sample, and with all first searches
 
 
@@ -22,13 +22,13 @@ def searches_from(starts: Sequence[Array], search: Callable[[Array], LocalOptimu
     found: list[LocalOptimum] = []
     for number, start in enumerate(starts):
         share = end - (end - SAMPLED) * (1.0 - number / len(starts)) ** _SHORTER
-        report("starts", number, len(starts), best=lowest(found), share=share)
-        found.append(kept_search(start, lambda start=start: search(start)))  # type: ignore[misc]
-    report("starts", len(starts), len(starts), best=lowest(found), share=end)
+        report("starts", number, len(starts), best=lowest_feasible(found), share=share)
+        found.append(resumable_search(start, lambda start=start: search(start)))  # type: ignore[misc]
+    report("starts", len(starts), len(starts), best=lowest_feasible(found), share=end)
     return found
 
 
-def kept_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalOptimum:
+def resumable_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalOptimum:
     """The end of a search, as it was kept or as it is found now."""
 
     def numbers() -> list[float]:
@@ -39,7 +39,7 @@ def kept_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalOptimu
     return LocalOptimum(np.array(point), value, int(evaluations), excess)
 
 
-def lowest(found: Sequence[LocalOptimum]) -> float | None:
+def lowest_feasible(found: Sequence[LocalOptimum]) -> float | None:
     """The lowest feasible value; None if there is none yet."""
     values = [local.value for local in found if local.excess <= _KEPT and np.isfinite(local.value)]
     return min(values, default=None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from pkgutil import resolve_name
@@ -26,8 +26,8 @@ class PaperResults(Protocol):
 class Paper:
     """Paper whose results can be recomputed.
 
-    `recompute`, `write`, `data` and `text` name functions, as "package.module:function", of the module that does it, so
-    that the row itself loads nothing.
+    `recompute`, `write`, `data` and `text` name functions, as "package.module:function", of the module concerned, so
+    that the registry entry itself imports nothing.
     """
 
     name: str
@@ -44,28 +44,25 @@ class Paper:
     def reproduce(self, folder: Path, *, only: Sequence[str] = (), **settings: Any) -> PaperResults:
         """Recompute the paper, or some of its parts, into `folder`, with tables, figures and a page.
 
-        `settings` are `jobs`, `resume`, `force` and `progress`, as `run_study` takes them, but that `progress` is told
-        the name of the piece of work, steps done, and all steps.
+        `settings` are `jobs`, `resume`, `force` and `progress`, as in `run_study`, except that `progress` receives the
+        name of the task, the number of completed steps, and the number of all steps.
 
         Raises `StudyError` as `run_study` does, or for an unknown part; `WorkError` as `run_study` does.
         """
         unknown = [part for part in only if part not in self.parts]
         if unknown:
             known = ", ".join(self.parts)
-            raise StudyError(f"There is no part named {unknown[0]!r} of {self.name} (there are: {known}).")
-        found: PaperResults = _loaded(self.recompute)(folder, only=only, finish=_loaded(self.write), **settings)
+            raise StudyError(f"Unknown part {unknown[0]!r} of {self.name}; available: {known}.")
+        found: PaperResults = resolve_name(self.recompute)(
+            folder, only=only, finish=resolve_name(self.write), **settings
+        )
         return found
 
     def as_data(self, found: PaperResults) -> dict[str, Any]:
         """Recomputed results as rows for JSON, by table."""
-        tables: dict[str, Any] = _loaded(self.data)(found)
+        tables: dict[str, Any] = resolve_name(self.data)(found)
         return tables
 
     def as_text(self, found: PaperResults) -> str:
         """Recomputed results as text of 80 columns."""
-        return str(_loaded(self.text)(found))
-
-
-def _loaded(name: str) -> Callable[..., Any]:
-    function: Callable[..., Any] = resolve_name(name)
-    return function
+        return str(resolve_name(self.text)(found))

@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from inerter.papers.paper import Paper
 from inerter.papers.wang_su_2008.paper import PAPER as WANG_SU_2008
-from inerter.rows import Rows
+from inerter.registry import Registry
 
-PAPERS: Rows[Paper] = Rows("paper", "name", ("title", "parts", "claims", "figures"), (WANG_SU_2008,))
+PAPERS: Registry[Paper] = Registry("paper", "name", ("title", "parts", "claims", "figures"), (WANG_SU_2008,))

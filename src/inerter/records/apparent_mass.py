@@ -17,7 +17,7 @@ _SEGMENTS = 6  # of the record, half of each in the next
 
 
 @dataclass(frozen=True, eq=False)
-class Lines:
+class RatioLines:
     """The ratio of two channels at the frequencies where the first is excited and the other follows it."""
 
     omega: Vector  # (m,) [rad/s]
@@ -30,7 +30,9 @@ class Lines:
         return float(self.omega[-1] / self.omega[0]) if self.omega.size else 1.0
 
 
-def lines(first: Vector, second: Vector, interval: float, lowest: float = 0.0, highest: float = np.inf) -> Lines:
+def ratio_lines(
+    first: Vector, second: Vector, interval: float, lowest: float = 0.0, highest: float = np.inf
+) -> RatioLines:
     """The ratio second/first between these frequencies [Hz], from averaged spectra.
 
     A line counts if the first channel has at least 1e-4 of its largest density there, and the squared coherence is at
@@ -47,12 +49,12 @@ def lines(first: Vector, second: Vector, interval: float, lowest: float = 0.0, h
     found[:2] = False
     segments = max((2 * first.size // size - 1) * 0.75, 1.0)  # neighbours share half of their samples
     kept = np.clip(coherence[found], 0.0, 1.0 - 1e-12)
-    return Lines(
+    return RatioLines(
         2.0 * np.pi * frequency[found], cross[found] / power[found], np.sqrt((1.0 - kept) / (2.0 * kept * segments))
     )
 
 
-def force_over_acceleration(record: Record, motion: Motion) -> Lines:
+def force_over_acceleration(record: Record, motion: Motion) -> RatioLines:
     """The apparent mass of the device, where the displacement exceeds its noise floor."""
     acceleration = motion.acceleration if record.acceleration is None else record.acceleration
-    return lines(acceleration, record.force, record.interval, highest=motion.highest)
+    return ratio_lines(acceleration, record.force, record.interval, highest=motion.highest)

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, TypedDict
 
 from inerter.errors import RecordError
-from inerter.records.channel_units import EXAMPLES, fits
+from inerter.records.channel_units import EXAMPLES, is_unit_of_role
 from inerter.records.channels import Channel, Contents
 from inerter.records.remedy import Action, Remedy
 
@@ -78,7 +78,7 @@ def select_channels(
             raise RecordError(
                 f"{source}: {role} channel not found by an obvious name (such as {', '.join(OBVIOUS[role][:3])}); "
                 f"available: {format_channels(channels)}. Name it: ",
-                *(example(channels, role), "."),
+                *(channel_example(channels, role), "."),
             )
     chosen = {role: chosen[role] for role in ROLES if role in chosen}
     _check_distinct(source, chosen)
@@ -152,7 +152,11 @@ def _obvious_channel(source: str, channels: Sequence[Channel], role: str, groups
         return near[0]
     if len(matches) > 1:
         raise _ambiguous_name(source, channels, role, matches)
-    fitting = [channel for channel in channels if fits(role, channel.unit)] if not matches and role in _NEEDED else []
+    fitting = (
+        [channel for channel in channels if is_unit_of_role(role, channel.unit)]
+        if not matches and role in _NEEDED
+        else []
+    )
     if len(fitting) == 1 and _first_word(fitting[0]) in OBVIOUS[role]:
         return fitting[0]
     return matches[0] if matches else None
@@ -194,9 +198,9 @@ def _nearest_name(given: str, channels: Sequence[Channel]) -> str | None:
     return by_key[close[0]] if close else None
 
 
-def example(channels: Sequence[Channel], role: str) -> Remedy:
+def channel_example(channels: Sequence[Channel], role: str) -> Remedy:
     """Example of naming the channel of a role: the first one with a unit of that role."""
-    likely = (channel.name for channel in channels if fits(role, channel.unit))
+    likely = (channel.name for channel in channels if is_unit_of_role(role, channel.unit))
     return Remedy(Action.CHANNEL, (role, next(likely, "name")))
 
 

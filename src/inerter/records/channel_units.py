@@ -61,14 +61,14 @@ def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str
     )
 
 
-def fits(role: str, unit: str) -> bool:
+def is_unit_of_role(role: str, unit: str) -> bool:
     """Whether a unit, spelled as in a file, is a unit of that role."""
     return _value(role, unit.strip()) is not None
 
 
-def fits_any(unit: str) -> bool:
+def is_unit_of_any_role(unit: str) -> bool:
     """Whether a unit, spelled as in a file, is a unit of any channel of a record."""
-    return any(fits(role, unit) for role in CHANNELS)
+    return any(is_unit_of_role(role, unit) for role in CHANNELS)
 
 
 def check_units(units: dict[str, str] | None) -> dict[str, str]:

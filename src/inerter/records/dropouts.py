@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
-from inerter.records.gaps import LONGEST, fill
+from inerter.records.gaps import LONGEST, fill_missing_values
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
 from inerter.records.smoothing import resolution
@@ -130,7 +130,7 @@ def insert_samples(record: Record, lost: list[Dropout]) -> tuple[Record, NDArray
         if role != "time":
             spread = np.zeros(measured.size)
             spread[measured] = values
-            changes[role] = fill(time, spread, ~measured)
+            changes[role] = fill_missing_values(time, spread, ~measured)
     said = (
         f"Dropped samples without a gap in the time channel, interpolated: {int(count.sum())}, at {len(lost)} places."
     )

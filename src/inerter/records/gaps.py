@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import binary_dilation, find_objects, label
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.channels import Samples
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -83,16 +83,16 @@ def missing_rows(time: Vector) -> MissingRows | None:
     return MissingRows(np.flatnonzero(holes), np.rint(ratio[holes]).astype(np.int64) - 1)
 
 
-def runs(mask: Mask) -> list[tuple[int, int]]:
+def true_runs(mask: Mask) -> list[tuple[int, int]]:
     """Runs of true samples: the first sample of each and one after its last.
 
-    >>> runs(np.array([False, True, True, False, True]))
+    >>> true_runs(np.array([False, True, True, False, True]))
     [(1, 3), (4, 5)]
     """
     return [(found[0].start, found[0].stop) for found in find_objects(label(mask)[0])]
 
 
-def fill(time: Vector, values: Vector, missing: Mask) -> Vector:
+def fill_missing_values(time: Vector, values: Vector, missing: Mask) -> Vector:
     """The values with those that are missing interpolated by a cubic spline through their neighbours.
 
     Needs two values that are not missing on either side of the first gap and the last.
@@ -166,7 +166,7 @@ def _interpolate_at(time: Vector, samples: Samples) -> Vector:
 
 def _refusal(source: str, bad: dict[str, Mask]) -> RecordError:
     role, mask = next(iter(bad.items()))
-    found = runs(mask)
+    found = true_runs(mask)
     longest = max(stop - start for start, stop in found)
     return RecordError(
         f"{source}: the {role} has {int(mask.sum())} samples that are missing or not finite, in {len(found)} "
@@ -181,7 +181,7 @@ def _keep_longest(
     channels: dict[str, Samples], bad: dict[str, Mask]
 ) -> tuple[dict[str, Samples], list[str], dict[str, tuple[int, int]]]:
     good = ~np.logical_or.reduce(list(bad.values()))
-    start, stop = max(runs(good), key=lambda run: run[1] - run[0], default=(0, 0))
+    start, stop = max(true_runs(good), key=lambda run: run[1] - run[0], default=(0, 0))
     kept = {role: Samples(samples.values[start:stop].copy()) for role, samples in channels.items()}
     note = f"Samples {start} to {stop - 1} of {good.size} were kept: the longest part without missing samples."
     return kept, [note], {}
@@ -200,7 +200,7 @@ def _interpolate_missing(
     limit = LONGEST * float(np.median(np.diff(time))) * (1 + 1e-6) if isinstance(gaps, str) else float(gaps)
     notes, filled = [], {}
     for role, mask in bad.items():
-        found = runs(mask[first:last])
+        found = true_runs(mask[first:last])
         if not found:
             continue
         start, stop = max(found, key=lambda run: time[run[1]] - time[run[0]])
@@ -210,7 +210,7 @@ def _interpolate_missing(
                 f"many to interpolate (at most {limit:g} s). Use ",
                 *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
             )
-        cut[role] = fill(time, cut[role], mask[first:last])
+        cut[role] = fill_missing_values(time, cut[role], mask[first:last])
         count, longest = int(mask[first:last].sum()), max(b - a for a, b in found)
         filled[role] = (count, longest)
         notes.append(f"Missing samples of the {role}, interpolated: {count}, up to {longest} in a row.")

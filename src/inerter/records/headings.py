@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from inerter.records.channel_units import fits_any
+from inerter.records.channel_units import is_unit_of_any_role
 from inerter.units import is_unit
 
 _BRACKET = re.compile(r"\[([^\[\]]*)\]|\(([^()]*(?:\([^()]*\)[^()]*)*)\)")
@@ -20,7 +20,7 @@ def is_unit_cell(cell: str) -> bool:
     (True, True, True, False)
     """
     text = cell.strip(" []()")
-    return text.casefold() in _OTHERS or fits_any(text) or is_unit(_POWER.sub(r"^\1", text))
+    return text.casefold() in _OTHERS or is_unit_of_any_role(text) or is_unit(_POWER.sub(r"^\1", text))
 
 
 def split_heading(cell: str) -> tuple[str, str, str]:
@@ -37,7 +37,7 @@ def split_heading(cell: str) -> tuple[str, str, str]:
     found = found or [b for b in brackets[-1:] if b[1] is not None and b.end() == len(cell)]  # one that is not known
     if found and (name := f"{cell[: found[-1].start()].rstrip()}{cell[found[-1].end() :]}".strip()):
         return name, (found[-1][1] or found[-1][2] or "").strip(), without_brackets(name)
-    if (match := _BESIDE.fullmatch(cell)) and fits_any(match[2]):
+    if (match := _BESIDE.fullmatch(cell)) and is_unit_of_any_role(match[2]):
         return match[1], match[2], without_brackets(match[1])
     return cell, "", without_brackets(cell)
 

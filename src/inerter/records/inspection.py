@@ -18,7 +18,7 @@ from inerter.records.record import UNIFORM, Record
 from inerter.records.repair import faulty_instants
 from inerter.records.saturation import plateaus, saturated_samples
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
-from inerter.records.spectral_lines import lonely_line
+from inerter.records.spectral_lines import isolated_line
 
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
@@ -45,20 +45,20 @@ def findings(record: Record) -> list[Finding]:
     if not any(finding.severity == "error" for finding in found):
         found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
         if record.uniform:
-            found += _of_motion(record, smooth_displacement(record))
+            found += _motion_findings(record, smooth_displacement(record))
     order = ("error", "warning", "info")
     return sorted(found, key=lambda finding: order.index(finding.severity))
 
 
-def _of_motion(record: Record, motion: Motion) -> list[Finding]:
+def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
         *_undersampling(record, motion),
         *_swapped_columns(record),
         *(_hum(record, motion) or _line(record, motion)),
         *_clock(record, motion),
-        *polarity_delay.sign(record, motion),
-        *polarity_delay.delay(record, motion),
+        *polarity_delay.polarity_finding(record, motion),
+        *polarity_delay.delay_finding(record, motion),
         Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
     ]
 
@@ -115,14 +115,14 @@ def _instants(record: Record) -> list[Finding]:
         RecordFinding.JOINED: {"displacement": faulty.joints},
     }
     return [
-        Finding(kind, "warning", role, _where(record, instants))
+        Finding(kind, "warning", role, _instant_summary(record, instants))
         for kind, by_role in kinds.items()
         for role, instants in by_role.items()
         if instants
     ]
 
 
-def _where(record: Record, instants: list[Instant]) -> dict[str, float]:
+def _instant_summary(record: Record, instants: list[Instant]) -> dict[str, float]:
     return {
         "places": float(len(instants)),
         "samples": float(sum(i.stop - i.start for i in instants)),
@@ -207,7 +207,10 @@ def _drift(record: Record) -> list[Finding]:
         if quarter < 4 or turns < 8:
             continue  # too few periods to separate drift from motion
         first, last = values[:quarter], values[-quarter:]
-        changes = float(np.median(last) - np.median(first)), float(_middle(last) - _middle(first))
+        changes = (
+            float(np.median(last) - np.median(first)),
+            float(_median_and_midrange(last) - _median_and_midrange(first)),
+        )
         change, size = min(changes, key=abs), float(np.ptp(values))
         if changes[0] * changes[1] > 0.0 and abs(change) > 0.1 * size:
             numbers = {"change": change, "range": size}
@@ -215,7 +218,7 @@ def _drift(record: Record) -> list[Finding]:
     return result
 
 
-def _middle(values: Vector) -> float:
+def _median_and_midrange(values: Vector) -> float:
     return 0.5 * float(np.max(values) + np.min(values))
 
 
@@ -250,10 +253,10 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
         if mains > 0.45 * rate or motion.highest > 0.8 * mains or multiple:
             continue
         line = np.abs(frequency - mains) <= width
-        beside = (np.abs(frequency - mains) > 2.0 * width) & (np.abs(frequency - mains) <= 0.2 * mains)
+        nearby = (np.abs(frequency - mains) > 2.0 * width) & (np.abs(frequency - mains) <= 0.2 * mains)
         amplitude = math.sqrt(2.0 * float(np.sum(density[line])) * float(frequency[1]))
-        stands_out = float(np.max(density[line])) > 4.0 * float(np.max(density[beside]))
-        if stands_out and amplitude > 1e-3 * float(np.std(record.force)):
+        exceeds = float(np.max(density[line])) > 4.0 * float(np.max(density[nearby]))
+        if exceeds and amplitude > 1e-3 * float(np.std(record.force)):
             numbers = {"frequency": mains, "amplitude": amplitude}
             return [Finding(RecordFinding.HUM, "warning", "force", numbers)]
     return []
@@ -261,7 +264,7 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
 
 def _line(record: Record, motion: Motion) -> list[Finding]:
     """An isolated line at any other frequency."""
-    line = lonely_line(record, motion)
+    line = isolated_line(record, motion)
     if line is None:
         return []
     numbers = {"frequency": line.frequency, "amplitude": line.amplitude, "rate": 1.0 / record.interval}

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.records.dropouts import MAD
-from inerter.records.gaps import runs
+from inerter.records.gaps import true_runs
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
@@ -23,7 +23,7 @@ Mask = NDArray[np.bool_]
 _SIXTH = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / -20.0  # a sample less what its neighbours predict
 _AROUND = 50  # samples to either side, whose deviations a spike has to exceed too
 _CLEAR = 8.0  # standard deviations from the prediction of the neighbours
-_RETURN = 0.08  # of a spike: deviation of the samples beside it, once it is taken out
+_RETURN = 0.08  # of a spike: deviation of the adjacent samples, once it is removed
 _WIDEST = 3  # samples of a spike
 _HELD = 4  # equal samples in a row, at least
 _LOCAL = 100  # samples to either side, which say how often values repeat by chance
@@ -45,14 +45,14 @@ class Instant:
     size: float
 
 
-def spikes(values: Vector, widest: int = _WIDEST) -> list[Instant]:
+def spike_instants(values: Vector, widest: int = _WIDEST) -> list[Instant]:
     """Runs of up to `widest` samples that leave an otherwise smooth channel and return to it at once.
 
     An impact that passed a load cell takes several samples to decay, and a step does not return: neither is a spike.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500] += 40.0
-    >>> [(found.start, found.stop) for found in spikes(values)]
+    >>> [(found.start, found.stop) for found in spike_instants(values)]
     [(500, 501)]
     """
     if values.size < 8 * widest:
@@ -71,13 +71,13 @@ def _spikes_of(values: Vector, width: int) -> Iterator[Instant]:
     deviation = _deviation(values)
     scale = np.maximum(_local_scale(deviation), resolution(values))
     limit = _CLEAR * np.maximum(scale, 1e-12 * float(np.ptp(values)))
-    beside = 4
+    margin = 4
     for at in np.flatnonzero(np.abs(deviation) > limit):
-        for start in range(max(int(at) - width + 1, beside), int(at) + 1):
+        for start in range(max(int(at) - width + 1, margin), int(at) + 1):
             stop = start + width
-            if stop + beside > values.size:
+            if stop + margin > values.size:
                 continue
-            near = np.r_[start - beside : start, stop : stop + beside]
+            near = np.r_[start - margin : start, stop : stop + margin]
             middle = 0.5 * (start + stop - 1)
             inside = np.arange(start, stop)
             law = np.polynomial.Polynomial.fit(near - middle, values[near], 3)
@@ -115,7 +115,7 @@ def _local_scale(deviation: Vector) -> Vector:
     return np.asarray(np.maximum(whole, level))
 
 
-def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
+def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     """Runs of at least four equal values where noise or motion would have changed them.
 
     A clipped channel, one at rest and one whose values repeat all the time have no held values. A channel that is not
@@ -123,11 +123,11 @@ def held_values(values: Vector, smooth: bool = True) -> list[Instant]:
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500:506] = values[500]
-    >>> [(found.start, found.stop) for found in held_values(values)]
+    >>> [(found.start, found.stop) for found in held_value_instants(values)]
     [(500, 506)]
     """
     same = np.diff(values) == 0.0
-    candidates = [(a, b + 1) for a, b in runs(same) if b + 1 - a >= _HELD]
+    candidates = [(a, b + 1) for a, b in true_runs(same) if b + 1 - a >= _HELD]
     if not candidates or values.size < 4 * _BEFORE:
         return []
     inside = np.zeros(values.size, dtype=bool)
@@ -175,7 +175,7 @@ def _departure(values: Vector, a: int, b: int) -> tuple[float, float]:
     return away, float(np.std(values[near] - law(near - middle)))
 
 
-def joints(record: Record, excused: Mask) -> list[Instant]:
+def joint_instants(record: Record, excused: Mask) -> list[Instant]:
     """Instants at which the displacement jumps between two smooth parts: joints between pieces.
 
     They are few, and far larger than any other discontinuity. `excused` are samples with faults of another kind.

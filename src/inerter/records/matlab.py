@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
-from inerter.records.channel_units import fits
+from inerter.records.channel_units import is_unit_of_role
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import split_heading
 from inerter.records.optional_readers import library, reraise_read_errors
@@ -25,7 +25,7 @@ _UNITS = ("unit", "units")
 _VALUES = ("data", "values", "value", "y", "signals")
 _NAMES = ("name", "label", "signalname", "channelname")
 _CLOCKS = ("time", "t", "zeit", "temps")
-_STEPS = ("dt", "wf_increment", "increment", "ts")  # [s], beside values
+_STEPS = ("dt", "wf_increment", "increment", "ts")  # [s], next to values
 _PORTS = re.compile(r"(out|in|value)\d*", re.IGNORECASE)  # of blocks of a model, which the path names before
 _CATMAN = re.compile(r"(.+)_Data")
 _OBJECTS = ("opaque", "object")
@@ -46,7 +46,7 @@ class _Key:
 def open_channels(path: str, source: str) -> Iterator[Contents]:
     """The vectors of the file, those of structs by "run.position", the columns of a matrix by "data[0]".
 
-    The unit of a vector is a text beside it: `unit` or `units` in its own struct, or a struct `units` with a text of
+    The unit of a vector is a text next to it: `unit` or `units` in its struct, or a struct `units` with a text of
     the vector's name. Structs and arrays of structs with values, names and units are channels by these names: those of
     dSPACE ControlDesk (`X`, `Y(i)`), of Simulink (`time`, `signals(i)`), of catman (`Channel_1_Data` and its header),
     waveforms of LabVIEW (`t0`, `dt`, `Y`) and timeseries as structs (`Time`, `Data`).
@@ -134,7 +134,7 @@ def _seconds_per_unit(variables: Mapping[str, Any], keys: Mapping[str, str], not
     if not isinstance(unit, str) or not unit:
         notes[_TIMESERIES] = None
         return 1.0
-    return parse_quantity(f"1 {unit}", "s") if fits("time", unit) else None
+    return parse_quantity(f"1 {unit}", "s") if is_unit_of_role("time", unit) else None
 
 
 def _control_desk(x: Mapping[str, Any], y: Mapping[str, Any], prefix: str, notes: dict[str, None]) -> list[Channel]:

@@ -15,7 +15,7 @@ _WHAT = "an MDF file"
 
 @contextmanager
 def open_channels(path: str, source: str) -> Iterator[Contents]:
-    """The channels of all groups but their clocks; each brings the times of its own raster.
+    """The channels of all groups but their clocks; each with the times of its raster.
 
     Raises `RecordError` if the file is damaged, or asammdf is missing.
     """

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.records.apparent_mass import Lines, force_over_acceleration, lines
+from inerter.records.apparent_mass import RatioLines, force_over_acceleration, ratio_lines
 from inerter.records.finding import Finding
 from inerter.records.finding_texts import CLEAR, SEEN, RecordFinding
 from inerter.records.record import Record
@@ -18,7 +18,7 @@ STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
 WIDE = 3.0  # highest over lowest frequency of an excitation that separates a delay from a damper
 
 
-def sign(record: Record, motion: Motion) -> list[Finding]:
+def polarity_finding(record: Record, motion: Motion) -> list[Finding]:
     """Finding on the polarity of the force: its correlations with acceleration (inertia) and velocity (losses).
 
     A passive device dissipates energy. So a force that opposes both is reversed; a force that opposes the acceleration
@@ -34,7 +34,7 @@ def sign(record: Record, motion: Motion) -> list[Finding]:
     return [Finding(RecordFinding.SIGN, "info", "force", numbers)]
 
 
-def delay(record: Record, motion: Motion) -> list[Finding]:
+def delay_finding(record: Record, motion: Motion) -> list[Finding]:
     """Finding on the delay of the recorded force against the motion.
 
     A measured acceleration is compared with that from the displacement, which gives the delay of the displacement
@@ -43,7 +43,7 @@ def delay(record: Record, motion: Motion) -> list[Finding]:
     That requires an excitation over a factor of 3 in frequency.
     """
     if record.acceleration is not None:
-        found = lines(motion.acceleration, record.acceleration, record.interval, highest=motion.highest)
+        found = ratio_lines(motion.acceleration, record.acceleration, record.interval, highest=motion.highest)
         if not found.omega.size:
             return [_unknown_delay("acceleration")]
         return [_delay_finding(record, *_fit_delay(found, (1,)), "acceleration")]
@@ -53,26 +53,26 @@ def delay(record: Record, motion: Motion) -> list[Finding]:
     return [_delay_finding(record, *_robust_delay(found), "force")]
 
 
-def _inertial_lines(found: Lines) -> Lines:
+def _inertial_lines(found: RatioLines) -> RatioLines:
     """The lines at which the real part is that of a mass, the same for most, within `STIFF`."""
     if not found.omega.size:
         return found
     mass = found.ratio.real
     usual = float(np.median(mass))
     kept = np.abs(mass - usual) <= STIFF * max(usual, 0.0)
-    return Lines(found.omega[kept], found.ratio[kept], found.phase_error[kept])
+    return RatioLines(found.omega[kept], found.ratio[kept], found.phase_error[kept])
 
 
-def _robust_delay(found: Lines) -> tuple[float, float]:
+def _robust_delay(found: RatioLines) -> tuple[float, float]:
     """The delay apart from the phase of the device; its error includes other choices of lines and terms."""
     late, error = _fit_delay(found, (1, -1, 3))
     half = slice(found.omega.size // 2, None)
-    upper = Lines(found.omega[half], found.ratio[half], found.phase_error[half])
+    upper = RatioLines(found.omega[half], found.ratio[half], found.phase_error[half])
     others = (_fit_delay(found, (1, -1))[0], _fit_delay(upper, (1, -1))[0])
     return late, math.hypot(error, *(late - other for other in others))
 
 
-def _fit_delay(found: Lines, powers: tuple[int, ...]) -> tuple[float, float]:
+def _fit_delay(found: RatioLines, powers: tuple[int, ...]) -> tuple[float, float]:
     """The delay in Im(ratio) = - mass delay omega + ... by weighted least squares, and its standard error.
 
     The error is scaled by the residual scatter, where that exceeds the stated errors of the lines.

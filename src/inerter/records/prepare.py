@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import detrend as without_line
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, low_pass
-from inerter.records.gaps import LONGEST, SCATTER, fill, missing_rows
+from inerter.records.gaps import LONGEST, SCATTER, fill_missing_values, missing_rows
 from inerter.records.record import CHANNELS, Record
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 BOTH = ("displacement", "force")
@@ -171,7 +171,7 @@ def with_missing_times(record: Record, gaps: str | float) -> Record:
 def _interpolate_new(time: Vector, values: Vector, new: NDArray[np.bool_]) -> Vector:
     spread = np.zeros(time.size)
     spread[~new] = values
-    return fill(time, spread, new)
+    return fill_missing_values(time, spread, new)
 
 
 def _spline(time: Vector, values: Vector, at: Vector) -> Vector:

@@ -11,17 +11,17 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records import matlab, mdf, tables, tdms
-from inerter.records.channel_selection import Roles, checked_roles, example, select_channels
-from inerter.records.channel_units import check_present, check_units, fits, scale
+from inerter.records.channel_selection import Roles, channel_example, checked_roles, select_channels
+from inerter.records.channel_units import check_present, check_units, is_unit_of_role, scale
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.dropouts import fill_dropouts
 from inerter.records.gaps import fill_missing, have_same_times, resample_onto_force
 from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
@@ -164,7 +164,7 @@ def _scales(
     check_present(source, needed, units)
     for role, channel in list(chosen.items()):
         wanted = asked[role] is not None or role in units or role not in _OPTIONAL
-        if not wanted and not fits(role, channel.unit):
+        if not wanted and not is_unit_of_role(role, channel.unit):
             del chosen[role]
             notes.append(f"The channel {channel.label} was left out: its unit is not a unit of {role}.")
             continue
@@ -207,7 +207,7 @@ def _with_times(
         raise RecordError(
             f"{source}: time channel not found by an obvious name, and the sampling interval is unknown. Name the "
             f"time, ",
-            *("such as ", example(contents.channels, "time"), ", or give ", Remedy(Action.INTERVAL, 1e-3), "."),
+            *("such as ", channel_example(contents.channels, "time"), ", or give ", Remedy(Action.INTERVAL, 1e-3), "."),
         )
     if timed and not have_same_times([time for time in rasters.values() if time is not None]):
         return resample_onto_force(source, channels)

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.remedy import Action, Remedy
 from inerter.renamed import RenamedAttribute
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.records.dropouts import find_dropouts
-from inerter.records.gaps import fill
-from inerter.records.instants import Instant, held_values, joints, mask_of, spikes
+from inerter.records.gaps import fill_missing_values
+from inerter.records.instants import Instant, held_value_instants, joint_instants, mask_of, spike_instants
 from inerter.records.record import Record
 
 Mask = NDArray[np.bool_]
@@ -42,18 +42,18 @@ def faulty_instants(record: Record) -> FaultyInstants:
         least = _least_spike(record) if role == "force" else 0.0
         found[role] = [
             spike
-            for spike in spikes(values, _WIDEST[role])
+            for spike in spike_instants(values, _WIDEST[role])
             if abs(spike.size) > least and not inside[spike.start - 1 : spike.stop + 1].any()
         ]
     excused = mask_of([*held["displacement"], *held["force"], *found["displacement"]], record.time.size)
     for loss in find_dropouts(record):
         excused[loss.after : loss.after + 2] = True
-    return FaultyInstants(found, held, joints(record, excused) if record.uniform else [])
+    return FaultyInstants(found, held, joint_instants(record, excused) if record.uniform else [])
 
 
 def _held_together(record: Record) -> dict[str, list[Instant]]:
     """Held values of each channel, also where only the other one shows that the recorder missed samples."""
-    held = {role: held_values(getattr(record, role), smooth=role == "displacement") for role in _ROLES}
+    held = {role: held_value_instants(getattr(record, role), smooth=role == "displacement") for role in _ROLES}
     result = {}
     for role, other in zip(_ROLES, reversed(_ROLES), strict=True):
         values = getattr(record, role)
@@ -83,6 +83,6 @@ def repair(record: Record) -> Record:
         missing = faulty.mask(role, record.time.size)
         missing[:2] = missing[-2:] = False
         if missing.any():
-            changes[role] = fill(record.time, getattr(record, role), missing)
+            changes[role] = fill_missing_values(record.time, getattr(record, role), missing)
             notes.append(f"Spikes and held values of the {role}, interpolated: {int(missing.sum())} samples.")
     return record.with_notes(*notes, **changes)

@@ -10,14 +10,14 @@ from typing import Literal, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import OK, RecordError, Status, StatusKind
 from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
-from inerter.records.result import Response, format_sources, respond
+from inerter.records.result import Response, format_sources, response_from_values
 from inerter.records.spectra import HarmonicLines, Spectra, lines_of, welch
 from inerter.systems.linear import LinearSystem
+from inerter.validation import check_positive
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -114,7 +114,7 @@ def averaged_response(records: Sequence[Record], spectra: Spectra, estimator: st
     value = spectra.fx * factor[estimator]
     scatter = np.sqrt((1.0 - coherence) / np.maximum(coherence, 1e-300) / (spectra.count - 1.0))
     averages = np.full(value.size, spectra.count)
-    return respond(records, spectra.omega, value, coherence, scatter, averages, estimator, spectra.notes)
+    return response_from_values(records, spectra.omega, value, coherence, scatter, averages, estimator, spectra.notes)
 
 
 def _periodic_response(records: Sequence[Record], group: Sequence[float], estimator: Estimator) -> Response:
@@ -158,7 +158,9 @@ def _periodic_response(records: Sequence[Record], group: Sequence[float], estima
     scatter = np.sqrt(strays) / np.maximum(np.abs(force.mean(axis=0)), 1e-300)
     spectra = _products(lines.omega, x, force)
     averages = np.full(value.size, float(counts[0]))
-    return respond(records, lines.omega, value, spectra.coherence, scatter, averages, "periodic", tuple(notes), status)
+    return response_from_values(
+        records, lines.omega, value, spectra.coherence, scatter, averages, "periodic", tuple(notes), status
+    )
 
 
 def _products(omega: Matrix, x: Complex, force: Complex) -> Spectra:

@@ -13,9 +13,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.atomic_io import export
 from inerter.errors import OK, RecordError, Status
 from inerter.records.record import Record
-from inerter.writing import export
 
 if TYPE_CHECKING:
     import xarray
@@ -109,7 +109,7 @@ class Response:
             writer.writerows(map(repr, row) for row in rows)
 
 
-def respond(
+def response_from_values(
     records: Sequence[Record],
     omega: Matrix,
     value: Complex,
@@ -126,7 +126,7 @@ def respond(
     each average but the first.
     """
     gain, phase = np.abs(value), wrap_phase(np.angle(value))
-    reach = _student(averages) * scatter / math.sqrt(2.0)
+    reach = _student_quantile(averages) * scatter / math.sqrt(2.0)
     turn = np.minimum(reach, np.pi)
     return Response(
         omega=omega,
@@ -177,6 +177,6 @@ def format_sources(records: Sequence[Record]) -> str:
     return ", ".join(dict.fromkeys(record.source for record in records))
 
 
-def _student(averages: Matrix) -> Matrix:
+def _student_quantile(averages: Matrix) -> Matrix:
     """Quantile of Student's t for two degrees of freedom per average but the first."""
     return np.asarray(scipy.stats.t.isf(0.5 * (1.0 - _CONFIDENCE), 2.0 * (averages - 1.0)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.records.gaps import runs
+from inerter.records.gaps import true_runs
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
@@ -31,7 +31,7 @@ def saturated_samples(record: Record) -> NDArray[np.bool_]:
         return np.asarray(np.abs(force) >= min(limit - 0.5 * resolution(force), 0.999 * limit))
     at_end = np.zeros(force.size, dtype=bool)
     for plateau in plateaus(record):
-        at_end |= _at(force, plateau.value)
+        at_end |= _equal_to(force, plateau.value)
     return at_end
 
 
@@ -40,13 +40,13 @@ def plateaus(record: Record) -> list[Plateau]:
     force, step = record.force, resolution(record.force)
     found = []
     for value in (float(np.max(force)), float(np.min(force))):
-        longest = max(stop - start for start, stop in runs(_at(force, value)))
+        longest = max(stop - start for start, stop in true_runs(_equal_to(force, value)))
         if longest >= FLAT and longest > 2.0 * _expected_at_turn(force, value, step):
             found.append(Plateau(value, longest))
     return found
 
 
-def _at(force: Vector, value: float) -> NDArray[np.bool_]:
+def _equal_to(force: Vector, value: float) -> NDArray[np.bool_]:
     return np.asarray(np.abs(force - value) <= 1e-9 * abs(value))
 
 
@@ -55,5 +55,5 @@ def _expected_at_turn(force: Vector, extreme: float, step: float) -> float:
     if step == 0.0:
         return 1.0
     band = max(0.1 * float(np.ptp(force)), 4.0 * step)
-    longest = max(stop - start for start, stop in runs(np.abs(force - extreme) <= band))
+    longest = max(stop - start for start, stop in true_runs(np.abs(force - extreme) <= band))
     return max(1.0, longest * math.sqrt(step / band))

@@ -16,12 +16,12 @@ from scipy.integrate import trapezoid
 from scipy.interpolate import CubicSpline
 from scipy.signal import detrend, periodogram, welch
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.records.filtering import HIGHEST, gain, low_pass
 from inerter.records.gaps import LONGEST, missing_rows
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
+from inerter.validation import is_number
 
 Vector = NDArray[np.float64]
 MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement

@@ -18,7 +18,7 @@ _ALONE = 3.0  # amplitude over that of any other line within an octave to either
 _CLEAR = 12.0  # amplitude over the median within that range
 _LEAST = 1e-3  # of the standard deviation of the force
 _WIDTH = 4  # spectral lines of a Hann window's main lobe, to either side
-_TONES = 6  # of the motion, whose multiples are no lines of their own
+_TONES = 6  # of the motion, whose multiples are not separate lines
 _TONE = 0.05  # of the largest: more than the side lobes of a Hann window
 _HIGHEST_MULTIPLE = 60
 _MANY = 1 << 20
@@ -32,7 +32,7 @@ class SpectralLine:
     amplitude: float
 
 
-def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
+def isolated_line(record: Record, motion: Motion) -> SpectralLine | None:
     """The largest isolated line above the motion that is no harmonic of it; None if there is none.
 
     Friction and backlash cause lines at the harmonics of a periodic motion, of which each is about as large as the
@@ -49,11 +49,11 @@ def lonely_line(record: Record, motion: Motion) -> SpectralLine | None:
     multiples = _multiples(record, motion, resolution, amplitude.size)
     for at in candidates[np.argsort(-amplitude[candidates])][:8]:
         low, high = max(int(at / 2), first - _WIDTH), min(2 * int(at), amplitude.size)
-        beside = np.r_[low : at - _WIDTH, at + _WIDTH + 1 : high]
-        if beside.size < 8 * _WIDTH or multiples[at]:
+        nearby = np.r_[low : at - _WIDTH, at + _WIDTH + 1 : high]
+        if nearby.size < 8 * _WIDTH or multiples[at]:
             continue
         size = float(amplitude[at])
-        alone = size > _ALONE * float(amplitude[beside].max()) and size > _CLEAR * float(np.median(amplitude[beside]))
+        alone = size > _ALONE * float(amplitude[nearby].max()) and size > _CLEAR * float(np.median(amplitude[nearby]))
         if alone and size > _LEAST * float(np.std(values)):
             return SpectralLine(_frequency(amplitude, int(at)) * resolution, size)
     return None

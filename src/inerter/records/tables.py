@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from inerter.errors import RecordError
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import is_unit_cell, split_heading, without_brackets
-from inerter.units import shown
+from inerter.units import quote_value
 
 HEAD = 1 << 18  # bytes within which the numbers must begin
 BLOCK = 1 << 23  # bytes that are parsed at a time
@@ -64,7 +64,7 @@ def open_channels(path: str, source: str) -> Iterator[Contents]:
         layout = _layout(source, file.read(HEAD))
         described = zip(layout.names, layout.units, layout.shorts, strict=True)
         channels = tuple(Channel(name, unit, short, key=at) for at, (name, unit, short) in enumerate(described))
-        end, notes = _end(file, layout)
+        end, notes = _end_of_numbers(file, layout)
 
         def read(chosen: Sequence[Channel], progress: Progress) -> list[Samples]:
             wanted = [channel.key for channel in chosen]
@@ -88,7 +88,7 @@ def _as_utf8(raw: BinaryIO) -> BinaryIO:
     return cast(BinaryIO, copy)
 
 
-def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
+def _end_of_numbers(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
     """End of the numbers [bytes]: before last lines without any, such as "Ende", which a note reports."""
     end = file.seek(0, os.SEEK_END)
     start = max(layout.offset, end - _TAIL)
@@ -101,7 +101,7 @@ def _end(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
     left = [] if last is None else [at for at in range(last + 1, len(rows)) if any(rows[at])]
     if not left:
         return end, ()
-    said = shown(lines[left[0]].decode(layout.encoding, errors="replace").strip())
+    said = quote_value(lines[left[0]].decode(layout.encoding, errors="replace").strip())
     which = f"The last line, {said}, was" if len(left) == 1 else f"The last {len(left)} lines, from {said} on, were"
     return start + sum(map(len, lines[: left[0]])), (f"{which} left out: no numbers.",)
 
@@ -127,10 +127,10 @@ def _layout(source: str, head: bytes) -> TableLayout:
             return _read_layout(source, lines, at, delimiter, offset, encoding)
     grouped = (cell for line in lines for d in _DELIMITERS for cell in _cells(line, d) if _THOUSANDS.fullmatch(cell))
     if (cell := next(grouped, None)) is not None:
-        raise RecordError(f"{source}: the number {shown(cell)} has {_THOUSANDS_SAID}")
+        raise RecordError(f"{source}: the number {quote_value(cell)} has {_THOUSANDS_SAID}")
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
-        f"{source}: rows of numbers in two or more columns not found; the file begins {shown(first.strip())}. "
+        f"{source}: rows of numbers in two or more columns not found; the file begins {quote_value(first.strip())}. "
         f"Expected a header such as 'time [s], displacement [mm], force [N]' and rows of numbers below it."
     )
 
@@ -277,22 +277,22 @@ def _parse(source: str, block: bytes, line: int, layout: TableLayout, wanted: li
             skipinitialspace=True, index_col=False, encoding=layout.encoding, na_values=["-"], **options,
         )  # fmt: skip
         columns = [frame[at].to_numpy() for at in wanted]
-        clean = all(np.isfinite(values).all() for values in columns) and _even(block, len(frame), layout)
+        clean = all(np.isfinite(values).all() for values in columns) and _has_equal_rows(block, len(frame), layout)
     except (ValueError, TypeError):
         columns, clean = [], False  # pandas' errors do not name the line of the file
     if not clean:
-        _inspect(source, block, line, layout, wanted)
+        _find_bad_row(source, block, line, layout, wanted)
     if not columns:
         raise RecordError(f"{source}: the rows after line {line - 1} cannot be read as numbers.")
     return columns
 
 
-def _even(block: bytes, rows: int, layout: TableLayout) -> bool:
+def _has_equal_rows(block: bytes, rows: int, layout: TableLayout) -> bool:
     """Whether there are as many delimiters as rows of equal length have."""
     return layout.delimiter is not None and block.count(layout.delimiter.encode()) == rows * (layout.columns - 1)
 
 
-def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
+def _find_bad_row(source: str, block: bytes, line: int, layout: TableLayout, wanted: list[int]) -> None:
     """Raise `RecordError` for the first row of another length, or cell that is neither a number nor missing."""
     for at, text in enumerate(block.decode(layout.encoding, errors="replace").split("\n"), line):
         cells = _cells(text.split("#")[0], layout.delimiter)
@@ -301,8 +301,8 @@ def _inspect(source: str, block: bytes, line: int, layout: TableLayout, wanted: 
         spare = cells[layout.columns :]
         if len(cells) < layout.columns or any(spare):
             raise RecordError(
-                f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in {shown(text.strip())}. "
-                f"Remove or complete this line."
+                f"{source}, line {at}: expected {layout.columns} cells, got {len(cells)} in "
+                f"{quote_value(text.strip())}. Remove or complete this line."
             )
         for column in wanted:
             if not _is_value(cells[column], layout.decimal):
@@ -324,8 +324,8 @@ def _bad_cell(source: str, line: int, cells: list[str], decimal: str = ".") -> R
     cell = next((cell for cell in cells if not _is_number(cell)), cells[0])
     mark = "comma" if decimal == "," else "point"
     if _THOUSANDS.fullmatch(cell):
-        return RecordError(f"{source}, line {line}: {shown(cell)} has {_THOUSANDS_SAID}")
+        return RecordError(f"{source}, line {line}: {quote_value(cell)} has {_THOUSANDS_SAID}")
     return RecordError(
-        f"{source}, line {line}: expected a number with a decimal {mark}, got {shown(cell)}. "
+        f"{source}, line {line}: expected a number with a decimal {mark}, got {quote_value(cell)}. "
         f"Leave the cell empty, or write nan, where a sample is missing."
     )

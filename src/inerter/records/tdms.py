@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import RecordError
-from inerter.records.channel_units import fits
+from inerter.records.channel_units import is_unit_of_role
 from inerter.records.channels import Channel, Contents, Progress, Samples
 from inerter.records.headings import split_heading
 from inerter.records.optional_readers import library, reraise_read_errors
@@ -97,7 +97,7 @@ def _times(source: str, channel: Any, size: int) -> Any:
     if not interval:
         return None
     unit = str(channel.properties.get("wf_xunit_string") or "s")
-    second = fits("time", unit) and parse_quantity(f"1 {unit}", "s")
+    second = is_unit_of_role("time", unit) and parse_quantity(f"1 {unit}", "s")
     if not second:
         raise RecordError(
             f"{source}: the abscissa of {channel.name!r} has the unit {unit!r}, which is not a unit of time. Select "

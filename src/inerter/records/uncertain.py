@@ -11,9 +11,9 @@ import math
 import re
 from dataclasses import dataclass
 
-from inerter.checks import is_number
 from inerter.errors import UnitError
-from inerter.units import format_quantity, parse_quantity, shown
+from inerter.units import format_quantity, parse_quantity, quote_value
+from inerter.validation import is_number
 
 _SIGNS = re.compile(r"\+/-|\+-|±")
 _FACTOR = re.compile(r"\(\s*k\s*=\s*([0-9.]+)\s*\)\s*$")
@@ -63,34 +63,36 @@ def parse_uncertain(text: object, unit: str = "") -> Uncertain:
     if is_number(text) and not unit:
         return Uncertain(float(text))
     if not isinstance(text, str) or not text.strip():
-        raise UnitError(_refusal(text, example))
+        raise UnitError(_refusal_message(text, example))
     factor = _FACTOR.search(text)
-    coverage = 1.0 if factor is None else _number(factor[1], text, example)
+    coverage = 1.0 if factor is None else _parse_number(factor[1], text, example)
     parts = _SIGNS.split(text if factor is None else text[: factor.start()])
     if len(parts) > 2 or not coverage > 0.0 or (factor is not None and len(parts) == 1):
-        raise UnitError(_refusal(text, example))
-    value = _size(parts[0], unit, text, example)
+        raise UnitError(_refusal_message(text, example))
+    value = _parse_size(parts[0], unit, text, example)
     if len(parts) == 1:
         return Uncertain(value, 0.0, unit)
     spread = parts[1].strip()
     share = spread.endswith("%")
-    wide = 0.01 * value * _number(spread[:-1], text, example) if share else _size(spread, unit, text, example)
+    wide = (
+        0.01 * value * _parse_number(spread[:-1], text, example) if share else _parse_size(spread, unit, text, example)
+    )
     return Uncertain(value, wide / coverage, unit)
 
 
-def _size(part: str, unit: str, text: object, example: str) -> float:
-    return parse_quantity(part.strip(), unit) if unit else _number(part, text, example)
+def _parse_size(part: str, unit: str, text: object, example: str) -> float:
+    return parse_quantity(part.strip(), unit) if unit else _parse_number(part, text, example)
 
 
-def _number(part: str, text: object, example: str) -> float:
+def _parse_number(part: str, text: object, example: str) -> float:
     try:
         number = float(part)
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise UnitError(_refusal(text, example))
+        raise UnitError(_refusal_message(text, example))
     return number
 
 
-def _refusal(text: object, example: str) -> str:
-    return f'Got {shown(text)}; expected a value and its standard uncertainty, such as "{example}".'
+def _refusal_message(text: object, example: str) -> str:
+    return f'Got {quote_value(text)}; expected a value and its standard uncertainty, such as "{example}".'

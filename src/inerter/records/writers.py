@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import scipy
 
+from inerter.atomic_io import export
 from inerter.errors import RecordError
 from inerter.records.optional_readers import library
 from inerter.records.record import CHANNELS, Record
-from inerter.writing import export
 
 _NOT_GIVEN = "unknown source"
 
@@ -40,15 +40,15 @@ def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: boo
         WRITERS[suffix](record, str(draft))
 
 
-def _comma(record: Record, name: str) -> None:
-    _table(record, name, ",")
+def _write_csv(record: Record, name: str) -> None:
+    _write_table(record, name, ",")
 
 
-def _tab(record: Record, name: str) -> None:
-    _table(record, name, "\t")
+def _write_tsv(record: Record, name: str) -> None:
+    _write_table(record, name, "\t")
 
 
-def _table(record: Record, name: str, delimiter: str) -> None:
+def _write_table(record: Record, name: str, delimiter: str) -> None:
     import pandas as pd  # noqa: PLC0415 - heavy
 
     headed = {f"{role} [{CHANNELS[role]}]": values for role, values in record.channels().items()}
@@ -57,7 +57,7 @@ def _table(record: Record, name: str, delimiter: str) -> None:
         pd.DataFrame(headed, copy=False).to_csv(file, sep=delimiter, index=False, lineterminator="\n")
 
 
-def _tdms(record: Record, name: str) -> None:
+def _write_tdms(record: Record, name: str) -> None:
     nptdms = library("nptdms", "tdms", "TDMS files")
     root = nptdms.RootObject({"source": record.source, "notes": "\n".join(record.notes)})
     channels = [
@@ -68,7 +68,7 @@ def _tdms(record: Record, name: str) -> None:
         writer.write_segment([root, nptdms.GroupObject("record"), *channels])
 
 
-def _mdf(record: Record, name: str) -> None:
+def _write_mdf(record: Record, name: str) -> None:
     asammdf = library("asammdf", "mdf", "MDF files")
     signals = [
         asammdf.Signal(np.array(values), record.time, name=role, unit=CHANNELS[role])
@@ -80,7 +80,7 @@ def _mdf(record: Record, name: str) -> None:
         file.save(name, overwrite=True, compression=1)
 
 
-def _mat(record: Record, name: str) -> None:
+def _write_mat(record: Record, name: str) -> None:
     channels = record.channels()
     units = {role: CHANNELS[role] for role in channels}
     text = {"source": record.source or _NOT_GIVEN, "notes": "\n".join(record.notes) or "none"}
@@ -88,10 +88,10 @@ def _mat(record: Record, name: str) -> None:
 
 
 WRITERS: dict[str, Callable[[Record, str], None]] = {
-    ".csv": _comma,
-    ".tsv": _tab,
-    ".txt": _tab,
-    ".tdms": _tdms,
-    ".mf4": _mdf,
-    ".mat": _mat,
+    ".csv": _write_csv,
+    ".tsv": _write_tsv,
+    ".txt": _write_tsv,
+    ".tdms": _write_tdms,
+    ".mf4": _write_mdf,
+    ".mat": _write_mat,
 }

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import isnan
 from pathlib import Path
 
+from inerter.atomic_io import write_text
 from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
@@ -16,15 +17,15 @@ from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
 from inerter.report.identification_text import (
-    about,
-    behind,
+    format_loss_difference,
+    format_variance_share,
     likely_causes,
-    misfit,
+    limitation_sentences,
+    misfit_sentence,
     processing_notes,
-    remarks,
-    share,
-    unreliable,
-    whiteness,
+    sampling_summary,
+    unreliability_reason,
+    whiteness_sentence,
 )
 from inerter.report.identified_values import (
     ResultKind,
@@ -36,7 +37,6 @@ from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
 from inerter.units import format_handy, format_number, handy_unit
 from inerter.work.origin import versions
-from inerter.writing import write_text
 
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
@@ -101,7 +101,7 @@ def identification_page(
             title=found.title,
             model="that of the configuration" if found.name == CUSTOM else found.name,
             layout=format_expression(found.model, [e.label for e in found.model.elements()]),
-            status=unreliable(found),
+            status=unreliability_reason(found),
             answers=list(_answers(found)),
             rows=list(_rows(found)),
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
@@ -112,12 +112,15 @@ def identification_page(
             elements=elements_block(found),
             records=list(_records(found)),
             goodness=list(_goodness(found)),
-            whiteness=[(c.record.source, whiteness(c)) for c in fit.comparisons],
-            misfit=misfit(found),
-            remarks=list(remarks(found)),
+            whiteness=[(c.record.source, whiteness_sentence(c)) for c in fit.comparisons],
+            misfit=misfit_sentence(found),
+            remarks=list(limitation_sentences(found)),
             explanations=list(likely_causes(found)),
             places=[(place.source, place.sentence) for place in fit.localisations],
-            candidates=[(c.name, c.unknowns, f"{c.loss:.4g}", behind(c), str(c.status)) for c in found.candidates],
+            candidates=[
+                (c.name, c.unknowns, f"{c.loss:.4g}", format_loss_difference(c), str(c.status))
+                for c in found.candidates
+            ],
             choice=[as_options(finding.text) for finding in found.choice],
             chosen=found.name,
             drawn=drawn,
@@ -137,7 +140,7 @@ def _answers(found: IdentificationResult) -> Iterator[str]:
             yield f"{name} = {value}, with 95 % confidence {interval}."
     parts = [c.variance_explained(bool(c.checked.any())) for c in found.fit.comparisons]
     where = "of the force that was kept for the check" if found.fit.comparisons[0].checked.any() else "of the force"
-    yield f"The model explains {' and '.join(share(part) for part in parts)} {where}."
+    yield f"The model explains {' and '.join(format_variance_share(part) for part in parts)} {where}."
 
 
 def _rows(found: IdentificationResult) -> Iterator[ParameterRow]:
@@ -158,7 +161,7 @@ def _records(found: IdentificationResult) -> Iterator[RecordText]:
         }
         yield RecordText(
             reading.used.source,
-            about(reading),
+            sampling_summary(reading),
             list(processing_notes(found, reading, comparison)),
             {title: sentences for title, sentences in by_severity.items() if sentences},
             number,
@@ -171,7 +174,7 @@ def _goodness(found: IdentificationResult) -> Iterator[tuple[str, ...]]:
             if mask.any():
                 check = part == "check"
                 left = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
-                numbers = (str(int(mask.sum())), share(c.variance_explained(check)), *left)
+                numbers = (str(int(mask.sum())), format_variance_share(c.variance_explained(check)), *left)
                 yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from inerter.atomic_io import atomic_write
 from inerter.files.identification.running import IdentificationResult, Reading, Responses
 from inerter.identification.fit import RecordFit
 from inerter.networks.parser import format_expression
@@ -15,7 +16,6 @@ from inerter.records.uncertain import Uncertain
 from inerter.report.identified_values import elements_block
 from inerter.report.json_data import json_data
 from inerter.work.origin import versions
-from inerter.writing import whole
 
 
 def identification_data(found: IdentificationResult) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def response_data(found: Responses) -> dict[str, Any]:
 
 def write_residuals(found: IdentificationResult, path: Path) -> None:
     """Write one row per sample of every record: measured and predicted force, and use of the sample."""
-    with whole(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
+    with atomic_write(path) as draft, draft.open("w", encoding="utf-8", newline="\n") as file:
         file.write("record,time [s],displacement [m],force [N],model [N],residual [N],part\n")
         for number, c in enumerate(found.fit.comparisons):
             parts = np.where(c.fitted, "fit", np.where(c.checked, "check", "left out"))

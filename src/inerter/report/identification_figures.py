@@ -63,14 +63,14 @@ def figures(found: IdentificationResult, answered: Responses) -> Iterator[Identi
             yield IdentificationFigure(
                 f"misfit{end}", f"misfit{number}", misfit_figure(residual_samples(comparison, place)), caption
             )
-        for name, figure, caption in _of_fit(comparison):
+        for name, figure, caption in _fit_figure(comparison):
             yield IdentificationFigure(f"{name}{end}", f"fit{number}", figure, f"{source}: {caption}")
     if answered.measured is not None:
         figure = response_figure(answered.measured, answered.model, answered.linear)
         yield IdentificationFigure("response", "response", figure, _response_caption(answered))
 
 
-def window(comparison: RecordFit) -> tuple[int, int]:
+def last_periods(comparison: RecordFit) -> tuple[int, int]:
     """The samples of a few periods of the motion at the end of what was fitted."""
     used = np.flatnonzero(comparison.fitted)
     first, last = int(used[0]), int(used[-1])
@@ -94,8 +94,8 @@ def residual_samples(c: RecordFit, place: Localisation) -> ResidualSamples:
     )  # fmt: skip
 
 
-def _of_fit(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
-    record, (first, last) = c.record, window(c)
+def _fit_figure(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
+    record, (first, last) = c.record, last_periods(c)
     measured = MotionCurve("measured", record.time, record.displacement, record.force)
     model = MotionCurve("model", record.time, record.displacement, c.model)
     part = (float(record.time[first]), float(record.time[last]))

@@ -20,18 +20,18 @@ LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not 
 
 
 def identification_text(found: IdentificationResult) -> str:
-    """Whether it can be relied on, records, estimates, goodness, the next experiment, elements.
+    """Reliability, records, estimates, goodness, the next experiment, elements.
 
     ASCII, 80 columns.
     """
     blocks = (
-        _warning(found),
-        _records(found),
-        _candidates(found),
-        _estimates(found),
+        _warning_lines(found),
+        _record_lines(found),
+        _candidate_lines(found),
+        _estimate_lines(found),
         _identifiability_lines(found),
-        _goodness(found),
-        _next(found),
+        _goodness_lines(found),
+        _experiment_lines(found),
         iter(elements_block(found).splitlines()),
         iter(wrap(f"Status: {found.fit.status}", WIDTH)),
     )
@@ -39,30 +39,33 @@ def identification_text(found: IdentificationResult) -> str:
     return text.encode("ascii", "replace").decode()
 
 
-def _warning(found: IdentificationResult) -> Iterator[str]:
-    """A wrong model or sensor, before anything else, and what explains it."""
+def _warning_lines(found: IdentificationResult) -> Iterator[str]:
+    """Warning of a wrong model or sensor, with possible causes, most likely first."""
     if found.fit.status.ok:
         return
-    yield from wrap(f"Not to be relied on: {unreliable(found)}.", WIDTH)
+    yield from wrap(f"Unreliable estimates: {unreliability_reason(found)}.", WIDTH)
     for place in found.fit.localisations:
         of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
         yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
     said = list(likely_causes(found))
     if said:
         yield ""
-        yield "what may be wrong, the likeliest first"
+        yield "possible causes, most likely first"
     for number, (sentence, share, values, remedy) in enumerate(said, 1):
         yield from wrap(
-            f"{sentence}: explains {share}.", WIDTH, initial_indent=f"  {number}. ", subsequent_indent="     "
+            f"{sentence}: explains {share}.",
+            WIDTH,
+            initial_indent=f"  {number}. ",
+            subsequent_indent="     ",
         )
         for line in (f"With it {values}." if values else "", f"What to do: {remedy}." if remedy else ""):
             yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
 
 
-def unreliable(found: IdentificationResult) -> str:
+def unreliability_reason(found: IdentificationResult) -> str:
     """Reason why the estimates of a fit are unreliable; empty if they are reliable.
 
-    Where no hypothesis explains the misfit, what the records were warned of before is the first thing to look at.
+    Where no hypothesis accounts for the residual, the warnings about the records are named first.
     """
     status = found.fit.status
     if status.ok:
@@ -87,14 +90,14 @@ def likely_causes(found: IdentificationResult) -> Iterator[tuple[str, str, str, 
         yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.name.remedy(e.details))
 
 
-def misfit(found: IdentificationResult) -> str:
+def misfit_sentence(found: IdentificationResult) -> str:
     """Sentence on the normalised residual: r.m.s. residual over sensor noise, of fitted and validation data."""
     m = found.fit.misfit
     parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
     return f"Residual over the expected sensor noise: {' and '.join(parts)} (r.m.s., whitened)."
 
 
-def about(reading: Reading) -> str:
+def sampling_summary(reading: Reading) -> str:
     """Samples, length and rate of a record."""
     record = reading.used
     return f"{record.time.size} samples over {record.duration:.6g} s at {1.0 / record.interval:.6g} Hz"
@@ -113,12 +116,12 @@ def processing_notes(found: IdentificationResult, reading: Reading, comparison: 
     yield f"{fitted} samples were fitted, and {checked} kept to check the fit{unused}."
 
 
-def _records(found: IdentificationResult) -> Iterator[str]:
+def _record_lines(found: IdentificationResult) -> Iterator[str]:
     yield from wrap(f"{found.title}: {model_title(found)}", WIDTH)
     yield ""
     yield "records"
     for reading, comparison in zip(found.readings, found.fit.comparisons, strict=True):
-        yield from wrap(f"  {reading.used.source}: {about(reading)}", WIDTH, subsequent_indent="    ")
+        yield from wrap(f"  {reading.used.source}: {sampling_summary(reading)}", WIDTH, subsequent_indent="    ")
         for sentence in processing_notes(found, reading, comparison):
             yield from wrap(sentence, WIDTH, initial_indent="    ", subsequent_indent="    ")
         for finding in reading.findings:
@@ -127,7 +130,7 @@ def _records(found: IdentificationResult) -> Iterator[str]:
                 yield from wrap(said, WIDTH, initial_indent="    ", subsequent_indent="    ")
 
 
-def _candidates(found: IdentificationResult) -> Iterator[str]:
+def _candidate_lines(found: IdentificationResult) -> Iterator[str]:
     if not found.candidates:
         return
     width = max(len(c.name) for c in found.candidates)
@@ -135,12 +138,12 @@ def _candidates(found: IdentificationResult) -> Iterator[str]:
     for c in found.candidates:
         mark = "*" if c.name == found.name else " "
         state = "" if c.status.ok else f"  {c.status.kind}"
-        yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {behind(c)}{state}"
+        yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {format_loss_difference(c)}{state}"
     for finding in found.choice:
         yield from wrap(as_options(finding.text), WIDTH, initial_indent="  ", subsequent_indent="  ")
 
 
-def behind(candidate: Candidate) -> str:
+def format_loss_difference(candidate: Candidate) -> str:
     """Text on the validation loss of a model above that of the best one, with its standard error."""
     if candidate.behind == 0.0:
         return "best"
@@ -148,7 +151,7 @@ def behind(candidate: Candidate) -> str:
     return f"{known}, as good" if candidate.as_good else known
 
 
-def _estimates(found: IdentificationResult) -> Iterator[str]:
+def _estimate_lines(found: IdentificationResult) -> Iterator[str]:
     rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
     names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
     yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'95 % interval' if found.explains else ''}".rstrip()
@@ -159,11 +162,11 @@ def _estimates(found: IdentificationResult) -> Iterator[str]:
         yield from wrap(
             f"  Offset of the load cell{of}: {format_handy(c.offset, 'N')}", WIDTH, subsequent_indent="    "
         )
-    for remark in remarks(found):
+    for remark in limitation_sentences(found):
         yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
 
 
-def remarks(found: IdentificationResult) -> Iterator[str]:
+def limitation_sentences(found: IdentificationResult) -> Iterator[str]:
     """Sentences on limitations of the estimates."""
     yield from (as_options(finding.text) for finding in found.fit.findings)
 
@@ -176,22 +179,22 @@ def _identifiability_lines(found: IdentificationResult) -> Iterator[str]:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
 
 
-def _goodness(found: IdentificationResult) -> Iterator[str]:
+def _goodness_lines(found: IdentificationResult) -> Iterator[str]:
     yield "goodness"
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
         for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
             residual, noise = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
-            left = f"{residual} r.m.s. left, by the sensors {noise}"
-            yield f"    {part}  {share(c.variance_explained(check))} explained, {left}"
-        yield from wrap(whiteness(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
-    yield from wrap(misfit(found), WIDTH, initial_indent="  ", subsequent_indent="  ")
+            left = f"residual {residual} r.m.s., sensor noise {noise}"
+            yield f"    {part}  {format_variance_share(c.variance_explained(check))} explained, {left}"
+        yield from wrap(whiteness_sentence(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
+    yield from wrap(misfit_sentence(found), WIDTH, initial_indent="  ", subsequent_indent="  ")
 
 
-def share(explained: float) -> str:
+def format_variance_share(explained: float) -> str:
     """Share of the variance [%] as text, with two digits of its difference from 100 %.
 
-    >>> share(0.99998)
+    >>> format_variance_share(0.99998)
     '99.9980 %'
     """
     missing = 100.0 * (1.0 - explained)
@@ -199,7 +202,7 @@ def share(explained: float) -> str:
     return f"{100.0 * explained:.{decimals}f} %"
 
 
-def whiteness(comparison: RecordFit) -> str:
+def whiteness_sentence(comparison: RecordFit) -> str:
     """Sentence on the whiteness test of the residuals."""
     p = comparison.whiteness
     size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"
@@ -211,7 +214,7 @@ def whiteness(comparison: RecordFit) -> str:
     )
 
 
-def _next(found: IdentificationResult) -> Iterator[str]:
+def _experiment_lines(found: IdentificationResult) -> Iterator[str]:
     if found.fit.next_experiment:
         yield "next experiment"
     for sentence in found.fit.next_experiment:

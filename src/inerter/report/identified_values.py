@@ -18,8 +18,8 @@ class ResultKind(Enum):
     """Kind of result available for a parameter."""
 
     VALUE = auto()
-    BOUNDS = auto()  # at most: it is not identifiable
-    NOTHING = auto()  # the fit is not to be relied on: its values are withheld
+    BOUNDS = auto()  # bounds at most: not identifiable
+    NOTHING = auto()  # unreliable fit: values withheld
 
 
 _WORDS = {ResultKind.BOUNDS: "not identifiable", ResultKind.NOTHING: "withheld"}
@@ -57,50 +57,50 @@ def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str
 def elements_block(found: IdentificationResult) -> str:
     """The identified device as sections of a study or simulation file: elements with their best values, one layout.
 
-    What is not identifiable has its best value too, so that the layout can be computed, and says so. Of a fit that is
-    not to be relied on there is a comment only.
+    Parameters that are not identifiable have their best values too, so that the layout can be computed, and a remark.
+    Only a comment for unreliable estimates.
     """
     if not found.explains:
         return (
-            f"# {found.name}, fitted to {_sources(found)}\n"
-            f"# not to be relied on ({found.fit.status.kind}): its values are withheld"
+            f"# {found.name}, fitted to {_format_sources(found)}\n"
+            f"# unreliable estimates ({found.fit.status.kind}): values withheld"
         )
-    rows, expression = _rows(found)
+    rows, expression = _element_rows(found)
     keys = max(len(name) for name in rows)
     values = max(len(value) for value, _ in rows.values())
-    lines = [f"# {found.name}, identified from {_sources(found)}"]
+    lines = [f"# {found.name}, identified from {_format_sources(found)}"]
     lines.append("[elements]")
     lines += [f"{name:<{keys}} = {value:<{values}}  # {remark}" for name, (value, remark) in rows.items()]
     return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])
 
 
-def _sources(found: IdentificationResult) -> str:
+def _format_sources(found: IdentificationResult) -> str:
     names = list(dict.fromkeys(reading.used.source for reading in found.readings))
     text = ", ".join(names)
     return text if len(text) < 50 else f"{len(names)} records"
 
 
-def _rows(found: IdentificationResult) -> tuple[dict[str, tuple[str, str]], str]:
+def _element_rows(found: IdentificationResult) -> tuple[dict[str, tuple[str, str]], str]:
     """Value and remark for each element name, and the expression of the network."""
     rows: dict[str, tuple[str, str]] = {}
     order = []
     for free, best in zip(found.model.elements(), found.device.elements(), strict=True):
-        value, remark = _entry(found, free, best)
-        for name in _possible(free):
+        value, remark = _value_and_remark(found, free, best)
+        for name in _possible_names(free):
             if rows.setdefault(name, (value, remark)) == (value, remark):
                 order.append(name)
                 break
     return rows, format_expression(found.device, order)
 
 
-def _possible(element: Element) -> Iterator[str]:
+def _possible_names(element: Element) -> Iterator[str]:
     """Names of an element in a file: that of its free value, its own, or with a number where that is taken."""
     label = element.value.name if isinstance(element.value, Free) and element.value.name else element.label
     yield label
     yield from (f"{label}{count}" for count in range(2, 1000))
 
 
-def _entry(found: IdentificationResult, free: Element, best: Element) -> tuple[str, str]:
+def _value_and_remark(found: IdentificationResult, free: Element, best: Element) -> tuple[str, str]:
     number = best.value
     assert not isinstance(number, Free | Tied)
     value = f'"{format_quantity(number, best.unit, _MOST_DIGITS)}"'

@@ -25,7 +25,7 @@ from inerter.figures.labels import (
     typeset_quantity,
     with_unit,
 )
-from inerter.report.question import of_each
+from inerter.report.problem_statement import of_each
 from inerter.table import Cell, Row, Table, Writer
 
 _MOST_RANGES = 3  # of swept values, in a remark
@@ -43,14 +43,14 @@ def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     for name in layouts(results) if swept_places(results) else ():
         none = _where(_entry(results, name, index), _is_infeasible(_entry(results, name, index)))
         if none[0]:
-            text = f"no {name} keeps the limits {none[0]}{f', {none[1]}' if none[1] else ''}"
+            text = f"no feasible {name} {none[0]}{f', {none[1]}' if none[1] else ''}"
             yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
 
 
 def limit_tables(results: xr.Dataset) -> list[Table]:
     """Tables of the limited quantities of each layout's best design, one per index; empty without limits.
 
-    Over a sweep, where each limit holds the best designs back, and where no design keeps all of them.
+    Over a sweep, the values at which each constraint is active, and those without a feasible design.
     """
     return [_table(one_method(results), index) for index in indices(results)] if "limit" in results.dims else []
 

@@ -12,6 +12,7 @@ import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from inerter.atomic_io import write_text
 from inerter.figures.labels import capital, swept_places, together, typeset, typeset_quantity
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
@@ -21,11 +22,11 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.report.answers import answers
-from inerter.report.by_method import method_tables
-from inerter.report.findings import over_the_sweep
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.index_summary import over_the_sweep
 from inerter.report.limits import limit_tables
-from inerter.report.question import (
+from inerter.report.method_comparison import method_tables
+from inerter.report.problem_statement import (
     computation,
     condition_rows,
     element_rows,
@@ -35,7 +36,6 @@ from inerter.report.question import (
     vehicle_rows,
 )
 from inerter.report.tables import tables_of, trade_off_tables, where_all_are
-from inerter.writing import write_text
 
 _SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text
@@ -83,7 +83,7 @@ def report(
             swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[
-                *map(printed_sentence, answers(results, study, found, typeset_quantity)),
+                *map(printed_sentence, conclusion_sentences(results, study, found, typeset_quantity)),
                 *([f"{road}."] if (road := roads_sentence(study)) else []),
             ],
             vehicle=vehicle_rows(study),

@@ -13,7 +13,7 @@ from inerter.files.simulation.running import SimulationResult
 from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH
 from inerter.simulation.peaks import LiftOff, Peak
-from inerter.units import shown
+from inerter.units import quote_value
 
 
 def simulation_text(result: SimulationResult, window: Window | None) -> str:
@@ -63,7 +63,7 @@ def _request(result: SimulationResult) -> Iterator[str]:
 
 
 def _word(value: object) -> str:
-    return value.rpartition("/")[2] if isinstance(value, str) else shown(value)
+    return value.rpartition("/")[2] if isinstance(value, str) else quote_value(value)
 
 
 def _values(result: SimulationResult) -> Iterator[str]:

@@ -20,7 +20,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.methods.registry import brief_words_of
-from inerter.report.findings import best_layouts, extremes, place_text
+from inerter.report.index_summary import best_layouts, extremes, place_text
 from inerter.report.json_data import json_data
 from inerter.table import Writer
 

@@ -37,7 +37,7 @@ from inerter.figures.labels import (
     with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
-from inerter.report.findings import best_layout, place_text
+from inerter.report.index_summary import best_layout, place_text
 from inerter.table import Cell, Row, Table
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
@@ -134,7 +134,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
         texts = [_other(results, design.sel(other=other), other) for other in others]
-        missed = "misses the limits" if bool(infeasible(design)) else ""
+        missed = "infeasible" if bool(infeasible(design)) else ""
         own = [other == index for other in others]
         rows.append(Row(name, [Cell(t, missed * is_own, strong=is_own) for t, is_own in zip(texts, own, strict=True)]))
     return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)

@@ -28,15 +28,15 @@ from inerter.figures.labels import (
     swept_words,
     with_unit,
 )
-from inerter.report.by_method import method_lines
-from inerter.report.findings import extremes, over_the_sweep, place_text
+from inerter.report.index_summary import extremes, over_the_sweep, place_text
 from inerter.report.limits import limit_lines
+from inerter.report.method_comparison import method_lines
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
 _NARROWEST = 20  # of the last column, which goes beyond the width where numbers are enormous
-_LONGEST_NAME = 20  # a longer name of a layout has a line of its own
+_LONGEST_NAME = 20  # a longer name of a layout has a separate line
 
 
 @dataclass(frozen=True)

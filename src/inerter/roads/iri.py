@@ -42,7 +42,7 @@ def iri(profile: Profile) -> float:
             f"The IRI requires a profile of at least {START:g} m; {profile.source!r} has {profile.length:g} m."
         )
     even = profile.even()
-    return float(np.mean([_of_track(heights, even.interval) for heights in even.tracks.values()]))
+    return float(np.mean([_track_iri(heights, even.interval) for heights in even.tracks.values()]))
 
 
 def transition(interval: float) -> tuple[Matrix, Matrix]:
@@ -69,7 +69,7 @@ def _golden_car() -> tuple[Matrix, Matrix]:
 
 
 @lru_cache(maxsize=8)
-def _modes(interval: float) -> tuple[NDArray[np.complex128], ...]:
+def _modal_form(interval: float) -> tuple[NDArray[np.complex128], ...]:
     """Modal form over one interval: factor and gain of each mode, its part in the travel, and modes from states."""
     A, B = _golden_car()
     rates, shapes = np.linalg.eig(A)
@@ -78,17 +78,17 @@ def _modes(interval: float) -> tuple[NDArray[np.complex128], ...]:
     return factor, (factor - 1.0) / rates * (inverse @ B), shapes[0] - shapes[2], inverse
 
 
-def _nearest(ratio: float) -> int:
+def _nearest_integer(ratio: float) -> int:
     """Nearest integer, the larger of two, also for a half with rounding errors."""
     return int(ratio + 0.5 + 1e-6)
 
 
-def _of_track(height: Matrix, interval: float) -> float:
-    span = max(1, _nearest(BASE / interval))  # of the slopes, in intervals
+def _track_iri(height: Matrix, interval: float) -> float:
+    span = max(1, _nearest_integer(BASE / interval))  # of the slopes, in intervals
     slope = (height[span:] - height[:-span]) / (span * interval)
-    first = min(_nearest(START / interval), height.size - 1)
+    first = min(_nearest_integer(START / interval), height.size - 1)
     start = (height[first] - height[0]) / (first * interval)
-    factor, gain, seen, inverse = _modes(interval)
+    factor, gain, seen, inverse = _modal_form(interval)
     initial = inverse @ np.array([start, 0.0, start, 0.0])
     travel = np.zeros(slope.size)
     for at in range(factor.size):  # the modes are decoupled, so each is a filter of first order

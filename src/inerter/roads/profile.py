@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError
 from inerter.renamed import RenamedAttribute
-from inerter.signals.arguments import positive
+from inerter.signals.arguments import positive_number
 from inerter.signals.signal import SampledSignal, Signal
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 LEFT, RIGHT = "left", "right"
@@ -104,10 +104,10 @@ class Profile:
 
         Raises `SignalError` unless `speed` is positive, and `track` one of its tracks.
         """
-        velocity = positive("The speed over a profile", speed, "m/s")
+        velocity = positive_number("The speed over a profile", speed, "m/s")
         if track not in self.tracks:
             which = f"no track {track!r}" if track else "two tracks"
-            raise SignalError(f"{self.source!r} has {which}: {_tracks_there(self.tracks)}.")
+            raise SignalError(f"{self.source!r} has {which}: {_available_tracks(self.tracks)}.")
         label = " ".join(filter(None, ("profile", self.source, track)))
         return Signal.sampled(
             (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
@@ -124,5 +124,5 @@ class Profile:
         return found.get("", found)
 
 
-def _tracks_there(tracks: Mapping[str, Matrix]) -> str:
+def _available_tracks(tracks: Mapping[str, Matrix]) -> str:
     return "it has a single track without a name" if "" in tracks else 'select one with track = "left" or "right"'

@@ -13,7 +13,6 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError, SignalError, UnitError
 from inerter.records import tables
 from inerter.records.channel_selection import fold_name
@@ -22,7 +21,8 @@ from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
@@ -72,10 +72,10 @@ def read_profile(
     if suffix == ".crg":
         if units is not None or interval is not None or named:
             raise RecordError("An OpenCRG file requires no units, interval or columns. Give its path, and `lateral`.")
-        return _from_crg(name, source, _checked_lateral(lateral))
+        return _read_crg(name, source, _checked_lateral(lateral))
     if lateral is not None:
         raise RecordError("`lateral` applies to OpenCRG files; for tables, name the columns `height` and `right`.")
-    return _from_table(name, source, _checked_units(units), interval, named)
+    return _read_table(name, source, _checked_units(units), interval, named)
 
 
 def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> SampledSignal:
@@ -121,7 +121,7 @@ def _checked_units(units: object) -> dict[str, str]:
     return dict(units)
 
 
-def _from_table(
+def _read_table(
     name: str, source: str, units: dict[str, str], interval: float | None, named: Mapping[str, Any]
 ) -> Profile:
     if interval is not None and (not is_number(interval) or interval <= 0.0):
@@ -160,7 +160,7 @@ def _select_columns(
     for role, words in _WORDS.items():
         if role not in chosen and not (role == "distance" and spaced):
             left = [channel for channel in channels if channel not in chosen.values()]
-            alike = [channel for channel in left if _is_called(channel.name, words)]
+            alike = [channel for channel in left if _has_name(channel.name, words)]
             if len(alike) > 1:
                 names = " and ".join(channel.label for channel in alike[:3])
                 raise RecordError(
@@ -170,7 +170,7 @@ def _select_columns(
                 )
             chosen |= {role: alike[0]} if alike else {}
     if chosen == asked and not any(channel.unit for channel in channels):  # no header, or a remark taken for one
-        chosen |= _by_order(source, contents, chosen, spaced)
+        chosen |= _columns_by_order(source, contents, chosen, spaced)
     for role in ("distance", "height"):
         if role not in chosen and not (role == "distance" and spaced):
             raise _missing_column(
@@ -192,7 +192,7 @@ def _missing_column(source: str, role: str, left: Sequence[Channel], channels: S
     )
 
 
-def _is_called(name: str, words: str) -> bool:
+def _has_name(name: str, words: str) -> bool:
     plain = re.sub(r"[_.\-/]", " ", fold_name(name))
     return re.search(rf"(?<!\w)(?:{words})(?!\w)", plain) is not None
 
@@ -206,7 +206,9 @@ def _numbers(contents: Contents, channels: Iterable[Channel]) -> dict[Channel, M
     return found
 
 
-def _by_order(source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool) -> dict[str, Channel]:
+def _columns_by_order(
+    source: str, contents: Contents, chosen: Mapping[str, Channel], spaced: bool
+) -> dict[str, Channel]:
     """Columns of a table without a header: the increasing one is the distance; then heights, left before right."""
     values = _numbers(contents, [channel for channel in contents.channels if channel not in chosen.values()])
     left = list(values)
@@ -267,8 +269,8 @@ def _unit_size(source: str, role: str, channel: Channel, unit: str) -> float:
         worth = parse_quantity(f"1 {unit.strip()}", "m")
     except UnitError:
         raise RecordError(
-            f"{source}: the unit {shown(unit)} of {channel.name!r} is not a unit of length. Write another after the "
-            f'name, such as "{kind} [{_EXAMPLES[kind]}]", or specify it: ',
+            f"{source}: the unit {quote_value(unit)} of {channel.name!r} is not a unit of length. Write another after "
+            f'the name, such as "{kind} [{_EXAMPLES[kind]}]", or specify it: ',
             *(Remedy(Action.UNITS, ((kind, _EXAMPLES[kind]),)), "."),
         ) from None
     return worth
@@ -285,7 +287,7 @@ def _checked_lateral(lateral: object) -> tuple[float, ...]:
     return tuple(map(float, given))
 
 
-def _from_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
+def _read_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
     crg = library("pyopencrg", "roads", "OpenCRG files")
     with reraise_read_errors(source, "OpenCRG"), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # its warnings on headers without effect on heights

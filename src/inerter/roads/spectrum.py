@@ -9,10 +9,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
 from inerter.roads.profile import Profile
 from inerter.signals.road import ROAD_CLASSES, Road, RoadClass, RoadShape
+from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 N0 = 0.1  # [cycle/m]

@@ -8,31 +8,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import SignalError
+from inerter.validation import check_positive, is_number
 
 Array = NDArray[np.float64]
 
 MOST = 10**8  # entries of one signal: 0.8 GB
 
 
-def number(what: str, value: object, unit: str) -> float:
+def finite_number(what: str, value: object, unit: str) -> float:
     """`value` as a float; raises `SignalError` unless it is a finite number."""
     if not is_number(value):
         raise SignalError(f"{what} must be a finite number of {unit}, got {value!r}.")
     return float(value)
 
 
-def positive(what: str, value: object, unit: str) -> float:
+def positive_number(what: str, value: object, unit: str) -> float:
     """`value` as a float; raises `SignalError` unless it is positive and finite."""
     check_positive(SignalError, what, value, unit)
     return float(value)  # type: ignore[arg-type]
 
 
-def band(what: str, lowest: object, highest: object) -> tuple[float, float]:
+def frequency_band(what: str, lowest: object, highest: object) -> tuple[float, float]:
     """Two frequencies [Hz]; raises `SignalError` unless both are positive and in order."""
-    low = positive(f"The lowest frequency of a {what}", lowest, "Hz")
-    high = positive(f"The highest frequency of a {what}", highest, "Hz")
+    low = positive_number(f"The lowest frequency of a {what}", lowest, "Hz")
+    high = positive_number(f"The highest frequency of a {what}", highest, "Hz")
     if low > high:
         raise SignalError(
             f"The lowest frequency of a {what} must not exceed the highest, got {low:g} and {high:g} Hz. "
@@ -43,10 +43,10 @@ def band(what: str, lowest: object, highest: object) -> tuple[float, float]:
 
 def speed_or_none(value: object) -> float | None:
     """The speed of a vehicle [m/s], or None where it is unknown."""
-    return None if value is None else positive("The speed of a signal", value, "m/s")
+    return None if value is None else positive_number("The speed of a signal", value, "m/s")
 
 
-def generator(seed: object) -> np.random.Generator:
+def random_generator(seed: object) -> np.random.Generator:
     """Random number generator of a seed; raises `SignalError` unless it is a non-negative integer."""
     if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
         raise SignalError(f"A seed must be a non-negative integer, got {seed!r}.")
@@ -95,30 +95,32 @@ def whole_number(length: float, interval: float, what: str) -> int:
     return count
 
 
-def slack(time: Any, interval: float | None) -> Any:
+def time_tolerance(time: Any, interval: float | None) -> Any:
     """Tolerance of a time against a knot, for rounding [s]; 1e-12 s where there is no table."""
     return 1e-9 * (interval or 1e-3) + 4.0 * np.finfo(float).eps * np.abs(time)
 
 
-def between(times: Array, start: float, stop: float, interval: float | None = None) -> Array:
+def times_within(times: Array, start: float, stop: float, interval: float | None = None) -> Array:
     """The times between `start` and `stop`, without those that differ from the ends by rounding only."""
     check_span(start, stop)
-    inside: NDArray[np.bool_] = (times > start + slack(start, interval)) & (times < stop - slack(stop, interval))
+    inside: NDArray[np.bool_] = (times > start + time_tolerance(start, interval)) & (
+        times < stop - time_tolerance(stop, interval)
+    )
     return times[inside]
 
 
 def checked_grid(start: float, step: float, count: int) -> Array:
     """The times of a uniform grid."""
-    number("The start of a grid", start, "s")
-    positive("The step of a grid", step, "s")
+    finite_number("The start of a grid", start, "s")
+    positive_number("The step of a grid", step, "s")
     if not isinstance(count, Integral) or isinstance(count, bool) or not 0 <= count <= MOST:
-        raise SignalError(f"The count of a grid must be a whole number from 0 to 1e8, got {count!r}.")
+        raise SignalError(f"The count of a grid must be an integer from 0 to 1e8, got {count!r}.")
     return start + step * np.arange(int(count))
 
 
 def check_span(start: object, stop: object) -> None:
-    number("The start of a span", start, "s")
-    number("The end of a span", stop, "s")
+    finite_number("The start of a span", start, "s")
+    finite_number("The end of a span", stop, "s")
 
 
 def _kind(array: NDArray[Any], values: object) -> str:

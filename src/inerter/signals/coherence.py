@@ -11,8 +11,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import PerformanceIndexError
+from inerter.validation import check_positive, is_number
 
 Array = NDArray[np.float64]
 Ratio = tuple[tuple[float, ...], tuple[float, ...]]  # of polynomials in s, the highest power first

@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SignalError
-from inerter.signals.arguments import Array, band, checked_grid, generator, number, positive, speed_or_none
+from inerter.signals.arguments import (
+    Array,
+    checked_grid,
+    finite_number,
+    frequency_band,
+    positive_number,
+    random_generator,
+    speed_or_none,
+)
 from inerter.signals.road import Road
 from inerter.signals.signal import Pair, Signal
 
@@ -121,7 +129,7 @@ def multisine(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.
     """
     if not isinstance(road, Road):
         raise SignalError(f"A multisine requires a road such as Road(5e-7, 25.0), got {road!r}.")
-    low, high = band("multisine", lowest, highest)
+    low, high = frequency_band("multisine", lowest, highest)
     amplitude = np.sqrt(4.0 * road.roughness * road.speed * low) / (low * _orders_up_to(low, high))
     return _random_phases("multisine", amplitude, low, seed, road.speed)
 
@@ -166,8 +174,8 @@ def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: 
 
     Raises `SignalError` unless `rms` is positive, 0 < lowest <= highest, and `seed` is a non-negative integer.
     """
-    size = positive("The r.m.s. value of a multisine", rms, "its unit")
-    low, high = band("multisine", lowest, highest)
+    size = positive_number("The r.m.s. value of a multisine", rms, "its unit")
+    low, high = frequency_band("multisine", lowest, highest)
     count = len(_orders_up_to(low, high))
     amplitude = np.full(count, size * math.sqrt(2.0 / count))
     return _random_phases(f"flat multisine of {size:g} r.m.s.", amplitude, low, seed, speed_or_none(speed))
@@ -195,15 +203,15 @@ def cosine(amplitude: float, frequency: float, phase: float = 0.0, speed: float 
 def _single(
     name: str, turn: complex, amplitude: float, frequency: float, phase: float, speed: float | None
 ) -> Harmonics:
-    size = number(f"The amplitude of a {name}", amplitude, "its unit")
-    rate = positive(f"The frequency of a {name}", frequency, "Hz")
-    angle = number(f"The phase of a {name}", phase, "rad")
+    size = finite_number(f"The amplitude of a {name}", amplitude, "its unit")
+    rate = positive_number(f"The frequency of a {name}", frequency, "Hz")
+    angle = finite_number(f"The phase of a {name}", phase, "rad")
     coefficient = np.array([turn * size * np.exp(1j * angle)])
     return _harmonics(f"{name} of {size:g}, {rate:g} Hz", coefficient, rate, speed_or_none(speed))
 
 
 def _random_phases(name: str, amplitude: Array, lowest: float, seed: int, speed: float | None) -> Harmonics:
-    phase = generator(seed).uniform(0.0, 2.0 * math.pi, len(amplitude))
+    phase = random_generator(seed).uniform(0.0, 2.0 * math.pi, len(amplitude))
     label = f"{name}, {lowest:g} to {lowest * len(amplitude):g} Hz, seed {seed}"
     return _harmonics(label, amplitude * np.exp(1j * phase), lowest, speed)
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import SignalError, UnitError
-from inerter.signals.arguments import Array, generator, positive, whole_number
+from inerter.signals.arguments import Array, positive_number, random_generator, whole_number
 from inerter.signals.signal import SampledSignal, Signal
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 
 _HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
@@ -30,11 +30,11 @@ def held_noise(
     Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a
     non-negative integer.
     """
-    power = positive("The power of a noise", power, "its unit squared per Hz")
-    interval = positive("The interval of a noise", interval, "s")
-    duration = positive("The duration of a noise", duration, "s")
+    power = positive_number("The power of a noise", power, "its unit squared per Hz")
+    interval = positive_number("The interval of a noise", interval, "s")
+    duration = positive_number("The duration of a noise", duration, "s")
     count = whole_number(duration, interval, "A duration")
-    value = math.sqrt(power / interval) * generator(seed).standard_normal(count)
+    value = math.sqrt(power / interval) * random_generator(seed).standard_normal(count)
     label = f"noise of {power:g} per Hz, held for {interval:g} s, seed {seed}"
     time = np.linspace(0.0, duration, count + 1)
     return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)
@@ -100,7 +100,7 @@ def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[s
         if len(cells) != 2:
             raise SignalError(
                 f"{name}, line {line}: expected two cells with a comma between them, "
-                f"got {len(cells)} in {shown(','.join(cells))}."
+                f"got {len(cells)} in {quote_value(','.join(cells))}."
             )
     if not rows:
         raise SignalError(
@@ -115,7 +115,7 @@ def _header(name: str, units: dict[str, str], line: int, cells: list[str]) -> tu
     names = [match[1].lower() if match else "" for match in found]
     if sorted(names) != sorted(units):
         raise SignalError(
-            f"{name}, line {line}: expected a header with units, {_example(units)}, got {shown(','.join(cells))}."
+            f"{name}, line {line}: expected a header with units, {_example(units)}, got {quote_value(','.join(cells))}."
         )
     try:
         scales = [parse_quantity(f"1 {match[2].strip()}", units[match[1].lower()]) for match in found if match]
@@ -130,5 +130,7 @@ def _number(name: str, line: int, cell: str) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise SignalError(f"{name}, line {line}: expected a finite number with a decimal point, got {shown(cell)}.")
+        raise SignalError(
+            f"{name}, line {line}: expected a finite number with a decimal point, got {quote_value(cell)}."
+        )
     return value

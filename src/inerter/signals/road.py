@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass, field
 from typing import Self
 
-from inerter.checks import check_positive
 from inerter.errors import PerformanceIndexError
-from inerter.fields import quantity
+from inerter.field_metadata import quantity
 from inerter.signals.coherence import Coherence
+from inerter.validation import check_positive
 
 _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cycle/m
 

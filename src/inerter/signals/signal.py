@@ -10,22 +10,22 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.checks import is_number
 from inerter.errors import SignalError
 from inerter.signals.arguments import (
     MOST,
     Array,
-    between,
     check_span,
     checked_grid,
-    positive,
+    positive_number,
     real_array,
     real_vector,
-    slack,
     speed_or_none,
+    time_tolerance,
+    times_within,
     whole_number,
 )
 from inerter.signals.tables import HOLDS, check_times, close_period, coefficients, spacing
+from inerter.validation import is_number
 
 Pair = tuple[Array, Array]
 
@@ -62,7 +62,7 @@ class Signal:
         """
         times = real_array("The times of a signal", time)
         latest = float(times.max(initial=-math.inf))
-        if self.duration is not None and latest > self.duration + slack(self.duration, self.interval):
+        if self.duration is not None and latest > self.duration + time_tolerance(self.duration, self.interval):
             raise SignalError(
                 f"The signal {self.label!r} ends at t = {self.duration:.9g} s, before the requested t = {latest:.9g} "
                 f"s. Stop earlier, or use a longer or periodic signal."
@@ -91,14 +91,14 @@ class Signal:
 
         Raises `SignalError` if the period is not a whole number of intervals, or the signal is too short.
         """
-        interval = positive("The interval of a hold", interval, "s")
+        interval = positive_number("The interval of a hold", interval, "s")
         label = f"{self.label}, held for {interval:g} s"
         if duration is None and self.period is not None:
             count = whole_number(self.period, interval, "A period")
             time = np.linspace(0.0, self.period, count + 1)
             value = np.resize(self.grid(0.0, self.period / count, count)[0], count + 1)
             return Signal.sampled(time, value, "zero", periodic=True, speed=self.speed, label=label)
-        end = self.duration if duration is None else positive("The duration of a held signal", duration, "s")
+        end = self.duration if duration is None else positive_number("The duration of a held signal", duration, "s")
         if end is None:
             raise SignalError(
                 f"The signal {self.label!r} is neither periodic nor finite. Give the time to hold: duration = ..."
@@ -191,14 +191,14 @@ class SampledSignal(Signal):
         if last - first > MOST:
             raise SignalError(f"The signal {self.label!r} has more than 1e8 knots from {start:g} to {stop:g} s.")
         turn, piece = np.divmod(np.arange(int(first), int(last) + 1), pieces)
-        return between(self.time[piece] + turn * (self.period or 0.0), start, stop, self.interval)
+        return times_within(self.time[piece] + turn * (self.period or 0.0), start, stop, self.interval)
 
     def _evaluate(self, time: Array) -> Pair:
         cycle, index = self._locate(time)
         elapsed = time - self.time[index] - cycle * (self.period or 0.0)
         value = self.coefficient[-1, index]
         slope = np.zeros_like(value)
-        early = (self.period is None) & (elapsed < -slack(time, self.interval))
+        early = (self.period is None) & (elapsed < -time_tolerance(time, self.interval))
         elapsed = np.where(early, 0.0, elapsed)
         for part in self.coefficient[-2::-1]:
             slope = slope * elapsed + value
@@ -207,7 +207,7 @@ class SampledSignal(Signal):
 
     def _locate(self, time: Array) -> tuple[Array, Any]:
         """Number of whole periods before each time, and the index of its piece."""
-        reached = time + slack(time, self.interval)
+        reached = time + time_tolerance(time, self.interval)
         cycle = np.zeros_like(time) if self.period is None else np.floor((reached - self.time[0]) / self.period)
         pieces = self.coefficient.shape[1]
         index = np.searchsorted(self.time[:pieces], reached - cycle * (self.period or 0.0), side="right") - 1
@@ -228,7 +228,7 @@ class SignalSum(Signal):
 
     def breaks(self, start: float, stop: float) -> Array:
         times = np.sort(np.concatenate([signal.breaks(start, stop) for _, signal in self.terms]))
-        apart: NDArray[np.bool_] = np.diff(times, prepend=-math.inf) > slack(times, self.interval)
+        apart: NDArray[np.bool_] = np.diff(times, prepend=-math.inf) > time_tolerance(times, self.interval)
         return times[apart]
 
     def _evaluate(self, time: Array) -> Pair:

@@ -7,7 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.signals.arguments import Array, band, between, number, positive, slack, speed_or_none
+from inerter.signals.arguments import (
+    Array,
+    finite_number,
+    frequency_band,
+    positive_number,
+    speed_or_none,
+    time_tolerance,
+    times_within,
+)
 from inerter.signals.signal import Pair, Signal
 
 
@@ -21,14 +29,14 @@ class Chirp(Signal):
     duration: float
 
     def breaks(self, start: float, stop: float) -> Array:
-        return between(np.zeros(1), start, stop)
+        return times_within(np.zeros(1), start, stop)
 
     def _evaluate(self, time: Array) -> Pair:
         elapsed = np.maximum(time, 0.0)
         rate = (self.highest_frequency - self.lowest) / self.duration
         angle = 2.0 * math.pi * (self.lowest + 0.5 * rate * elapsed) * elapsed
         slope = 2.0 * math.pi * (self.lowest + rate * elapsed) * self.amplitude * np.cos(angle)
-        return self.amplitude * np.sin(angle), np.where(time < -slack(time, None), 0.0, slope)
+        return self.amplitude * np.sin(angle), np.where(time < -time_tolerance(time, None), 0.0, slope)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -39,10 +47,10 @@ class StepSignal(Signal):
     time: float
 
     def breaks(self, start: float, stop: float) -> Array:
-        return between(np.array([self.time]), start, stop)
+        return times_within(np.array([self.time]), start, stop)
 
     def _evaluate(self, time: Array) -> Pair:
-        return np.where(time + slack(time, None) >= self.time, self.height, 0.0), np.zeros_like(time)
+        return np.where(time + time_tolerance(time, None) >= self.time, self.height, 0.0), np.zeros_like(time)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,7 +62,7 @@ class Bump(Signal):
     passage: float
 
     def breaks(self, start: float, stop: float) -> Array:
-        return between(np.array([self.start, self.start + self.passage]), start, stop)
+        return times_within(np.array([self.start, self.start + self.passage]), start, stop)
 
     def _evaluate(self, time: Array) -> Pair:
         x = (time - self.start) / self.passage
@@ -68,9 +76,9 @@ def chirp(amplitude: float, lowest: float, highest: float, duration: float, spee
 
     Raises `SignalError` unless 0 < lowest <= highest, `duration` > 0 and `amplitude` is a finite number.
     """
-    low, high = band("chirp", lowest, highest)
-    size = number("The amplitude of a chirp", amplitude, "its unit")
-    end = positive("The duration of a chirp", duration, "s")
+    low, high = frequency_band("chirp", lowest, highest)
+    size = finite_number("The amplitude of a chirp", amplitude, "its unit")
+    end = positive_number("The duration of a chirp", duration, "s")
     return Chirp(
         label=f"chirp of {size:g}, {low:g} to {high:g} Hz in {end:g} s",
         amplitude=size,
@@ -86,7 +94,10 @@ def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSi
 
     Raises `SignalError` unless both are finite numbers.
     """
-    size, begin = number("The height of a step", height, "its unit"), number("The time of a step", time, "s")
+    size, begin = (
+        finite_number("The height of a step", height, "its unit"),
+        finite_number("The time of a step", time, "s"),
+    )
     label = f"step of {size:g} at {begin:g} s"
     return StepSignal(label=label, height=size, time=begin, hold="zero", speed=speed_or_none(speed))
 
@@ -99,8 +110,14 @@ def bump(height: float, length: float, speed: float, start: float = 0.0) -> Bump
     >>> bump(0.05, length=2.0, speed=10.0, start=1.0)([0.9, 1.1, 1.3])
     array([0.  , 0.05, 0.  ])
     """
-    size, begin = number("The height of a bump", height, "its unit"), number("The start of a bump", start, "s")
-    long, fast = positive("The length of a bump", length, "m"), positive("The speed over a bump", speed, "m/s")
+    size, begin = (
+        finite_number("The height of a bump", height, "its unit"),
+        finite_number("The start of a bump", start, "s"),
+    )
+    long, fast = (
+        positive_number("The length of a bump", length, "m"),
+        positive_number("The speed over a bump", speed, "m/s"),
+    )
     return Bump(
         label=f"bump of {size:g}, {long:g} m long at {fast:g} m/s",
         height=size,

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import SimulationError, Status
 from inerter.kernels.prepare import prepare_on
 from inerter.renamed import renamed_keywords
@@ -34,6 +33,7 @@ from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on, threads_here
 

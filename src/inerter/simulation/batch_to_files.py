@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
+from inerter.atomic_io import is_disk_failure, write_netcdf
 from inerter.errors import SimulationError, WorkError
 from inerter.kernels.prepare import prepare_on
 from inerter.simulation import event_driven
@@ -18,7 +19,6 @@ from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on
-from inerter.writing import is_unforeseen, write_netcdf
 
 
 def simulate_to_files(
@@ -92,5 +92,5 @@ def _empty(folder: str | Path) -> Path:
 
 
 def _unwritten(place: str | Path, error: OSError) -> SimulationError | WorkError:
-    kind = WorkError if is_unforeseen(error) else SimulationError
+    kind = WorkError if is_disk_failure(error) else SimulationError
     return kind(f"Cannot write {str(place)!r}: {error.strerror or error}.")

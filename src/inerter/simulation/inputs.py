@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import check_positive
 from inerter.errors import SimulationError
-from inerter.signals.arguments import slack
+from inerter.signals.arguments import time_tolerance
 from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:
@@ -272,7 +272,7 @@ def _from_the_left(
     """Knots at which a signal breaks, with its value and slope just before them."""
     at = np.searchsorted(time, breaks - 0.5 * _SAME * step)
     at = at[np.abs(time[np.minimum(at, time.size - 1)] - breaks) <= 2.0 * _SAME * step]
-    aside = 1e-5 * min(step, signal.interval or step) + 3.0 * slack(time[at] - delay, _widest(signal))
+    aside = 1e-5 * min(step, signal.interval or step) + 3.0 * time_tolerance(time[at] - delay, _widest(signal))
     (left, slope), (_, further) = (signal.sample(time[at] - delay - i * aside) for i in (1, 2))
     return at, left + aside * (1.5 * slope - 0.5 * further), 2.0 * slope - further
 

@@ -8,7 +8,6 @@ from typing import Any, Literal, Unpack
 
 import numpy as np
 
-from inerter.checks import is_number
 from inerter.errors import SimulationError
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, time_stepping_run
@@ -29,6 +28,7 @@ from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 _REPORTS = 100  # of progress

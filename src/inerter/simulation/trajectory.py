@@ -13,13 +13,13 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.atomic_io import export
 from inerter.errors import MechanismError, SimulationError, Status
 from inerter.renamed import RenamedAttribute
 from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads
 from inerter.vehicle.mechanism import Mechanism
-from inerter.writing import export
 
 if TYPE_CHECKING:
     import xarray

@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
@@ -24,6 +23,7 @@ from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
 from inerter.systems.observe import add, motion
 from inerter.systems.outputs import Output
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, check_values
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 

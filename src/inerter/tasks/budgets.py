@@ -20,9 +20,9 @@ from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResul
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import BreakEven, break_even
-from inerter.report.findings import best_layouts
+from inerter.report.index_summary import best_layouts
 from inerter.table import Cell, Row, Table, Writer
-from inerter.units import shown
+from inerter.units import quote_value
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -136,7 +136,7 @@ class Budgets(Task[BudgetAnswer]):
         used = elements_used(study)
         for name in study.budgets:
             if name not in study.elements:
-                missing = f"{shown(name)} is not in [elements], where there are {some(study.elements)}"
+                missing = f"{quote_value(name)} is not in [elements], where there are {some(study.elements)}"
                 yield at(place, fault=missing, hint=nearest(name, study.elements))
             elif isinstance(study.elements[name].value, Tied):
                 yield at(place, fault=f"{name} is tied to others", expected="an element that is not tied")

@@ -26,11 +26,11 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
 from inerter.methods.registry import decisive_method_clause
-from inerter.report.question import key_in_words
+from inerter.pareto_fronts.front import ParetoFront
+from inerter.pareto_fronts.pareto import pareto_front
+from inerter.report.problem_statement import key_in_words
 from inerter.table import Cell, Row, Table, Writer
-from inerter.trade_off.front import ParetoFront
-from inerter.trade_off.pareto import pareto_front
-from inerter.units import headed
+from inerter.units import label_with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -122,7 +122,7 @@ class Fronts(Task[FrontAnswer]):
         """Header and one row per point; one row with the status for an empty front."""
         free = study.free_units
         names = [name for name in free if any(name in design for front in answers for design in front.parameters)]
-        indices = [headed(name, study.unit(name)) for name in study.trade_off]
+        indices = [label_with_unit(name, study.unit(name)) for name in study.trade_off]
         parameters = [f"{name} [{free[name]}]" for name in names]
         yield ["layout", "point", *indices, *parameters, "knee", "jump_after", "status"]
         for front in answers:

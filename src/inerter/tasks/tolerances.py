@@ -16,8 +16,8 @@ from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.methods.registry import decisive_method_clause
-from inerter.scatter.tolerance import tolerance_analysis
 from inerter.table import Cell, Row, Table, Writer
+from inerter.uncertainty.tolerance import tolerance_analysis
 
 if TYPE_CHECKING:
     pass

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from inerter.fields import mount as mounted
-from inerter.fields import quantity
+from inerter.field_metadata import mount as mounted
+from inerter.field_metadata import quantity
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.vehicle.mechanism import GROUND, Coordinate, Force, Mechanism, PerformanceOutputs, Strut
 from inerter.vehicle.vehicle import VehicleModel

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from inerter.fields import mount, quantity
+from inerter.field_metadata import mount, quantity
 from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,
@@ -154,8 +154,8 @@ class FullCar(VehicleModel):
 
     def _body_at(self, wheel: str) -> Port:
         axle, _, side = wheel.partition("_")
-        ahead = dict(zip(_AXLES, _apart(self.distance_front, -self.distance_rear), strict=True))
-        track = dict(zip(_AXLES, _apart(self.track_front, self.track_rear), strict=True))
+        ahead = dict(zip(_AXLES, _with_exact_difference(self.distance_front, -self.distance_rear), strict=True))
+        track = dict(zip(_AXLES, _with_exact_difference(self.track_front, self.track_rear), strict=True))
         return {"sprung": 1.0, "pitch": ahead[axle], "roll": _SIDES[side] * track[axle]}
 
     def _behind(self, wheel: str) -> float:
@@ -170,7 +170,7 @@ _AXLES = ("front", "rear")
 _WHEELS = tuple(f"{axle}_{side}" for axle in _AXLES for side in _SIDES)
 
 
-def _apart(first: float, second: float) -> tuple[float, float]:
+def _with_exact_difference(first: float, second: float) -> tuple[float, float]:
     """Both values, the smaller one changed in its last digit if needed, so that their difference is exact.
 
     Networks over the difference of two travels then add no motion of the size of a rounding error to those of the

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from inerter.fields import mount, quantity
+from inerter.field_metadata import mount, quantity
 from inerter.networks.elements import Free, Network, Spring
 from inerter.vehicle.mechanism import (
     Coordinate,

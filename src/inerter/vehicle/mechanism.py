@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import name_free_values, with_values
+from inerter.validation import check_positive, is_number
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]

@@ -6,11 +6,11 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any, cast
 
-from inerter.checks import is_number
 from inerter.errors import DesignError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 
@@ -36,7 +36,7 @@ def replace_values(vehicle: Vehicle, values: Mapping[str, float], *, if_there: b
 def to_editable(vehicle: Vehicle) -> Vehicle:
     """The vehicle, or its mechanism if its class has no fields; elements are the same objects then."""
     if isinstance(vehicle, Stage):
-        return _standing_on(vehicle, to_editable(vehicle.vehicle))
+        return _with_vehicle(vehicle, to_editable(vehicle.vehicle))
     return vehicle if isinstance(vehicle, VehicleModel | Mechanism) else vehicle.mechanism()
 
 
@@ -72,12 +72,12 @@ def _replace_value(vehicle: Vehicle, name: str, value: float) -> Vehicle:
 
 def _with_quantity(vehicle: Vehicle, name: str, value: float) -> Vehicle:
     if isinstance(vehicle, Stage) and name not in _own_quantities(vehicle):
-        return _standing_on(vehicle, _with_quantity(vehicle.vehicle, name, value))
+        return _with_vehicle(vehicle, _with_quantity(vehicle.vehicle, name, value))
     of: Any = vehicle
     return cast(Vehicle, dataclasses.replace(of, **{name: value}))
 
 
-def _standing_on(stage: Stage, vehicle: Vehicle, **other: Network) -> Vehicle:
+def _with_vehicle(stage: Stage, vehicle: Vehicle, **other: Network) -> Vehicle:
     """The stage on another vehicle."""
     of: Any = stage
     return cast(Vehicle, dataclasses.replace(of, vehicle=vehicle, **other))
@@ -85,7 +85,7 @@ def _standing_on(stage: Stage, vehicle: Vehicle, **other: Network) -> Vehicle:
 
 def _with_mass(vehicle: Vehicle, name: str, value: float) -> Vehicle:
     if isinstance(vehicle, Stage):
-        return _standing_on(vehicle, _with_mass(vehicle.vehicle, name, value))
+        return _with_vehicle(vehicle, _with_mass(vehicle.vehicle, name, value))
     mechanism = vehicle.mechanism()
     coordinates = tuple(dataclasses.replace(c, inertia=value) if c.name == name else c for c in mechanism.coordinates)
     return dataclasses.replace(mechanism, coordinates=coordinates)
@@ -130,7 +130,7 @@ def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Veh
     """The same vehicle with changed elements in its mounted networks."""
     if isinstance(vehicle, Stage):
         network = map_elements(vehicle.network, change)
-        return _standing_on(vehicle, with_elements(vehicle.vehicle, change), network=network)
+        return _with_vehicle(vehicle, with_elements(vehicle.vehicle, change), network=network)
     if isinstance(vehicle, VehicleModel):
         mounted_elements: dict[str, Any] = {
             name: map_elements(network, change) for name, network in vehicle.networks().items()

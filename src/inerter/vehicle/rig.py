@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from inerter.checks import check_positive
 from inerter.errors import MechanismError
-from inerter.fields import mount
+from inerter.field_metadata import mount
 from inerter.networks.elements import Damper, Network, Spring
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import GROUND, Coordinate, Mechanism, RoadInput, Strut
 from inerter.vehicle.vehicle import VehicleModel
 

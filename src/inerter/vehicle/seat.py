@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from inerter.fields import mount, quantity
+from inerter.field_metadata import mount, quantity
 from inerter.networks.elements import Network, check_network
 from inerter.networks.transform import name_free_values
 from inerter.vehicle.mechanism import Coordinate, Mechanism, OutputWeight, Port, Strut

@@ -11,15 +11,15 @@ from inerter.vehicle.mechanism import Coordinate, Mechanism, Port, Strut, Tracke
 
 
 def half_of(mechanism: Mechanism) -> Mechanism:
-    """`alike_half`, unless a mount at rest in it has a free value, which must be reported."""
-    half = alike_half(mechanism)
+    """`symmetric_half`, unless a mount at rest in it has a free value, which must be reported."""
+    half = symmetric_half(mechanism)
     still = half.still[len(mechanism.still) :]
     if any(isinstance(element.value, Free) for strut in still for element in strut.network.elements()):
         return mechanism
     return half
 
 
-def alike_half(mechanism: Mechanism) -> Mechanism:
+def symmetric_half(mechanism: Mechanism) -> Mechanism:
     """The symmetric half of a symmetric mechanism: an equivalent mechanism of fewer coordinates; else the mechanism.
 
     Of two mirrored coordinates the first has the mass of both, and antisymmetric ones are at rest. All mounts are kept,
@@ -31,7 +31,7 @@ def alike_half(mechanism: Mechanism) -> Mechanism:
     return _fold(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
 
 
-def opposed_half(mechanism: Mechanism) -> Mechanism:
+def antisymmetric_half(mechanism: Mechanism) -> Mechanism:
     """The antisymmetric half of a symmetric mechanism, on antisymmetric roads; else the mechanism.
 
     Symmetric coordinates are at rest, and antisymmetric ones move. Right tyres are mirrored onto the left roads.
@@ -87,12 +87,12 @@ def _is_its_image(mechanism: Mechanism) -> bool:
     for a, b in mechanism.mirror:
         images |= {a: (b, 1.0), b: (a, 1.0)} if a != b else {a: (a, -1.0)}
     known = {c.name: c for c in mechanism.coordinates}
-    if any(_law(known[a]) != _law(known[b]) for a, b in mechanism.mirror):
+    if any(_inertia_and_kind(known[a]) != _inertia_and_kind(known[b]) for a, b in mechanism.mirror):
         return False
     return Counter(_mount_signatures(mechanism, {})) == Counter(_mount_signatures(mechanism, images))
 
 
-def _law(coordinate: Coordinate) -> tuple[float | Free, bool]:
+def _inertia_and_kind(coordinate: Coordinate) -> tuple[float | Free, bool]:
     return coordinate.inertia, coordinate.angle
 
 

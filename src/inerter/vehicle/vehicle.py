@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Protocol, Self
 
-from inerter.checks import check_positive, is_number
 from inerter.errors import DesignError, MechanismError
-from inerter.fields import fields_of, mounts_of, needed_mounts_of
+from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.networks.elements import Free, Network, check_network
 from inerter.networks.transform import name_free_values, with_values
+from inerter.validation import check_positive, is_number
 from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
 

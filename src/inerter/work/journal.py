@@ -18,9 +18,9 @@ from pathlib import Path
 from shutil import copyfileobj
 from typing import Any
 
+from inerter.atomic_io import atomic_write
 from inerter.errors import StudyError, WorkError
 from inerter.work.origin import VERSION, origin
-from inerter.writing import whole
 
 FORMAT = 2
 _LINE = re.compile(rb'(\{.*), "check": "([0-9a-f]{16})"\}')
@@ -72,7 +72,7 @@ class Journal:
             _cut(self.path, end)
         else:
             line, check = _format_line(self._header(), "")
-            with whole(self.path) as draft:
+            with atomic_write(self.path) as draft:
                 draft.write_bytes(line)
         with self.path.open("ab", buffering=0) as journal:
 
@@ -142,7 +142,7 @@ def _cut(path: Path, end: int) -> None:
     if path.stat().st_nlink == 1:
         os.truncate(path, end)
         return
-    with whole(path) as draft, draft.open("wb") as stream, path.open("rb") as before:
+    with atomic_write(path) as draft, draft.open("wb") as stream, path.open("rb") as before:
         copyfileobj(before, stream)
         stream.truncate(end)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
-from inerter.rows import made_of_rows, plugins, sources
+from inerter.registry import cache_until_registration, plugin_paths, plugin_versions
 
 VERSION = version("inerter")
 _COMPUTE = ("numpy", "scipy", "numba", "llvmlite")
@@ -18,10 +18,10 @@ _TELL = {"app", "cli", "report", "figures"}  # packages that present numbers onl
 def versions() -> dict[str, str]:
     """Versions of this package, of Python, of the numerical libraries, and of plugins."""
     libraries = {name: version(name) for name in ("numpy", "scipy", "numba", "xarray")}
-    return {"inerter": VERSION, "python": platform.python_version(), **libraries, **plugins()}
+    return {"inerter": VERSION, "python": platform.python_version(), **libraries, **plugin_versions()}
 
 
-@made_of_rows
+@cache_until_registration
 def origin() -> str:
     """Hash of the numerical code: sources and tables of package and plugins, and versions of numerical libraries.
 
@@ -29,9 +29,9 @@ def origin() -> str:
 
     Sources are hashed with their comments: a harmless change costs a computation, a missed one a wrong number.
     """
-    known = {**{name: version(name) for name in _COMPUTE}, **plugins()}
+    known = {**{name: version(name) for name in _COMPUTE}, **plugin_versions()}
     digest = hashlib.sha256("".join(f"{name} {number}\n" for name, number in known.items()).encode())
-    for root in (Path(__file__).parents[1], *sources()):
+    for root in (Path(__file__).parents[1], *plugin_paths()):
         for place, path in _files(root):
             digest.update(f"{place}\n{path.stat().st_size}\n".encode() + path.read_bytes())
     return digest.hexdigest()

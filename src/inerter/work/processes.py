@@ -20,10 +20,10 @@ from multiprocessing.process import BaseProcess
 from multiprocessing.util import Finalize
 from typing import Any
 
+from inerter.atomic_io import defer_interrupts
 from inerter.errors import WorkError
 from inerter.work.forwarding import forward_to
 from inerter.work.own_process import leave, look_for_garbage_seldom
-from inerter.writing import undisturbed
 
 _ASKED, _KILLED = 0.4, 10.0  # timeouts [s] of a process after terminate and after kill
 _LAST = -1000  # priority of the last exit handler of a process
@@ -170,7 +170,7 @@ def _deaf_to_interrupts() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    with undisturbed():
+    with defer_interrupts():
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             yield

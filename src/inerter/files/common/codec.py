@@ -18,7 +18,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem
 from inerter.files.common.schema import example_value
 from inerter.files.common.suggest import nearest
-from inerter.units import shown
+from inerter.units import quote_value
 
 INVALID: Any = object()  # stands for an entry that cannot be read
 REQUIRED: Any = object()  # the default of a key that must be given
@@ -60,7 +60,7 @@ class LoadContext:
     def table(self, raw: Any) -> Mapping[str, Any]:
         """The entry, if it is a table; raises `EntryError` for another."""
         if not isinstance(raw, Mapping):
-            raise EntryError(got=shown(raw), fault="not a table", expected=self.example)
+            raise EntryError(got=quote_value(raw), fault="not a table", expected=self.example)
         return raw
 
 

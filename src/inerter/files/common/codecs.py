@@ -9,7 +9,7 @@ from typing import Any
 from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, TableCodec
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
-from inerter.units import shown
+from inerter.units import quote_value
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,7 @@ class RowsCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> Any:
         """The values of the tables, in their order."""
         if not isinstance(raw, list):
-            raise EntryError(got=shown(raw), fault="not a list of tables", expected=context.example)
+            raise EntryError(got=quote_value(raw), fault="not a list of tables", expected=context.example)
         *above, name = context.place
         rows = (replace(context, place=(*above, f"{name}[{i}]")) for i in range(1, len(raw) + 1))
         return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from inerter.errors import UnitError
-from inerter.fields import Field
+from inerter.field_metadata import Field
 from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, TableCodec
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import (
@@ -30,7 +30,7 @@ from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
 from inerter.networks.elements import NAME, Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 
 KIND = "kind"
 
@@ -150,14 +150,16 @@ def _of_kind(entry: dict[str, Any], name: str, *, free: bool) -> Element:
     """The element of an entry that names its kind; raises ValueError for what is wrong with it."""
     named = entry[KIND]
     if not isinstance(named, str) or named not in ELEMENTS:
-        listed = ", ".join(map(shown, ELEMENTS))
-        raise EntryError(got=f"kind = {shown(named)}", fault="not a kind of element", expected=f"one of {listed}")
+        listed = ", ".join(map(quote_value, ELEMENTS))
+        raise EntryError(got=f"kind = {quote_value(named)}", fault="not a kind of element", expected=f"one of {listed}")
     kind = ELEMENTS[named]
     fields = {field.name: field for field in kind.fields()}
     for key in entry:
         if key not in (KIND, *fields):
             hint = nearest(key, fields)
-            raise EntryError(got=shown(key), fault=f"not a key of a {named}", expected=", ".join(fields), hint=hint)
+            raise EntryError(
+                got=quote_value(key), fault=f"not a key of a {named}", expected=", ".join(fields), hint=hint
+            )
     for key, field in fields.items():
         if key not in entry:
             example = f'{key} = "1 {field.unit}"'
@@ -204,6 +206,6 @@ def _amount(field: Field, text: Any, may_vanish: bool) -> float:
         raise ValueError(f"{field.name}: {error}") from None
     check_size(amount, text, field.unit)
     if amount < 0.0 or (amount == 0.0 and not may_vanish):
-        given = f"{field.name} = {shown(text)}"
+        given = f"{field.name} = {quote_value(text)}"
         raise EntryError(got=given, fault="not positive", expected=f"more than 0 {field.unit}")
     return amount

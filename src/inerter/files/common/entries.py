@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from inerter.fields import Field, TextChoice
+from inerter.field_metadata import Field, TextChoice
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
@@ -15,7 +15,7 @@ from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.units import format_quantity, parse_quantity, shown, unit_in
+from inerter.units import format_quantity, parse_quantity, quote_value, unit_in
 
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
 MOST_POINTS = 10_000_000
@@ -67,7 +67,7 @@ class QuantityCodec(Codec):
 
     def _range(self, entry: Mapping[str, Any], name: str) -> Free:
         if set(entry) != {LOWER, UPPER}:
-            listed = ", ".join(map(shown, entry)) or "nothing"
+            listed = ", ".join(map(quote_value, entry)) or "nothing"
             expected = f'one value, or {{ from = "1 {self.unit}", to = "2 {self.unit}" }}'
             raise EntryError(got=f"a table with {listed}", expected=expected)
         lower, upper = (Amount(self.unit, positive_in(entry[end], self.unit)) for end in (LOWER, UPPER))
@@ -134,7 +134,7 @@ def not_negative_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is zero or more."""
     value = check_size(parse_quantity(text, unit), text, unit)
     if value < 0.0:
-        raise EntryError(got=shown(text), fault="negative", expected=f"0 {unit} or more")
+        raise EntryError(got=quote_value(text), fault="negative", expected=f"0 {unit} or more")
     return value
 
 
@@ -142,7 +142,7 @@ def positive_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is greater than zero."""
     value = check_size(parse_quantity(text, unit), text, unit)
     if value <= 0.0:
-        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}")
+        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}")
     return value
 
 
@@ -164,7 +164,7 @@ def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: boo
 def positive_number(value: Any) -> float:
     """A number greater than zero, without a unit."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
-        raise EntryError(got=shown(value), expected="a positive number without quotes, such as 1.02")
+        raise EntryError(got=quote_value(value), expected="a positive number without quotes, such as 1.02")
     return float(value)
 
 
@@ -174,7 +174,7 @@ POSITIVE = Scalar(positive_number, lambda: {"type": "number", "exclusiveMinimum"
 def yes_or_no(value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):
-        raise EntryError(got=shown(value), expected="true or false, without quotes")
+        raise EntryError(got=quote_value(value), expected="true or false, without quotes")
     return value
 
 
@@ -205,7 +205,7 @@ def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     check_size(value, text, unit)
     if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
         hint = "To leave the element out, drop its branch from the layouts."
-        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
+        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
     return Amount(unit, value)
 
 
@@ -215,7 +215,7 @@ YES_OR_NO = Scalar(yes_or_no, lambda: {"type": "boolean"})
 def text(value: Any) -> str:
     """A title or a name."""
     if not isinstance(value, str) or not value.strip() or len(value) > 200:
-        raise EntryError(got=shown(value), expected='text of 1 to 200 characters in quotes, such as "My car"')
+        raise EntryError(got=quote_value(value), expected='text of 1 to 200 characters in quotes, such as "My car"')
     return value
 
 
@@ -227,8 +227,8 @@ def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
 
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in known:
-            available = f"not {what}; available in this version: {', '.join(shown(name) for name in known)}"
-            raise EntryError(got=shown(value), fault=available, hint=nearest(value, known))
+            available = f"not {what}; available in this version: {', '.join(quote_value(name) for name in known)}"
+            raise EntryError(got=quote_value(value), fault=available, hint=nearest(value, known))
         return value
 
     return check
@@ -281,12 +281,12 @@ def list_or_none(values: Collection[Any]) -> list[Any] | None:
 
 def _check_list(values: Any, one: Callable[[Any], str], example: Callable[[], str]) -> tuple[str, ...]:
     if not isinstance(values, list) or not values:
-        got = "an empty list" if values == [] else shown(values)
-        raise EntryError(got=got, expected=f"a list of one or more, such as [{shown(example())}]")
+        got = "an empty list" if values == [] else quote_value(values)
+        raise EntryError(got=got, expected=f"a list of one or more, such as [{quote_value(example())}]")
     listed = tuple(one(value) for value in values)
     twice = next((value for value in listed if listed.count(value) > 1), None)
     if twice is not None:
-        raise EntryError(got=f"{shown(twice)} more than once", expected="each at most once")
+        raise EntryError(got=f"{quote_value(twice)} more than once", expected="each at most once")
     return listed
 
 
@@ -295,7 +295,7 @@ def whole(lower: int, upper: int) -> Codec:
 
     def check(value: Any) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not lower <= value <= upper:
-            raise EntryError(got=shown(value), expected=f"a whole number from {lower} to {upper}, without quotes")
+            raise EntryError(got=quote_value(value), expected=f"a whole number from {lower} to {upper}, without quotes")
         return value
 
     return Scalar(check, lambda: {"type": "integer", "minimum": lower, "maximum": upper})
@@ -304,7 +304,7 @@ def whole(lower: int, upper: int) -> Codec:
 def share(value: Any) -> float:
     """A number between zero and one, without a unit."""
     if not isinstance(value, float) or not 0.0 < value < 1.0:
-        raise EntryError(got=shown(value), expected="a number between 0 and 1 without quotes, such as 0.01")
+        raise EntryError(got=quote_value(value), expected="a number between 0 and 1 without quotes, such as 0.01")
     return value
 
 
@@ -314,7 +314,7 @@ SHARE = Scalar(share, lambda: SHARE_SCHEMA)
 def expression(value: Any) -> str:
     """Expression of a network; its syntax is checked once all elements are known."""
     if not isinstance(value, str):
-        raise EntryError(got=shown(value), expected='a network in quotes, such as "k | c - b"')
+        raise EntryError(got=quote_value(value), expected='a network in quotes, such as "k | c - b"')
     if len(value) > _LONGEST_EXPRESSION or value.count("(") > _MOST_BRACKETS:
         raise EntryError(
             got=f"a network of {len(value)} characters with {value.count('(')} brackets",
@@ -339,10 +339,10 @@ def element_name(name: Any) -> str:
     """Name valid in a network expression and not used by results themselves; raises `EntryError` for another."""
     if not NAME.fullmatch(name):
         letters = "a letter followed by letters, digits and underscores, such as k1"
-        raise EntryError(got=shown(name), fault="not a name", expected=letters)
+        raise EntryError(got=quote_value(name), fault="not a name", expected=letters)
     if name in _TAKEN:
         taken = "a word that results use themselves"
-        raise EntryError(got=shown(name), fault=taken, expected="another name, such as k1")
+        raise EntryError(got=quote_value(name), fault=taken, expected="another name, such as k1")
     return str(name)
 
 
@@ -350,7 +350,7 @@ def layout_name(name: Any) -> str:
     """A name that can stand in a table and in the name of a file."""
     if not 0 < len(name) <= 40 or not _LAYOUT_NAME_CHARACTERS.issuperset(name) or name[0] in ".-+":
         raise EntryError(
-            got=shown(name),
+            got=quote_value(name),
             fault="not a layout name, which also names files",
             expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, such as S3e",
         )
@@ -376,7 +376,7 @@ def check_order(lower: Amount, upper: Amount) -> None:
 def quantity_list(values: Any) -> tuple[str, ...]:
     """The values of a sweep, one by one."""
     if not isinstance(values, list) or not 2 <= len(values) <= MOST_POINTS:
-        got = f"a list of {len(values)}" if isinstance(values, list) else shown(values)
+        got = f"a list of {len(values)}" if isinstance(values, list) else quote_value(values)
         example = 'k = { from = "10 kN/m", to = "300 kN/m", points = 30 } or k = ["10 kN/m", "20 kN/m"]'
         raise EntryError(got=got, expected=f"2 to {MOST_POINTS} values, as in {example}")
     return tuple(map(quantity_text, values))

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from inerter.atomic_io import defer_interrupts, is_disk_failure, sync_to_disk, temporary_folder
 from inerter.errors import StudyError, WorkError
 from inerter.files.common.listing import MARK, Entry, Listing, digest, is_linked, is_own, listing, names_below
-from inerter.writing import is_unforeseen, scratch, settle, undisturbed
 
 _LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
 FIGURES, REPORT = "figures", "report.html"  # in folders of results of any command
@@ -92,7 +92,7 @@ def open_results(intent: WriteMode) -> Iterator[Results]:
     with _full_disk_reported(intent), _folder_lock(intent.folder, wait=0.0):
         _check(intent)
         _clean(intent.folder)
-        with undisturbed():
+        with defer_interrupts():
             _complete(intent.folder)
         yield from _results(intent)
 
@@ -105,14 +105,14 @@ def _results(intent: WriteMode) -> Iterator[Results]:
     place = new if beside else folder
     try:
         (place / MARK).mkdir(parents=True, exist_ok=True)
-        with scratch(folder / MARK) as draft:
+        with temporary_folder(folder / MARK) as draft:
             results = Results(folder, place, draft, intent)
             yield results
             results.publish()
         _seal(place)
         if beside:
             (new / _WHOLE).touch()
-            with undisturbed():
+            with defer_interrupts():
                 _complete(folder)
     finally:
         if intent.resume is None and not (new / _WHOLE).exists():
@@ -136,7 +136,7 @@ def single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> Ite
     folder = path.parent
     with _full_disk_reported(None, path), _folder_lock(folder, wait=10.0):
         check_single(path, by=by, inputs=inputs, force=force)
-        with scratch(folder / MARK) as draft:
+        with temporary_folder(folder / MARK) as draft:
             yield draft / path.name
             _move(draft, folder, {path.name: Entry(by, (digest(draft / path.name),), single=True)}, inputs)
 
@@ -279,13 +279,13 @@ def _move(
     if strange:
         raise WorkError(f"{target}: {_kept_files_note(strange)} Move that away, and repeat the command.")
     for name in moved:
-        settle(source / name)
+        sync_to_disk(source / name)
     both = {
         name: replace(entry, digests=(*entry.digests, *(known.files[name].digests if name in known.files else ())))
         for name, entry in files.items()
     }
     known.with_files(both).write(target)
-    with undisturbed():
+    with defer_interrupts():
         for name in moved:
             (target / name).parent.mkdir(parents=True, exist_ok=True)
             (source / name).replace(target / name)
@@ -293,7 +293,7 @@ def _move(
             (target / name).unlink()
         _prune(target, stale)
         for parent in {(target / name).parent for name in moved}:
-            settle(parent)
+            sync_to_disk(parent)
     known.with_files(files, stale).write(target)
 
 
@@ -333,7 +333,7 @@ def _folder_lock(folder: Path, wait: float) -> Iterator[None]:
         raise StudyError(f"{folder}: another run is writing to it. Wait for it, or {_ELSEWHERE}.") from None
     except OSError as error:
         _tidy(folder, made)
-        if is_unforeseen(error):
+        if is_disk_failure(error):
             raise
         raise StudyError(f"{folder}: cannot be written ({error.strerror}). Choose another folder with -o.") from None
     try:
@@ -368,7 +368,7 @@ def _full_disk_reported(intent: WriteMode | None, path: Path | None = None) -> I
         yield
     except (OSError, WorkError) as error:
         cause = error.__cause__ if isinstance(error, WorkError) else error
-        if not isinstance(cause, OSError) or not is_unforeseen(cause):
+        if not isinstance(cause, OSError) or not is_disk_failure(cause):
             raise
         kept = ""
         if intent and intent.force:

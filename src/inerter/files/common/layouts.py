@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inerter.errors import NetworkError
-from inerter.fields import mounts_of
+from inerter.field_metadata import mounts_of
 from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, section, without_none
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import EXPRESSION, layout_name
@@ -18,7 +18,7 @@ from inerter.files.common.vehicle_tables import SEAT
 from inerter.files.common.vehicles import MountEntry, build_vehicle, mounts, parts_of
 from inerter.networks.elements import Element
 from inerter.networks.parser import names, network
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
@@ -52,7 +52,7 @@ class LayoutCodec(Codec):
             return StrutLayout(struts | {n: mount.network for n, mount in known.items() if mount.network is not None})
         unknown = [name for name in raw if name not in known]
         if unknown and len(known) == 1:
-            (only,), text = known, shown(next(iter(raw.values())))
+            (only,), text = known, quote_value(next(iter(raw.values())))
             fault = f"a {model.replace('-', ' ')} has one {only}"
             raise EntryError(got="a table", fault=fault, expected=f"its network in quotes, such as {text}")
         found = (_mounts_table(known) if known else NamesCodec(EXPRESSION)).load(raw, context)
@@ -120,8 +120,8 @@ def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
-            missing = f"{shown(name)} is not in [elements], where there are {some(elements)}"
-            yield at(place, got=shown(expression), fault=missing, hint=nearest(name, elements))
+            missing = f"{quote_value(name)} is not in [elements], where there are {some(elements)}"
+            yield at(place, got=quote_value(expression), fault=missing, hint=nearest(name, elements))
         if not unknown:
             network(expression, **elements)
     except NetworkError as error:
@@ -135,4 +135,4 @@ def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator
         yield at((section, "layout"), fault="missing, but there are several layouts", expected=f"one of {layouts}")
     elif layout not in known:
         hint = nearest(layout, known)
-        yield at((section, "layout"), got=shown(layout), expected=f"one of {layouts}", hint=hint)
+        yield at((section, "layout"), got=quote_value(layout), expected=f"one of {layouts}", hint=hint)

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from inerter.atomic_io import write_text
 from inerter.work.journal import is_intact
-from inerter.writing import write_text
 
 MARK = ".inerter"  # the folder of the list, of the lock, and of what is under way
 _NAME = f"{MARK}/files.json"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.files.common.vehicle_tables import SEAT
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from inerter.units import shown
+from inerter.units import quote_value
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -27,7 +27,7 @@ class Problem:
 
     def __str__(self) -> str:
         sentence = self.said or _sentence(self)
-        keys = ".".join(key if _BARE_KEY.fullmatch(key) else shown(key) for key in self.place)
+        keys = ".".join(key if _BARE_KEY.fullmatch(key) else quote_value(key) for key in self.place)
         return f"{keys}: {sentence[0].lower()}{sentence[1:]}" if keys else sentence
 
 

@@ -13,7 +13,7 @@ from inerter.files.common.suggest import nearest
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.roads.reading import Columns, read_profile
-from inerter.units import PURE, format_quantity, is_unit_for, shown
+from inerter.units import PURE, format_quantity, is_unit_for, quote_value
 
 _UNITS = ("distance", "height")
 COLUMNS_EXAMPLE = 'columns = { distance = "Station", height = 2 }'
@@ -40,7 +40,7 @@ def columns(value: Any) -> dict[str, str | int]:
     for role, name in _table(value, known, COLUMNS_EXAMPLE).items():
         is_name = isinstance(name, str) and name != ""
         if not is_name and (isinstance(name, bool) or not isinstance(name, int) or name < 0):
-            raise EntryError(got=f"{role} = {shown(name)}", expected="the name of a column, or its number from 0")
+            raise EntryError(got=f"{role} = {quote_value(name)}", expected="the name of a column, or its number from 0")
     return dict(value)
 
 
@@ -48,7 +48,7 @@ def units(value: Any) -> dict[str, str]:
     """Units of distances and of heights."""
     for kind, unit in _table(value, _UNITS, UNITS_EXAMPLE).items():
         if not isinstance(unit, str) or not unit.strip() or unit == PURE or not _is_length(unit):
-            raise EntryError(got=f"{kind} = {shown(unit)}", expected=f"a unit of length, as in {UNITS_EXAMPLE}")
+            raise EntryError(got=f"{kind} = {quote_value(unit)}", expected=f"a unit of length, as in {UNITS_EXAMPLE}")
     return dict(value)
 
 
@@ -86,16 +86,18 @@ def as_keys(text: Iterable[object]) -> str:
 def _key(remedy: Remedy) -> str:
     if remedy.action == Action.INTERVAL:
         return f'interval = "{format_quantity(remedy.value or 0.1, "m")}"'
-    pairs = ", ".join(f"{role} = {shown(value) if isinstance(value, str) else value}" for role, value in remedy.value)
+    pairs = ", ".join(
+        f"{role} = {quote_value(value) if isinstance(value, str) else value}" for role, value in remedy.value
+    )
     return f"{'units' if remedy.action == Action.UNITS else 'columns'} = {{ {pairs} }}"
 
 
 def _table(value: Any, known: tuple[str, ...], example: str) -> dict[str, Any]:
     if not isinstance(value, dict) or not value:
-        raise EntryError(got=shown(value), expected=f"a table such as {example}")
+        raise EntryError(got=quote_value(value), expected=f"a table such as {example}")
     for role in value:
         if role not in known:
-            raise EntryError(got=shown(role), expected=f"one of {', '.join(known)}", hint=nearest(role, known))
+            raise EntryError(got=quote_value(role), expected=f"one of {', '.join(known)}", hint=nearest(role, known))
     return value
 
 

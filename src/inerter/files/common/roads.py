@@ -9,9 +9,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.errors import RecordError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common import profiles
 from inerter.files.common.codec import (
     REQUIRED,
@@ -30,7 +29,8 @@ from inerter.files.common.suggest import some
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
-from inerter.units import format_quantity, shown
+from inerter.units import format_quantity, quote_value
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 
 ROAD_QUANTITIES = sorted(fields_of(Road), key=lambda f: f.name != "speed")  # which comes first
@@ -47,7 +47,7 @@ _FEWEST = 12  # bands of a line, which are an octave, without a warning
 
 def _from_minus_one(value: Any) -> float:
     if not is_number(value) or not -1.0 <= value <= 1.0:
-        raise EntryError(got=shown(value), expected="a number from -1 to 1 without quotes, such as 0.6")
+        raise EntryError(got=quote_value(value), expected="a number from -1 to 1 without quotes, such as 0.6")
     return float(value)
 
 
@@ -261,7 +261,7 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
     try:
         if not path.is_file():
             place = "in the folder of this file" if Path(name).name == name else "as seen from this file"
-            raise EntryError(got=shown(name), fault=f"file not found {place}", expected=_PROFILE)
+            raise EntryError(got=quote_value(name), fault=f"file not found {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, road["columns"], road["units"], road["interval"])
         spectrum = road_spectrum(measured, track=track, sampling=sampling)

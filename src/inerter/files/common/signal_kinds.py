@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from inerter.errors import RecordError, RowError, SignalError
+from inerter.errors import RecordError, RegistryError, SignalError
 from inerter.files.common import profiles
 from inerter.files.common.codec import REQUIRED, Codec, Scalar
 from inerter.files.common.entries import TEXT, YES_OR_NO, any_quantity, positive, whole, word
-from inerter.rows import Rows, made_of_rows
+from inerter.registry import Registry, cache_until_registration
 from inerter.signals.harmonics import cosine, flat_multisine, random_road, sine
 from inerter.signals.records import held_noise, read_signal
 from inerter.signals.signal import Signal
@@ -185,7 +185,7 @@ _OWN = (
         of_roads=True,
     ),
 )
-SIGNALS: Rows[SignalKind] = Rows("kind of signal", "key", ("make", "keys"), _OWN)
+SIGNALS: Registry[SignalKind] = Registry("kind of signal", "key", ("make", "keys"), _OWN)
 
 
 def unit_of(name: object) -> str:
@@ -193,14 +193,16 @@ def unit_of(name: object) -> str:
     return _force_units().get(str(name), "m")
 
 
-@made_of_rows
+@cache_until_registration
 def _force_units() -> dict[str, str]:
-    """Raises `RowError` if a force has two units, or one that no signal has."""
+    """Raises `RegistryError` if a force has two units, or one that no signal has."""
     found: dict[str, str] = {}
     for kind in VEHICLES.values():
         for force, unit in kind.forces.items():
             if unit not in UNITS:
-                raise RowError(f"{kind.__name__} has a force {force!r} in {unit}; a signal is in {', '.join(UNITS)}.")
+                raise RegistryError(
+                    f"{kind.__name__} has a force {force!r} in {unit}; a signal is in {', '.join(UNITS)}."
+                )
             if found.setdefault(force, unit) != unit:
-                raise RowError(f"{kind.__name__} has {force!r} in {unit}, and another vehicle in {found[force]}.")
+                raise RegistryError(f"{kind.__name__} has {force!r} in {unit}, and another vehicle in {found[force]}.")
     return found

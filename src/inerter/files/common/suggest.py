@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from inerter.units import shown
+from inerter.units import quote_value
 
 _MOST = 12  # names in a message
 
@@ -18,7 +18,7 @@ def nearest(word: object, known: Iterable[str]) -> str:
     """
     candidates = {name.lower(): name for name in known}
     close = get_close_matches(word.lower(), candidates, n=1) if isinstance(word, str) else []
-    return f" Did you mean {shown(candidates[close[0]])}?" if close else ""
+    return f" Did you mean {quote_value(candidates[close[0]])}?" if close else ""
 
 
 def some(names: Iterable[str]) -> str:

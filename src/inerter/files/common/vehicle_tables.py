@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from inspect import getdoc
 from typing import Any
 
-from inerter.checks import is_number
-from inerter.errors import RowError, UnitError
-from inerter.fields import fields_of
+from inerter.errors import RegistryError, UnitError
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     Codec,
     KeyPath,
@@ -27,7 +26,8 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
 from inerter.networks.elements import NAME
-from inerter.units import parse_one_of, parse_quantity, shown
+from inerter.units import parse_one_of, parse_quantity, quote_value
+from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
 
@@ -50,7 +50,9 @@ def lever(entry: Any) -> float:
     if isinstance(entry, str):
         return Length(parse_quantity(entry, "m"))
     if not is_number(entry):
-        raise EntryError(got=shown(entry), expected='a number such as 1, or for an angle a length such as "1.2 m"')
+        raise EntryError(
+            got=quote_value(entry), expected='a number such as 1, or for an angle a length such as "1.2 m"'
+        )
     return float(entry)
 
 
@@ -60,9 +62,9 @@ def inertia(entry: Any) -> float:
         unit, value = parse_one_of(entry, {"kg": "", "kg m^2": ""}, "kg")
     except UnitError:
         wanted = 'a mass such as "250 kg", or of an angle a moment of inertia such as "200 kg m^2"'
-        raise EntryError(got=shown(entry), expected=wanted) from None
+        raise EntryError(got=quote_value(entry), expected=wanted) from None
     if value <= 0.0:
-        raise EntryError(got=shown(entry), fault="not positive", expected=f"more than 0 {unit}")
+        raise EntryError(got=quote_value(entry), fault="not positive", expected=f"more than 0 {unit}")
     return value if unit == "kg" else Inertia(value)
 
 
@@ -70,7 +72,7 @@ def part_name(name: Any) -> str:
     """A name that can stand before the name of a motion or a force."""
     if not NAME.fullmatch(name):
         letters = "a letter followed by letters, digits and underscores, such as body"
-        raise EntryError(got=shown(name), fault="not a name", expected=letters)
+        raise EntryError(got=quote_value(name), fault="not a name", expected=letters)
     return str(name)
 
 
@@ -278,7 +280,9 @@ def _vehicle_table(model: str, free: bool) -> TableCodec:
     seat = (_SEAT,) if VEHICLES[model].moved == "road" else ()
     taken = sorted({"model", *(one.name for one in seat)} & {one.name for one in keys})
     if taken:
-        raise RowError(f"{model} has a quantity {taken[0]!r}, a key that [vehicle] has already. Choose another name.")
+        raise RegistryError(
+            f"{model} has a quantity {taken[0]!r}, a key that [vehicle] has already. Choose another name."
+        )
     about = (getdoc(VEHICLES[model]) or model).partition("\n\n")[0]
     return TableCodec((*keys, *seat), make, tag=tag, about=about)
 

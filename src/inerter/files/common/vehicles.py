@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from inerter.errors import InerterError, MechanismError
-from inerter.fields import fields_of, mounts_of, needed_mounts_of
+from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
 from inerter.networks.elements import Damper, Free, Network, Spring
-from inerter.units import format_quantity, shown
+from inerter.units import format_quantity, quote_value
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,
@@ -215,7 +215,7 @@ class _OwnMechanism:
                 hint = nearest(tyre["road"], roads)
                 wanted = f"a road, one of {some(roads) or 'none'}"
                 found.append(
-                    at(("vehicle", "tyres", name, "road"), got=shown(tyre["road"]), expected=wanted, hint=hint)
+                    at(("vehicle", "tyres", name, "road"), got=quote_value(tyre["road"]), expected=wanted, hint=hint)
                 )
         for name, port in values["forces"].items():
             found += _port_problems(("vehicle", "forces", name), port, known, ())

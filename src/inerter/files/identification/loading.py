@@ -18,7 +18,7 @@ from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.rig import Rig
 
 CUSTOM = "custom"
@@ -91,7 +91,7 @@ def _problems(request: IdentificationRequest) -> Iterator[Problem]:
         yield from _of_named(request)
         return
     if request.name is not None:
-        yield at(("model",), got=f"both a name, {shown(request.name)}, and a layout", expected="one of them")
+        yield at(("model",), got=f"both a name, {quote_value(request.name)}, and a layout", expected="one of them")
     wrong = list(network_problems(("model", "layout"), request.layout, request.elements))
     yield from wrong
     if wrong:

@@ -33,7 +33,7 @@ from inerter.files.common.suggest import nearest
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
 from inerter.records.uncertain import Uncertain, parse_uncertain
-from inerter.units import parse_quantity, shown
+from inerter.units import parse_quantity, quote_value
 
 NO_UNITS: dict[str, str] = {}
 NO_ELEMENTS: dict[str, Any] = {}
@@ -46,21 +46,21 @@ _MOST_STARTS = 4096
 def channel(value: Any) -> str | int:
     """A channel by its name or its number."""
     if isinstance(value, bool) or not isinstance(value, str | int) or value == "":
-        raise EntryError(got=shown(value), expected='the name of a channel, such as "Load", or its number from 0')
+        raise EntryError(got=quote_value(value), expected='the name of a channel, such as "Load", or its number from 0')
     return value
 
 
 def channel_units(value: Any) -> dict[str, str]:
     """Units by what a channel is, not by its name."""
     if not isinstance(value, dict):
-        raise EntryError(got=shown(value), expected='a table such as { force = "kgf" }')
+        raise EntryError(got=quote_value(value), expected='a table such as { force = "kgf" }')
     for role, unit in value.items():
         if role not in CHANNELS:
             known = ", ".join(CHANNELS)
             hint = nearest(role, CHANNELS)
-            raise EntryError(got=f"a unit of {shown(role)}", expected=f"one of {known}", hint=hint)
+            raise EntryError(got=f"a unit of {quote_value(role)}", expected=f"one of {known}", hint=hint)
         if not isinstance(unit, str):
-            raise EntryError(got=f"{shown(unit)} as the unit of the {role}", expected='text such as "kgf"')
+            raise EntryError(got=f"{quote_value(unit)} as the unit of the {role}", expected='text such as "kgf"')
     return value
 
 
@@ -73,8 +73,8 @@ def gap_treatment(value: Any) -> str | float:
     except ValueError:
         seconds = -1.0
     if seconds <= 0.0:
-        known = ", ".join(map(shown, GAPS))
-        raise EntryError(got=shown(value), expected=f'one of {known}, or the longest to fill, such as "50 ms"')
+        known = ", ".join(map(quote_value, GAPS))
+        raise EntryError(got=quote_value(value), expected=f'one of {known}, or the longest to fill, such as "50 ms"')
     return seconds
 
 
@@ -86,7 +86,7 @@ def longest_delay(value: Any) -> bool | float:
 def check_part(value: Any) -> float:
     """Share of each record that is held out for validation."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 0.6:
-        raise EntryError(got=shown(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
+        raise EntryError(got=quote_value(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
     return float(value)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError
 from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
@@ -19,9 +20,8 @@ from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Element
 from inerter.networks.parser import network
 from inerter.systems.piecewise import piecewise
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.rig import Rig
-from inerter.writing import characters
 
 _OWN = ("layout", "duration", "start")  # of [rig], and not of the rig itself
 
@@ -44,17 +44,17 @@ def load_rig(path: str | Path) -> RigRequest:
     if problems:
         raise refusal(path, problems)
     rig = _rig(path, settings, next(iter(layouts[chosen].struts.values())), elements)
-    title = characters(path.stem) if found["title"] is None else found["title"]
+    title = escape_surrogates(path.stem) if found["title"] is None else found["title"]
     return RigRequest(title, rig, signal, settings["duration"], settings["start"])
 
 
 def _signal_problems(signal: SignalRequest) -> Iterator[Problem]:
     if signal.input != Rig.moved:
-        yield at(("signal", "input"), got=shown(signal.input), fault=f"a table is moved by a {Rig.moved}")
+        yield at(("signal", "input"), got=quote_value(signal.input), fault=f"a table is moved by a {Rig.moved}")
     elif SIGNALS[signal.kind].needs:
         yield at(
             ("signal", "kind"),
-            got=shown(signal.kind),
+            got=quote_value(signal.kind),
             fault="it is the shape of a road",
             expected='another kind, such as "flat-multisine" or "cosine"',
         )

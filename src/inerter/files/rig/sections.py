@@ -7,7 +7,7 @@ from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
 from inerter.files.common.layouts import layouts_codec
 from inerter.files.common.signals import signal_codec
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 from inerter.vehicle.rig import Rig
 
 
@@ -33,7 +33,7 @@ class RigSettings:
     reversed: bool = key(YES_OR_NO, "Whether the load cell has the other sign.", default=False)
 
 
-@made_of_rows
+@cache_until_registration
 def rig_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
     return TableCodec(

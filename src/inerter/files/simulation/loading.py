@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import chosen_layout, layout_problems
 from inerter.files.common.problem import Problem, at
@@ -20,8 +21,7 @@ from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.sections import simulation_codec
 from inerter.simulation.inputs import whole_steps
 from inerter.systems.piecewise import piecewise
-from inerter.units import shown
-from inerter.writing import characters
+from inerter.units import quote_value
 
 
 def load_simulation(path: str | Path) -> SimulationRequest:
@@ -45,7 +45,7 @@ def _resolve(path: Path, found: Mapping[str, Any], line: MeasuredLine | None) ->
     if settings["layout"] is None:
         settings["layout"] = next(iter(found["layouts"])) if len(found["layouts"]) == 1 else ""
     return SimulationRequest(
-        title=characters(path.stem) if found["title"] is None else found["title"],
+        title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
         path=path,
         model=model,
         vehicle=vehicle,
@@ -66,7 +66,7 @@ def _names(request: SimulationRequest) -> Iterator[Problem]:
     moved, known = request.signal.input, inputs(request.model, request.vehicle)
     if moved not in known:
         hint = nearest(moved, known)
-        yield at(("signal", "input"), got=shown(moved), expected=f"one of {some(known)}", hint=hint)
+        yield at(("signal", "input"), got=quote_value(moved), expected=f"one of {some(known)}", hint=hint)
 
 
 def _needs(request: SimulationRequest) -> Iterator[Problem]:
@@ -75,7 +75,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
     if kind.of_roads and signal.unit != "m":
         yield at(
             ("signal", "kind"),
-            got=f"{shown(signal.kind)} for the force {signal.input}",
+            got=f"{quote_value(signal.kind)} for the force {signal.input}",
             fault="it is the shape of a road",
             expected="another kind, or no input",
         )
@@ -107,7 +107,7 @@ def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
     for place in (place for place, wanted in asked.items() if wanted):
         yield from track_problems(place, tracks(request.model, request.vehicle))
     if request.coherence and not SIGNALS[request.signal.kind].random:
-        random = some(shown(kind.key) for kind in SIGNALS.values() if kind.random)
+        random = some(quote_value(kind.key) for kind in SIGNALS.values() if kind.random)
         fault = f"a {request.signal.kind} has none"
         yield at(("road", "coherence"), fault=fault, expected=f"a signal of kind {random}, or no coherence")
 

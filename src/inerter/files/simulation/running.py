@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from inerter.atomic_io import write_netcdf, write_text
 from inerter.errors import InerterError
 from inerter.files.common.folder import FIGURES, WriteMode, open_results
 from inerter.files.common.problem import at
@@ -21,7 +22,6 @@ from inerter.systems.graph import full_graph, switching
 from inerter.systems.outputs import of_mount
 from inerter.vehicle.mechanism import Mechanism
 from inerter.work.origin import versions
-from inerter.writing import write_netcdf, write_text
 
 TRAJECTORY, DATASET, EVENTS, RESOLVED = "trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml"
 NAMES = (TRAJECTORY, DATASET, EVENTS, RESOLVED, f"{FIGURES}/")

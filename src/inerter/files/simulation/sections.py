@@ -12,8 +12,8 @@ from inerter.files.common.roads import road_codec
 from inerter.files.common.signals import signal_codec
 from inerter.files.common.vehicle_tables import vehicle_codec
 from inerter.files.common.vehicles import models
-from inerter.rows import made_of_rows
-from inerter.units import shown
+from inerter.registry import cache_until_registration
+from inerter.units import quote_value
 
 INTEGRATORS = ("event-driven", "time-stepping")
 INITIAL = ("rest", "preload", "periodic")
@@ -47,10 +47,10 @@ def _model(value: Any) -> str:
     return one_of("a vehicle model", models())(value)
 
 
-@made_of_rows
+@cache_until_registration
 def simulation_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
-    *others, last = map(shown, models())
+    *others, last = map(quote_value, models())
     return TableCodec(
         (
             section("title", TEXT, default=None),

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.ties import with_known_values
 from inerter.files.study.place import Place, element_at, place_of
 from inerter.files.study.places import number_at, with_numbers
 from inerter.files.study.sections import ConditionEntry
 from inerter.methods.conditions import Condition
 from inerter.networks.elements import Element, Tied
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.registry import VEHICLES
 
 if TYPE_CHECKING:
@@ -75,5 +75,5 @@ def condition_of(study: Study, stated: StudyCondition) -> Condition:
     changed["vehicle"] |= {
         name: e.value for name, e in following(study, stated.numbers).items() if isinstance(e.value, float)
     }
-    name = stated.name or ", ".join(f"{label} = {shown(number)}" for label, number in stated.numbers.items())
+    name = stated.name or ", ".join(f"{label} = {quote_value(number)}" for label, number in stated.numbers.items())
     return Condition(stated.share, changed["vehicle"], changed["road"], name, if_there=True)

@@ -15,7 +15,7 @@ from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.excitation import Excitation, FilteredExcitation, GroundAcceleration, WhiteForce
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
-from inerter.units import parse_one_of, shown
+from inerter.units import parse_one_of, quote_value
 
 _GROUND, _INTENSITY = "ground_acceleration", "intensity"
 _OF_GROUND = "(m/s^2)^2/Hz"
@@ -49,7 +49,7 @@ class AmountCodec(Codec):
         """The value with its SI unit."""
         unit, value = parse_one_of(raw, self.units, next(iter(self.units)), self.what)
         if value <= 0.0:
-            raise EntryError(got=shown(raw), fault="not positive", expected=f"more than 0 {unit}")
+            raise EntryError(got=quote_value(raw), fault="not positive", expected=f"more than 0 {unit}")
         return Amount(unit, value)
 
     def dump(self, value: Amount) -> str:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.checks import is_number
 from inerter.files.common.codec import Declaration, Scalar, TableCodec
 from inerter.files.common.problem import EntryError
 from inerter.systems.filters import Filter
-from inerter.units import shown
+from inerter.units import quote_value
+from inerter.validation import is_number
 
 
 def _coefficients(value: Any) -> tuple[float, ...]:
     if not isinstance(value, list) or not value or not all(map(is_number, value)):
         raise EntryError(
-            got=shown(value) if not isinstance(value, list) or value else "an empty list",
+            got=quote_value(value) if not isinstance(value, list) or value else "an empty list",
             expected="a list of numbers without quotes, the highest power of s first, such as [1.0, 0.5]",
         )
     return tuple(map(float, value))

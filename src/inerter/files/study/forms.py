@@ -10,9 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.checks import is_number
-from inerter.errors import RowError
-from inerter.fields import Formed
+from inerter.errors import RegistryError
+from inerter.field_metadata import TypedField
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, Scalar
 from inerter.files.common.codecs import NamesCodec
 from inerter.files.common.entries import TEXT
@@ -28,7 +27,8 @@ from inerter.files.study.excitations import (
 from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
-from inerter.units import shown
+from inerter.units import quote_value
+from inerter.validation import is_number
 
 _OF_INPUTS = {"N": "force", "N m": "moment", "m": "road", "m/s": "velocity of a road"}
 
@@ -46,24 +46,24 @@ class Form:
     sized: Callable[[Any], Iterable[SizeReference]] = lambda value: ()
 
 
-def form_declaration(setting: Formed) -> Declaration:
+def form_declaration(setting: TypedField) -> Declaration:
     """The key of a setting that has a form."""
     example, default = f"{setting.key} = {setting.example}", REQUIRED if setting.needed else None
     words = setting.key.replace("_", " ")
     return Declaration(form_of(setting).codec, setting.sentence, example, default, setting.key, setting.key, words)
 
 
-def form_of(setting: Formed) -> Form:
-    """Value type of a setting; raises `RowError` for one that there is not."""
+def form_of(setting: TypedField) -> Form:
+    """Value type of a setting; raises `RegistryError` for one that there is not."""
     if setting.form not in FORMS:
-        raise RowError(f"The setting {setting.key!r} has the form {setting.form!r}; forms are {', '.join(FORMS)}.")
+        raise RegistryError(f"The setting {setting.key!r} has the form {setting.form!r}; forms are {', '.join(FORMS)}.")
     return FORMS[setting.form]
 
 
 def _weight(value: Any) -> float:
     if not is_number(value) or value == 0.0:
         raise EntryError(
-            got=shown(value),
+            got=quote_value(value),
             expected="a weight other than 0, a number without quotes, such as 1.0 (of an angle, its lever in m)",
         )
     return float(value)

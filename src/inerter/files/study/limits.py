@@ -20,7 +20,7 @@ from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
-from inerter.units import PURE, are_alike, format_quantity, parse_quantity, shown, unit_in
+from inerter.units import PURE, are_compatible, format_quantity, parse_quantity, quote_value, unit_in
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class StudyLimit:
 
     def entry(self) -> str | float:
         """Value of the limit for the study file: a number if dimensionless, else text with the unit."""
-        return self.value if are_alike(self.unit, PURE) else f"{self.value!r} {self.unit}"
+        return self.value if are_compatible(self.unit, PURE) else f"{self.value!r} {self.unit}"
 
 
 def _limit_text(value: Any) -> str | float:
@@ -115,7 +115,7 @@ def limits_of(
     for of, sides in entries.items():
         try:
             if not sides or ("equal" in sides and len(sides) > 1):
-                raise EntryError(got=shown(sides) if sides else "no limit", expected="at_most, at_least or equal")
+                raise EntryError(got=quote_value(sides) if sides else "no limit", expected="at_most, at_least or equal")
             unit = _unit(study, of)
             found = [StudyLimit(of, sense, _value(text, unit), unit) for sense, text in sides.items()]
             if len(found) > 1 and found[0].value < found[1].value:
@@ -129,18 +129,20 @@ def limits_of(
 
 
 def _value(text: str | float, unit: str) -> float:
-    pure = isinstance(text, float) and are_alike(unit, PURE)
+    pure = isinstance(text, float) and are_compatible(unit, PURE)
     if not unit and not pure and not _is_ratio(text):
-        raise EntryError(got=shown(text), fault="a ratio has no unit", expected="a number without quotes, such as 0.3")
+        raise EntryError(
+            got=quote_value(text), fault="a ratio has no unit", expected="a number without quotes, such as 0.3"
+        )
     value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
-        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {unit}".strip())
+        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}".strip())
     return value
 
 
 def _is_ratio(text: str | float) -> bool:
     """Whether the unit of a quantity is none, as that of 0.3 N/N."""
-    return isinstance(text, str) and are_alike(unit_in(text), PURE)
+    return isinstance(text, str) and are_compatible(unit_in(text), PURE)
 
 
 def _unit(study: Study, of: str) -> str:
@@ -149,12 +151,14 @@ def _unit(study: Study, of: str) -> str:
         mounts = list(next(iter(study.layouts.values())).struts)
         if of.partition(".")[2] not in mounts:
             which = ", ".join(f"{_STIFFNESS}.{mount}" for mount in mounts)
-            raise EntryError(got=shown(of), fault="no strut of this vehicle", expected=which)
+            raise EntryError(got=quote_value(of), fault="no strut of this vehicle", expected=which)
         return "N/m"
     known = [*study.own_indices, *index_names()]
     if of not in known:
         expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
-        raise EntryError(got=shown(of), fault="nothing that can be limited", expected=expected, hint=nearest(of, known))
+        raise EntryError(
+            got=quote_value(of), fault="nothing that can be limited", expected=expected, hint=nearest(of, known)
+        )
     return study.unit(of)
 
 

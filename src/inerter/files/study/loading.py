@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.atomic_io import escape_surrogates
 from inerter.files.common.elements import with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
@@ -27,8 +28,7 @@ from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tasks import tasks
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Element, Free
-from inerter.units import shown
-from inerter.writing import characters
+from inerter.units import quote_value
 
 WHAT = "a study file"
 
@@ -94,7 +94,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
         settings["baseline"] = next(iter(found["layouts"]))
     road = found["road"] and without_source(found["road"], line)
     return Study(
-        title=characters(path.stem) if found["title"] is None else found["title"],
+        title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
         path=path,
         model=model,
         vehicle=vehicle,
@@ -128,19 +128,19 @@ def _index_problems(study: Study, limits: Iterable[str]) -> Iterator[Problem]:
 def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]:
     if "conditions" in given and not study.conditions:
         place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
-        yield at(place, got=shown(study.over), fault="there are none", expected=wanted)
+        yield at(place, got=quote_value(study.over), fault="there are none", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)
         wanted = f"a layout, one of {known}"
-        yield at(("study", "baseline"), got=shown(study.baseline), expected=wanted, hint=hint)
+        yield at(("study", "baseline"), got=quote_value(study.baseline), expected=wanted, hint=hint)
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:
     used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
     used += [name for name, value in study.vehicle.items() if isinstance(value, Free)]
     if used and study.optimise is None:
-        method = shown(methods_that(searches)[0])
+        method = quote_value(methods_that(searches)[0])
         yield at(
             ("study", "optimise"),
             fault=f"missing, but there are free values, {some(used)}",
@@ -149,7 +149,7 @@ def _free_value_problems(study: Study) -> Iterator[Problem]:
     if not used and study.optimise is not None:
         yield at(
             ("study", "optimise"),
-            got=shown(study.optimise),
+            got=quote_value(study.optimise),
             fault="no layout has a free value",
             expected='one such as c = { from = "100 N s/m", to = "100 kN s/m" } in [elements], or no optimise',
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 
 from inerter.errors import with_article
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import some
 from inerter.files.study.place import element_at, place_of
@@ -22,7 +22,7 @@ from inerter.methods.registry import (
 )
 from inerter.networks.elements import Element
 from inerter.systems.graph import switching_parts
-from inerter.units import shown
+from inerter.units import quote_value
 
 
 def method_problems(study: Study) -> Iterator[Problem]:
@@ -76,8 +76,8 @@ def _own_problems(study: Study) -> Iterator[Problem]:
         if name not in study.methods:
             yield at(
                 ("methods", name),
-                fault=f"{some(given)} of {shown(name)}, which is neither in optimise nor in evaluate",
-                expected=f"{shown(name)} in one of them, or no section for it",
+                fault=f"{some(given)} of {quote_value(name)}, which is neither in optimise nor in evaluate",
+                expected=f"{quote_value(name)} in one of them, or no section for it",
             )
     for name in study.methods:
         for field in missing_settings(name, study.method_settings.get(name, {})):
@@ -112,9 +112,9 @@ def _gap_problems(study: Study) -> Iterator[Problem]:
     if refusing is not None and layouts:
         yield at(
             ("study", "optimise" if study.optimise == refusing else "evaluate"),
-            got=shown(refusing),
+            got=quote_value(refusing),
             fault=f"it has no answer for {' or '.join(map(with_article, kinds))}, as in {some(layouts)}",
-            expected=f"another method, such as {shown(simulating_method())}, or layouts without",
+            expected=f"another method, such as {quote_value(simulating_method())}, or layouts without",
         )
 
 
@@ -139,7 +139,7 @@ def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[
         yield at(
             place,
             fault=f"{name} is a {element.key}, which linear analysis does not see",
-            expected=f"a method that does in evaluate, such as {shown(simulating_method())}",
+            expected=f"a method that does in evaluate, such as {quote_value(simulating_method())}",
         )
 
 
@@ -155,5 +155,5 @@ def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:
     return [layout for layout in study.layouts if layout in concerned]
 
 
-def _either(words: Iterable[str], write: Callable[[str], str] = shown) -> str:
+def _either(words: Iterable[str], write: Callable[[str], str] = quote_value) -> str:
     return " or ".join(map(write, words))

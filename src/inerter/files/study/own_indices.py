@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.errors import RowError
-from inerter.fields import fields_of
+from inerter.errors import RegistryError
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import TableCodec, without_none
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
 from inerter.files.common.entries import declaration_of, layout_name, one_of
@@ -16,7 +16,7 @@ from inerter.files.study.forms import Form, form_declaration, form_of
 from inerter.indices.names import index_names, index_words
 from inerter.indices.registry import INDICES, as_line, excitation_of, index_choices, index_forms, needed_settings
 from inerter.signals.road import Road
-from inerter.units import shown
+from inerter.units import quote_value
 
 _KIND = "kind"
 
@@ -60,14 +60,16 @@ def indices_of(tables: Mapping[str, Any]) -> list[str]:
 
 def _own_name(name: Any) -> str:
     if name in index_names():
-        raise EntryError(got=shown(name), fault="a name that an index has already", expected="another, such as comfort")
+        raise EntryError(
+            got=quote_value(name), fault="a name that an index has already", expected="another, such as comfort"
+        )
     return layout_name(name)
 
 
 def own_indices_codec() -> NamesCodec:
     """The section [indices].
 
-    Raises `RowError` if an index has two settings of one key.
+    Raises `RegistryError` if an index has two settings of one key.
     """
     tables = {name: _index_table(name, symbol) for name, symbol in index_names().items()}
     example = 'such as { kind = "ride-comfort" }'
@@ -88,7 +90,7 @@ def _index_table(name: str, symbol: str) -> TableCodec:
     )
     taken = [_KIND, *(one.name for one in keys)]
     if (twice := next((key for key in taken if taken.count(key) > 1), None)) is not None:
-        raise RowError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
+        raise RegistryError(f"{symbol} has a setting {twice!r}, a key that [indices.NAME] has already. Choose another.")
     return TableCodec(keys, make, lambda own: own.settings, tag=(_KIND, name, "Kind of index."))
 
 
@@ -100,17 +102,17 @@ def bare_index_problems(asked: Iterable[str]) -> Iterator[Problem]:
             lines = " and ".join(map(as_line, needed))
             section = f'a section [indices.NAME] with kind = "{name}" and {lines}, and NAME here'
             keys = " and ".join(one.key for one in needed)
-            yield at(("study", "indices"), got=shown(name), fault=f"it needs its {keys}", expected=section)
+            yield at(("study", "indices"), got=quote_value(name), fault=f"it needs its {keys}", expected=section)
 
 
 def own_index_problems(asked: Sequence[str], own: Mapping[str, OwnIndex], limited: Sequence[str]) -> Iterator[Problem]:
     """Problems of user-defined indices not in use, and of indices listed twice."""
     for name in own:
         if name not in asked and name not in limited:
-            yield at(("indices", name), fault="not used", expected=f"{shown(name)} in indices, or no section")
+            yield at(("indices", name), fault="not used", expected=f"{quote_value(name)} in indices, or no section")
     names = [name for name in asked if name not in own]
     for name in names:
         first = next(other for other in names if index_names()[other] == index_names()[name])
         if first != name:
-            same = f"{shown(first)} and {shown(name)}, which are the same index"
+            same = f"{quote_value(first)} and {quote_value(name)}, which are the same index"
             yield at(("study", "indices"), got=same, expected="each at most once")

@@ -12,7 +12,7 @@ from inerter.files.study.study import Study
 from inerter.indices.question import IndexDefinition
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_bounded, input_names, input_unit, main_outputs, outputs, velocity_of
-from inerter.units import are_alike, shown
+from inerter.units import are_compatible, quote_value
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 
 
@@ -64,7 +64,7 @@ def _of_name(
     close = nearest(named.name, known)
     fault = f"{with_article(named.what)} that this vehicle does not have"
     others = "" if close else f"one of {some(told)}" if told else "another excitation, as it has none"
-    return at(place, got=shown(named.name), fault=fault, expected=others, hint=close)
+    return at(place, got=quote_value(named.name), fault=fault, expected=others, hint=close)
 
 
 def _of_size(
@@ -73,7 +73,7 @@ def _of_size(
     """Problem of a size whose unit does not match that of its input."""
     (arrival, *_) = _inputs(mechanism, question) or ("",)
     unit = input_unit(mechanism, arrival)
-    if unit and not are_alike(size.unit, size.expected(unit)):
+    if unit and not are_compatible(size.unit, size.expected(unit)):
         fault = f"{arrival} is in {unit}"
         yield at(place, got=f"a size in {size.unit}", fault=fault, expected=f"one in {size.expected(unit)}")
 

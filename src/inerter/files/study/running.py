@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from inerter.atomic_io import write_netcdf, write_text
 from inerter.errors import StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
@@ -35,7 +36,6 @@ from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
-from inerter.writing import write_netcdf, write_text
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 _Known = Mapping[str, Sequence[Row]]  # searches of parts that have not ended, by the names of those

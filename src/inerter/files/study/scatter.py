@@ -14,7 +14,7 @@ from inerter.files.study.places import number_at
 from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
 from inerter.networks.elements import Tied
-from inerter.units import shown
+from inerter.units import quote_value
 
 _PLACE = ("study", "tolerance")
 
@@ -41,4 +41,6 @@ def _check_is_part(study: Study, name: str) -> None:
     if name and not any(name in scattering(study, layout) for layout in study.layouts):
         tied = [other for other, e in study.elements.items() if isinstance(e.value, Tied) and name in e.value.names]
         hint = f"; {some(tied)} follows from it, and scatters by its own name" if tied else ""
-        raise EntryError(got=shown(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout")
+        raise EntryError(
+            got=quote_value(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout"
+        )

@@ -6,10 +6,10 @@ from typing import Any
 
 from inerter.files.common.schema import json_schema
 from inerter.files.study.sections import study_codec
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 
 
-@made_of_rows
+@cache_until_registration
 def study_schema() -> dict[str, Any]:
     """The schema, with what other distributions add."""
     about = "Vehicle, road, elements, layouts and indices. Every quantity is text with its unit."

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.errors import RowError
-from inerter.fields import fields_of
+from inerter.errors import RegistryError
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     Codec,
     Scalar,
@@ -53,8 +53,8 @@ from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
 from inerter.networks.elements.registry import format_unit_kinds
-from inerter.rows import made_of_rows
-from inerter.units import shown
+from inerter.registry import cache_until_registration
+from inerter.units import quote_value
 from inerter.vehicle.registry import VEHICLES
 
 _MOST_ROADS = 100_000
@@ -122,7 +122,7 @@ def _car(value: Any) -> str:
     cars = tuple(judged_models())
     if isinstance(value, str) and value in VEHICLES and value not in cars:
         raise ValueError(
-            f"Got {shown(value)}, which has no road to be judged on; expected {' or '.join(map(shown, cars))}. "
+            f"Got {quote_value(value)}, which has no road; expected {' or '.join(map(quote_value, cars))}. "
             f"A {value.replace('-', ' ')} is for: inerter simulate."
         )
     return one_of("a vehicle model", cars)(value)
@@ -145,7 +145,7 @@ def _scatter(given: Any) -> float:
         except ValueError:
             number = None
     if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < 1.0:
-        raise EntryError(got=shown(given), expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
+        raise EntryError(got=quote_value(given), expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
     return float(number)
 
 
@@ -270,16 +270,16 @@ def _settings_in(study: Any) -> dict[str, Any]:
     return {**{name: value for name, value in own.items() if not silent.get(name)}, **study.settings, **tasks}
 
 
-@made_of_rows
+@cache_until_registration
 def study_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections.
 
-    Raises `RowError` if an index has a setting whose key is one of the section's own.
+    Raises `RegistryError` if an index has a setting whose key is one of the section's own.
     """
     own = [*keys_in(Settings), *(one for row in TASKS.values() if row.keys for one in keys_in(row.keys))]
     taken = sorted(index_settings().keys() & {one.name for one in own})
     if taken:
-        raise RowError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
+        raise RegistryError(f"An index has a setting {taken[0]!r}, a key that [study] has already. Choose another key.")
     settings = TableCodec(
         (*own, *(declaration_of(field, optional=True) for field in index_settings().values())),
         _settings,
@@ -287,7 +287,7 @@ def study_codec() -> TableCodec:
         before=_of_a_trade_off,
         about=str(Settings.__doc__),
     )
-    *others, last = map(shown, judged_models())
+    *others, last = map(quote_value, judged_models())
     keys = (
         section("title", TEXT, "Title of reports; the name of the file if left out.", 'title = "My car"', None),
         section(

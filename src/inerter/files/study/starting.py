@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from inerter.errors import InerterError, StudyError, with_article
-from inerter.fields import Field, fields_of, needed_mounts_of
+from inerter.field_metadata import Field, fields_of, needed_mounts_of
 from inerter.files.common.keys import keys_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.suggest import nearest
@@ -20,7 +20,7 @@ from inerter.methods.registry import DEFAULT
 from inerter.networks.elements import Damper, Inerter, Network, Spring
 from inerter.networks.elements.registry import format_unit_kinds
 from inerter.signals.road import Road
-from inerter.units import shown
+from inerter.units import quote_value
 from inerter.vehicle.quarter_car import QuarterCar
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import VehicleModel
@@ -70,8 +70,8 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
     """
     if model not in judged_models():
         hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
-        known = " or ".join(map(shown, judged_models()))
-        raise StudyError(f"unknown vehicle {shown(model)} in study files; expected {known}.{hint}")
+        known = " or ".join(map(quote_value, judged_models()))
+        raise StudyError(f"unknown vehicle {quote_value(model)} in study files; expected {known}.{hint}")
     kind = _Quarter if model == MECHANISM else VEHICLES[model]
     car = model.replace("-", " ")
     blocks = [

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import NetworkError, StudyError
-from inerter.fields import fields_of
+from inerter.field_metadata import fields_of
 from inerter.files.common.codec import keyed_dataclass
 from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.problem import EntryError
@@ -30,9 +30,9 @@ from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
 from inerter.renamed import RenamedAttribute
-from inerter.scatter.robust import Quantile
-from inerter.scatter.spread import DISTRIBUTIONS, scatter_of
 from inerter.signals.road import Road
+from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
+from inerter.uncertainty.robust_design import Quantile
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 

@@ -9,18 +9,18 @@ from typing import Any
 
 import xarray as xr
 
+from inerter.atomic_io import open_text
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
-from inerter.units import headed
-from inerter.writing import lines_of_text
+from inerter.units import label_with_unit
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
 
 
 def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
     """Write each design and method: labels, value, improvement over the baseline, and parameters."""
-    with lines_of_text(path) as stream:
+    with open_text(path) as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(_header(study, data))
         writer.writerows(_rows(study, data))
@@ -31,16 +31,16 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
     units = zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True)
     return [
         *("layout", "index", "method"),
-        *(headed(sweep.label, sweep.unit) for sweep in study.sweeps),
+        *(label_with_unit(sweep.label, sweep.unit) for sweep in study.sweeps),
         *("value", "unit", "improvement_percent", "standard_error", "error_bound", "status"),
         *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
-        *(headed(name, unit) for name, unit in parameters),
+        *(label_with_unit(name, unit) for name, unit in parameters),
         *("at_bound", "starts", "agreed"),
-        *(headed(f"{name} of this design", unit) for name, unit in units),
+        *(label_with_unit(f"{name} of this design", unit) for name, unit in units),
         *(
             text
             for limit in study.limits
-            for text in (headed(limit.words, limit.unit), f"cost of {limit.words}_percent")
+            for text in (label_with_unit(limit.words, limit.unit), f"cost of {limit.words}_percent")
         ),
         *(f"part of {study.limits[i].words}" for i in _on_parts(data)),
     ]

@@ -20,7 +20,7 @@ from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import SweepRange
 from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free, Tied
-from inerter.units import are_alike, format_quantity, is_unit_for, parse_quantity, shown, unit_in
+from inerter.units import are_compatible, format_quantity, is_unit_for, parse_quantity, quote_value, unit_in
 
 Entry = SweepRange | tuple[str, ...]
 _MOST = 2  # places at once: what a map shows
@@ -30,7 +30,7 @@ _PLACE, _CONDITIONS = ("study", "sweep"), "conditions"
 def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, ...], list[Problem]]:
     """Sweeps of the study from the entries of the file, and the problems of the entries."""
     if not 1 <= len(entries) <= _MOST:
-        got = f"{len(entries)} swept elements ({', '.join(map(shown, entries)) or 'none'})"
+        got = f"{len(entries)} swept elements ({', '.join(map(quote_value, entries)) or 'none'})"
         return (), [at(_PLACE, got=got, expected="exactly one, or two for a map")]
     sweeps, problems = [], []
     for name, entry in entries.items():
@@ -71,7 +71,7 @@ def number_of(study: Study, place: Place) -> Number:
 def unknown_place(study: Study, place: Place) -> EntryError:
     """Error for a place without a number, with the nearest known place as a hint."""
     if element_at(place) == place.key:
-        missing = f"{shown(place.key)} is not in [elements], where there are {some(study.elements)}"
+        missing = f"{quote_value(place.key)} is not in [elements], where there are {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))
     expected = "a place of a number, such as road.speed or vehicle.sprung_mass, or an element"
     hint = nearest(place.label, places(study))
@@ -94,9 +94,9 @@ def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
 def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
     given = dict.fromkeys(map(unit_in, texts))
     alike = [is_unit_for(unit, number.unit) for unit in given]
-    if all(alike) and all(are_alike(unit, next(iter(given))) for unit in given):
+    if all(alike) and all(are_compatible(unit, next(iter(given))) for unit in given):
         return
-    if any(alike) or not all(are_alike(unit, next(iter(given))) for unit in given):
+    if any(alike) or not all(are_compatible(unit, next(iter(given))) for unit in given):
         raise EntryError(got=f"values of unlike units, {', '.join(sorted(given))}", expected="one")
     other = f"{place.label} is in {number.unit}"
     raise EntryError(got=f"values in {', '.join(given)}", fault=other, expected=f"the unit of {place.label}")
@@ -106,7 +106,7 @@ def value_of(number: Number, text: str) -> float:
     """Value [SI] of a text for the number at a place; raises `UnitError`, or `EntryError` if it is not possible."""
     value = parse_quantity(text, number.unit)
     if value < 0.0 or (value == 0.0 and not number.may_vanish):
-        raise EntryError(got=shown(text), fault="not positive", expected=f"more than 0 {number.unit}")
+        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {number.unit}")
     return value
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from inerter.rows import Rows
+from inerter.registry import Registry
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class TaskRow:
     keys: type | None = None
 
 
-TASKS = Rows(
+TASKS = Registry(
     "task",
     "key",
     ("home", "keys"),

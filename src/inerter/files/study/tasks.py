@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.task_rows import TASKS
-from inerter.rows import made_of_rows
+from inerter.registry import cache_until_registration
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -107,7 +107,7 @@ class TaskResults(Generic[AnswerT]):
     answers: Sequence[AnswerT]
 
 
-@made_of_rows
+@cache_until_registration
 def tasks() -> tuple[Task[Any], ...]:
     """All tasks, in the order in which they are computed and reported."""
     return tuple(_task(row.home) for row in TASKS.values())

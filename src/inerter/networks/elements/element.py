@@ -7,13 +7,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from inerter.checks import is_number
 from inerter.errors import DesignError, NetworkError
-from inerter.fields import Field
+from inerter.field_metadata import Field
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, SymbolLine
 from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.elements.values import Free, Tied, Value, check_name
+from inerter.validation import is_number
 
 
 class Element(Network):

@@ -10,11 +10,11 @@ from inerter.networks.elements.friction import Friction
 from inerter.networks.elements.gap import Gap
 from inerter.networks.elements.inerter import Inerter
 from inerter.networks.elements.spring import Spring
-from inerter.rows import Rows
+from inerter.registry import Registry
 from inerter.units import parse_one_of
 
 ELEMENT_TYPES: tuple[type[Element], ...] = (Spring, Damper, Inerter, Friction, Gap)
-ELEMENTS: Rows[type[Element]] = Rows(
+ELEMENTS: Registry[type[Element]] = Registry(
     "kind of element", "key", ("symbol", "quantity", "unit", "sentence", "example", "linear", "drawing"), ELEMENT_TYPES
 )
 

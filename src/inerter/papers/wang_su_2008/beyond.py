@@ -65,8 +65,8 @@ def compute_budget(name: str) -> dict[str, object]:
     index, layout, what = name.split(maxsplit=2)
     kind, element, bounds, method, _ = _BUDGETS[what]
     found = break_even(
-        _printed(index, layout, kind),
-        _printed(index, "S1", ""),
+        _printed_design(index, layout, kind),
+        _printed_design(index, "S1", ""),
         index_of(index, study("friction1")),
         parameter=element,
         method=method,
@@ -84,7 +84,7 @@ def compute_budget(name: str) -> dict[str, object]:
     }
 
 
-def _printed(index: str, layout: str, kind: str) -> Vehicle:
+def _printed_design(index: str, layout: str, kind: str) -> Vehicle:
     """Printed design of Table 1 for an index, with the elements of `kind`."""
     twin = "-soft" if kind in ("-soft", "-gap") and layout != "S1" else ""
     row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, index, layout + twin))

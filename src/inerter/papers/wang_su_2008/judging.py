@@ -43,7 +43,7 @@ class ClaimVerdict(StrEnum):
 _OPPOSITE = {ClaimVerdict.SHOWN: ClaimVerdict.CONTRADICTED, ClaimVerdict.CONTRADICTED: ClaimVerdict.SHOWN}
 
 
-def all_of(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
+def combined_verdict(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
     """The verdict on several statements together: contradicted by any, shown only by all."""
     found = set(verdicts)
     for verdict in (ClaimVerdict.CONTRADICTED, ClaimVerdict.UNDETERMINED):
@@ -53,7 +53,7 @@ def all_of(verdicts: Iterable[ClaimVerdict]) -> ClaimVerdict:
 
 
 @dataclass(frozen=True)
-class Measured:
+class EstimatedQuantity:
     """A quantity as it was found: its value, standard error and degrees of freedom, and why it may be wrong if it may.
 
     A standard error of 0 is that of a computed optimum or norm, which does not scatter.
@@ -72,16 +72,16 @@ class Measured:
         """Distance of a true value from the end of a range that is detected in nine of ten cases."""
         return self.half_width(comparisons) + _quantile(_DETECTED, self.freedom) * self.error
 
-    def minus(self, other: Measured) -> Measured:
+    def minus(self, other: EstimatedQuantity) -> EstimatedQuantity:
         """Difference of two independent quantities."""
-        return Measured(
+        return EstimatedQuantity(
             self.value - other.value,
             hypot(self.error, other.error),
             min(self.freedom, other.freedom),
             self.doubt or other.doubt,
         )
 
-    def times(self, factor: float) -> Measured:
+    def times(self, factor: float) -> EstimatedQuantity:
         """Quantity times a factor, as for another unit."""
         return replace(self, value=factor * self.value, error=abs(factor) * self.error)
 
@@ -91,7 +91,7 @@ def _quantile(share: float, freedom: float) -> float:
     return float(scipy.special.ndtri(share) if freedom == inf else scipy.special.stdtrit(freedom, share))
 
 
-def within(found: Measured, low: float = -inf, high: float = inf, comparisons: int = 1) -> ClaimVerdict:
+def within(found: EstimatedQuantity, low: float = -inf, high: float = inf, comparisons: int = 1) -> ClaimVerdict:
     """Whether a quantity lies from `low` to `high`, by its 95 % confidence interval."""
     reach = found.half_width(comparisons)
     if found.doubt or not abs(found.value) < inf:
@@ -103,7 +103,7 @@ def within(found: Measured, low: float = -inf, high: float = inf, comparisons: i
     return ClaimVerdict.UNDETERMINED
 
 
-def everywhere(found: Sequence[Measured], low: float = -inf, high: float = inf) -> ClaimVerdict:
+def everywhere(found: Sequence[EstimatedQuantity], low: float = -inf, high: float = inf) -> ClaimVerdict:
     """Whether all quantities lie from `low` to `high`."""
     if all(within(one, low, high) is ClaimVerdict.SHOWN for one in found):
         return ClaimVerdict.SHOWN
@@ -111,12 +111,12 @@ def everywhere(found: Sequence[Measured], low: float = -inf, high: float = inf) 
     return ClaimVerdict.CONTRADICTED if ClaimVerdict.CONTRADICTED in certain else ClaimVerdict.UNDETERMINED
 
 
-def somewhere_above(found: Sequence[Measured], level: float) -> ClaimVerdict:
+def somewhere_above(found: Sequence[EstimatedQuantity], level: float) -> ClaimVerdict:
     """Whether any quantity lies above `level`."""
     return everywhere(found, high=level).opposite
 
 
-def about(printed: float, step: float) -> tuple[float, float]:
+def rounding_interval(printed: float, step: float) -> tuple[float, float]:
     """Range of values that round to `printed`, in multiples of `step`."""
     return printed - 0.5 * step, printed + 0.5 * step
 
@@ -125,7 +125,7 @@ def about(printed: float, step: float) -> tuple[float, float]:
 class Statement:
     """Statement of a claim: the finding, the verdict on it, and the verdict on the printed number.
 
-    `power` is the least difference that would have been told, in words; empty where nothing scatters.
+    `power` is the smallest detectable difference, in words; empty where nothing scatters.
     """
 
     found: str
@@ -146,7 +146,7 @@ def statement(
     verdict: ClaimVerdict,
     number: ClaimVerdict | None = None,
     *,
-    by: Sequence[Measured] = (),
+    by: Sequence[EstimatedQuantity] = (),
     unit: str = "%",
     at_once: int = 1,
 ) -> Statement:
@@ -170,13 +170,13 @@ class Claim:
     @property
     def verdict(self) -> ClaimVerdict:
         """Verdict on all statements together."""
-        return all_of(part.verdict for part in self.parts)
+        return combined_verdict(part.verdict for part in self.parts)
 
     @property
     def printed_numbers(self) -> ClaimVerdict | None:
         """Verdict on the printed numbers of all statements; None if no number is printed or shown."""
         found = [part.number for part in self.parts if part.number is not None]
-        return all_of(found) if found else None
+        return combined_verdict(found) if found else None
 
     @property
     def headline(self) -> str:
@@ -206,7 +206,7 @@ class Evidence:
         """Whether simulated rows of each of these tables are available."""
         return all(any(table == key[0] for key in self.rows) for table in tables)
 
-    def improvement(self, table: int, index: str, case: int) -> Measured:
+    def improvement(self, table: int, index: str, case: int) -> EstimatedQuantity:
         """Improvement of a row over the traditional suspension of its table [%].
 
         Of the exact values; a row that was not simulated is linear and has its norm.
@@ -216,19 +216,19 @@ class Evidence:
         error = 100.0 * ratio * hypot(found.error / found.value, base.error / base.value)
         return replace(found.minus(base), value=100.0 * (1.0 - ratio), error=error)
 
-    def cost(self, table: int, index: str, ideal: int, other: int) -> Measured:
+    def cost(self, table: int, index: str, ideal: int, other: int) -> EstimatedQuantity:
         """Percentage points of the improvement that `other` loses to `ideal`."""
         return self.improvement(table, index, ideal).minus(self.improvement(table, index, other))
 
-    def _exact(self, table: int, name: str) -> Measured:
+    def _exact(self, table: int, name: str) -> EstimatedQuantity:
         row = self.rows.get((table, name))
-        return Measured(self.linear[table, name]) if row is None else exact_value(row)
+        return EstimatedQuantity(self.linear[table, name]) if row is None else exact_value(row)
 
 
-def exact_value(row: SimulatedRow) -> Measured:
+def exact_value(row: SimulatedRow) -> EstimatedQuantity:
     """The exact value of a simulated row."""
     freedom = row.exact_realisations - 1 if row.exact_realisations > 1 else inf
-    return Measured(row.exact, row.exact_error, freedom, row.exact_doubt)
+    return EstimatedQuantity(row.exact, row.exact_error, freedom, row.exact_doubt)
 
 
 def kilo(values: Iterable[float], between: str = " and ", digits: int = 1) -> str:

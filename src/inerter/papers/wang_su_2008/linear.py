@@ -63,7 +63,7 @@ def recompute(studies: dict[str, StudyResult]) -> LinearTables:
     """Every linear number of Tables 1 to 3, and the designs of Tables 1 and 2 as the studies find them."""
     rows = linear_rows()
     return LinearTables(
-        [compared_row(row) for row in rows], [_found(row, studies[row.study]) for row in rows if row.table < 3]
+        [compared_row(row) for row in rows], [_found_design(row, studies[row.study]) for row in rows if row.table < 3]
     )
 
 
@@ -74,7 +74,7 @@ def compared_row(row: PrintedRow) -> ComparedRow:
     return ComparedRow(row, index.unit, *values)
 
 
-def _found(row: PrintedRow, result: StudyResult) -> FoundDesign:
+def _found_design(row: PrintedRow, result: StudyResult) -> FoundDesign:
     best = result.data.sel({"layout": row.layout, "index": row.index, "method": "norm"})
     values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
     parameters = {name: value for name, value in values if np.isfinite(value)}

@@ -70,7 +70,7 @@ def _lever() -> Reason:
     return Reason(
         "A lever that the formula of J1 leaves out",
         "J1 of the half car adds the pitch acceleration times the mean distance of the axles, (l_f + l_r)/2 = 1.02 m; "
-        "the printed formula has no such factor, the printed numbers do.",
+        "the printed formula lacks this factor, the printed numbers include it.",
     )
 
 
@@ -111,7 +111,7 @@ def _single_peak(rows: list[SimulatedRow]) -> Reason:
         "One of several equal peaks of J5",
         "The designs that are best for J5 have two (quarter car) or three (half car) equally high peaks, and friction "
         "lowers one and raises another. J5 here is the highest of all, under either conventions. The printed values "
-        f"follow one peak, by a rule that cannot be told from them; it is not the highest in {len(apart)} rows, in "
+        f"follow one peak, by a rule that is not evident from them; it is not the highest in {len(apart)} rows, in "
         f"which J5 over all frequencies is: {listed}.",
     )
 
@@ -146,8 +146,8 @@ def _gains(rows: list[SimulatedRow]) -> Reason:
     return Reason(
         "Gains of a nonlinear system",
         "Method 1 divides the spectrum of the output by that of the noise. Where the noise happens to be small and "
-        "friction adds output of its own, the ratio is huge: a maximum over all frequencies has no expectation, and "
-        f"what was done against that is not printed. Smoothed over ±0.2 Hz, J5 comes out within {np.min(peaks):.1f} to "
+        "friction adds uncorrelated output, the ratio is huge: its maximum over all frequencies has no expected value, "
+        f"and the remedy is not printed. Smoothed over ±0.2 Hz, J5 comes out within {np.min(peaks):.1f} to "
         f"{np.max(peaks):.1f} % of the printed values, J1 and J3 within {np.max(rest):.1f} %.",
     )
 

@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.papers.wang_su_2008.between import WORSE
-from inerter.papers.wang_su_2008.judging import ClaimVerdict, Measured, within
+from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, within
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -42,10 +42,10 @@ class Curves:
         """Relative excess of `one` over `other` (k,)."""
         return np.asarray(self.of(one, index) / self.of(other, index) - 1.0)
 
-    def measured(self, one: str, other: str, index: str) -> list[Measured]:
+    def uncertain_excess(self, one: str, other: str, index: str) -> list[EstimatedQuantity]:
         """Relative excess of `one` over `other` with its uncertainty, at each stiffness.
 
-        Realisation by realisation, since both were driven by the same ones: what those do to both alike cancels.
+        Realisation by realisation, since both had the same ones: common deviations cancel.
         """
         gap, scatter = self.excess(one, other, index), self._scatter(one, other, index)
         doubts = self._doubts(one, other, index)
@@ -54,7 +54,7 @@ class Curves:
             for g, s, r, doubt in zip(gap, scatter, self._rest(one, other, index), doubts, strict=True)
         ]
 
-    def mean_measured(self, one: str, other: str, index: str, at: Flags) -> Measured:
+    def mean_excess(self, one: str, other: str, index: str, at: Flags) -> EstimatedQuantity:
         """Mean relative excess of `one` over `other` with its uncertainty, over the stiffnesses where `at` is True.
 
         The realisations are the same at every stiffness, so their deviations are averaged before they are squared.
@@ -64,19 +64,19 @@ class Curves:
         scatter = self._scatter(one, other, index)[at].mean(axis=0)
         return _mean(float(np.mean(self.excess(one, other, index)[at])), scatter, rest, doubt)
 
-    def crossings(self, one: str, other: str, index: str) -> list[Measured]:
+    def crossings(self, one: str, other: str, index: str) -> list[EstimatedQuantity]:
         """Stiffnesses [N/m] where `one` becomes better or worse than `other`, interpolated between swept values.
 
         A stretch between turns, or before or behind them all, counts if the difference is certain anywhere on it.
         """
-        gap, k, found = self.excess(one, other, index), self.k, self.measured(one, other, index)
+        gap, k, found = self.excess(one, other, index), self.k, self.uncertain_excess(one, other, index)
         same = [within(each, -WORSE, WORSE, k.size) for each in found]
         certain = np.array([verdict is ClaimVerdict.CONTRADICTED for verdict in same])
         stretches = np.split(np.arange(k.size), 1 + np.flatnonzero(np.diff(np.sign(gap)) != 0))
         counted = [stretch for stretch in stretches if certain[stretch].any()]
         turns = [(s[-1], after[0]) for s, after in pairwise(counted) if gap[s[-1]] * gap[after[0]] < 0.0]
         return [
-            Measured(
+            EstimatedQuantity(
                 float(k[i] + (k[j] - k[i]) * gap[i] / (gap[i] - gap[j])),
                 float(max(found[i].error, found[j].error) * (k[j] - k[i]) / abs(gap[i] - gap[j])),
                 min(found[i].freedom, found[j].freedom),
@@ -120,10 +120,10 @@ class Curves:
         return found
 
 
-def _mean(value: float, scatter: Array, rest: float, doubt: str) -> Measured:
+def _mean(value: float, scatter: Array, rest: float, doubt: str) -> EstimatedQuantity:
     """A mean over realisations that deviate from it by `scatter`, with what else is unsure of it."""
     count = scatter.size
     if count < 2 or not np.any(scatter):
-        return Measured(float(value), float(rest), inf, doubt)
+        return EstimatedQuantity(float(value), float(rest), inf, doubt)
     error = np.sqrt(np.sum(scatter**2) / (count * (count - 1)))
-    return Measured(float(value), float(np.hypot(error, rest)), count - 1, doubt)
+    return EstimatedQuantity(float(value), float(np.hypot(error, rest)), count - 1, doubt)

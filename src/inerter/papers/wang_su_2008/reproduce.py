@@ -131,7 +131,7 @@ def reproduce(
     """
     unknown = [part for part in only if part not in PARTS]
     if unknown:
-        raise StudyError(f"There is no part named {unknown[0]!r} (there are: {', '.join(PARTS)}).")
+        raise StudyError(f"Unknown part {unknown[0]!r}; available: {', '.join(PARTS)}.")
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()
@@ -140,7 +140,7 @@ def reproduce(
         if needed and wanted > {"linear"} and not resume and not pool.on_each_node(_warm_up):
             pool.begin(_warm_up)
         studies = {
-            name: run_study(study(name), results.within(name), executor=pool, progress=_named(progress, name))
+            name: run_study(study(name), results.within(name), executor=pool, progress=_with_name(progress, name))
             for name in needed
         }
         listed = {"optima": beyond.optimum_names, "budgets": beyond.budget_names, "methods": agreement.names}
@@ -183,7 +183,7 @@ def _put_together(
 
     recomputed = linear.recompute(studies) if "linear" in parts else None
     judged = {
-        (table, name): rows.judged(table, name, numbers)
+        (table, name): rows.row_from_json(table, name, numbers)
         for table in (1, 2, 3)
         for name, numbers in of(f"table{table}").items()
     }
@@ -201,7 +201,7 @@ def _put_together(
     return Reproduction(
         parts=parts,
         studies=studies,
-        rig=next(map(rig.restored, of("rig").values()), None),
+        rig=next(map(rig.rig_test_from_json, of("rig").values()), None),
         linear=recomputed,
         rows=judged,
         curves=drawn,
@@ -234,7 +234,7 @@ def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progres
     before = journal.read() if results.resume else ()
     found = {(entry["part"], entry["name"]): entry["numbers"] for entry in before}
     pending = [task for task in tasks if task.key not in found]
-    pending = pending[::2] + pending[1::2]  # neighbours are alike: two processes would compile the same
+    pending = pending[::2] + pending[1::2]  # neighbours are similar: two processes would compile the same
     if tasks:
         progress("simulations", len(tasks) - len(pending), len(tasks))
     results.list_journal(JOURNAL)
@@ -246,5 +246,5 @@ def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progres
     return {task.key: found[task.key] for task in sorted(tasks, key=lambda task: _ORDER.index(task.part))}
 
 
-def _named(progress: Progress, name: str) -> Callable[[int, int, object, int], None]:
+def _with_name(progress: Progress, name: str) -> Callable[[int, int, object, int], None]:
     return lambda done, total, last, not_ok: progress(name, done, total)

@@ -20,9 +20,9 @@ NAME = "staged"
 PRINTED = {"f": 10.0, "ks": 1e6, "cs": 3200.0, "gap": 0.0, "b": 113.0}  # section 4
 SHAFT = 5.0  # [kg] inertance without flywheel
 SIMULATED = (
-    "The paper's records are not published. What is measured here is a virtual rig with the printed parameters, the "
-    "paper's load cell and encoder, and assumed noise and bandwidths: it tells whether the protocol finds such "
-    "parameters from such records, not whether the paper's records hold them."
+    "The paper's records are not published. The records here are those of a virtual rig with the printed parameters, "
+    "the paper's load cell and encoder, and assumed noise and bandwidths. They show whether the protocol identifies "
+    "such parameters from such records, not whether the paper's records contain them."
 )
 _STARTS = 8
 _EVERY = 4  # samples of the slow test of which one is kept for the figure
@@ -31,7 +31,7 @@ _ARRAYS = ("omega", "gain", "phase", "coherence", "band", "phase_band", "average
 
 
 @dataclass(frozen=True)
-class Found:
+class IdentifiedParameter:
     """Identified parameter, with the printed value."""
 
     name: str
@@ -49,9 +49,9 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class RigTest:
-    """The three tests and what they found."""
+    """Records and results of the three tests of the staged protocol."""
 
-    parameters: tuple[Found, ...]
+    parameters: tuple[IdentifiedParameter, ...]
     friction: dict[str, Matrix]  # time [s], displacement [m], force [N], model [N]
     fit: dict[str, Matrix]
     responses: dict[str, Response]  # measured, model, linear, ideal
@@ -67,7 +67,7 @@ def device(inertance: float) -> Network:
 
 
 def compute(name: str) -> dict[str, Any]:
-    """The numbers of the three tests, as JSON has them."""
+    """Numbers of the three tests, for JSON."""
     assert name == NAME
     whole, bare = device(PRINTED["b"]), device(SHAFT)
     slow = VirtualRig(bare, seed=0).run(cosine(1e-3, 0.1), duration=20.0)
@@ -78,23 +78,28 @@ def compute(name: str) -> dict[str, Any]:
     part = found.fit.comparisons[0]
     return {
         "parameters": {
-            n: {"unit": p.unit, "value": _json(p.value), "interval": p.interval, "said": found.identifiable[n].sentence}
+            n: {
+                "unit": p.unit,
+                "value": _none_if_nan(p.value),
+                "interval": p.interval,
+                "said": found.identifiable[n].sentence,
+            }
             for n, p in found.parameters.items()
         },
-        "friction": _motion(slow.time, slow.displacement, slow.force, found.friction.model, _EVERY),
-        "fit": _motion(fast.time, fast.displacement, part.record.force, part.model, 1),
-        "responses": {key: _flat(getattr(found.response, key)) for key in _RESPONSES},
+        "friction": _motion_to_json(slow.time, slow.displacement, slow.force, found.friction.model, _EVERY),
+        "fit": _motion_to_json(fast.time, fast.displacement, part.record.force, part.model, 1),
+        "responses": {key: _response_to_json(getattr(found.response, key)) for key in _RESPONSES},
         "bands": [band.verdict for band in found.response.bands],
         "notes": list(found.notes),
         "status": str(found.status),
     }
 
 
-def restored(numbers: Mapping[str, Any]) -> RigTest:
-    """The tests from their numbers."""
+def rig_test_from_json(numbers: Mapping[str, Any]) -> RigTest:
+    """Tests from their numbers in JSON."""
     return RigTest(
         parameters=tuple(
-            Found(
+            IdentifiedParameter(
                 n,
                 p["unit"],
                 PRINTED[n],
@@ -106,30 +111,32 @@ def restored(numbers: Mapping[str, Any]) -> RigTest:
         ),
         friction={key: np.array(values) for key, values in numbers["friction"].items()},
         fit={key: np.array(values) for key, values in numbers["fit"].items()},
-        responses={key: _response(flat) for key, flat in numbers["responses"].items()},
+        responses={key: _response_from_json(flat) for key, flat in numbers["responses"].items()},
         bands=tuple(numbers["bands"]),
         notes=tuple(numbers["notes"]),
         status=numbers["status"],
     )
 
 
-def _json(value: float) -> float | None:
+def _none_if_nan(value: float) -> float | None:
     return None if np.isnan(value) else float(value)
 
 
-def _motion(time: Matrix, displacement: Matrix, force: Matrix, model: Matrix, every: int) -> dict[str, list[float]]:
+def _motion_to_json(
+    time: Matrix, displacement: Matrix, force: Matrix, model: Matrix, every: int
+) -> dict[str, list[float]]:
     columns = {"time": time, "displacement": displacement, "force": force, "model": model}
     return {name: [float(f"{x:.7g}") for x in values[::every].tolist()] for name, values in columns.items()}
 
 
-def _flat(response: Response) -> dict[str, Any]:
+def _response_to_json(response: Response) -> dict[str, Any]:
     numbers: dict[str, Any] = {name: getattr(response, name).tolist() for name in _ARRAYS}
     numbers["averages"] = None if np.isinf(response.averages).any() else numbers["averages"]
     about = {name: getattr(response, name) for name in ("amplitude", "estimator", "source")}
     return numbers | about | {"notes": list(response.notes)}
 
 
-def _response(flat: Mapping[str, Any]) -> Response:
+def _response_from_json(flat: Mapping[str, Any]) -> Response:
     fields: dict[str, Any] = {name: np.array(flat[name], dtype=float) for name in _ARRAYS if flat[name] is not None}
     fields.setdefault("averages", np.full(fields["omega"].shape, np.inf))
     fields |= {name: flat[name] for name in ("amplitude", "estimator", "source")}

@@ -1,4 +1,4 @@
-"""The simulated rows of Tables 1 to 3, each by both conventions, and how they compare with what was printed."""
+"""Simulated rows of Tables 1 to 3 under both conventions, compared with the printed values."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class SimulatedRow:
     exact: float
     exact_error: float
     peaks: tuple[GainPeak, ...]  # local maxima over all frequencies, for J5 by a sine
-    begun: tuple[float, ...] = ()  # gains at their frequencies in a short run from rest
+    gains_from_rest: tuple[float, ...] = ()  # at their frequencies in a short run from rest
     exact_realisations: int = 0  # random inputs of the exact value; 0 if it does not scatter
     exact_doubt: str = ""  # its status where that is not ok
     improvement: float | None = None  # of `paper2008` over the norm of S1, for rows of Method 1 [%]
@@ -77,9 +77,9 @@ class SimulatedRow:
     @property
     def compatible(self) -> tuple[GainPeak, ...]:
         """The local maxima of J5 whose steady gain is the printed value or more, and in a short run less."""
-        pairs = zip(self.peaks, self.begun, strict=True) if self.begun else ()
+        pairs = zip(self.peaks, self.gains_from_rest, strict=True) if self.gains_from_rest else ()
         digit, value = self.row.last_digit, self.row.value
-        return tuple(peak for peak, begun in pairs if begun - digit <= value <= peak.gain + digit)
+        return tuple(peak for peak, short in pairs if short - digit <= value <= peak.gain + digit)
 
     @property
     def candidates(self) -> tuple[GainPeak, ...]:
@@ -97,7 +97,7 @@ def names(table: int) -> list[str]:
 
 
 def compute(table: int, name: str) -> dict[str, object]:
-    """The numbers of one row, as JSON has them."""
+    """Numbers of one row, for JSON."""
     row = _row(table, name)
     as_printed, exactly = _methods(table)
     exact = evaluate(row.design(), row.asks(), exactly)
@@ -112,29 +112,29 @@ def compute(table: int, name: str) -> dict[str, object]:
         "exact_realisations": exact.realisations,
         "exact_doubt": "" if exact.status.ok else str(exact.status),
         "peaks": [[peak.omega, peak.gain] for peak in exact.peaks],
-        "begun": [_begun(row, peak) for peak in exact.peaks] if by_sine else [],
+        "begun": [_gain_from_rest(row, peak) for peak in exact.peaks] if by_sine else [],
         "improvement": None if table != 2 else 100.0 * (1.0 - paper.value / _norm_of_s1(row)),
         "status": [str(paper.status), str(exact.status)],
     }
 
 
 def _norm_of_s1(row: PrintedRow) -> float:
-    """The traditional suspension that the improvements of Table 2 are printed over."""
+    """H2 or H-infinity norm of the traditional suspension, to which the improvements of Table 2 refer."""
     base = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (row.table, row.index, "S1"))
     return evaluate(base.design(), base.asks(), Norm("paper2008")).value
 
 
-def judged(table: int, name: str, found: dict[str, object]) -> SimulatedRow:
-    """A row from its numbers."""
+def row_from_json(table: int, name: str, found: dict[str, object]) -> SimulatedRow:
+    """Row from its numbers in JSON."""
     lists = ("peaks", "begun", "status", "seconds")
     numbers = {key: value for key, value in found.items() if key not in lists}
     peaks = tuple(GainPeak(*pair) for pair in found["peaks"])  # type: ignore[attr-defined]
-    begun: tuple[float, ...] = tuple(found["begun"])  # type: ignore[arg-type]
-    return SimulatedRow(_row(table, name), peaks=peaks, begun=begun, **numbers)  # type: ignore[arg-type]
+    gains: tuple[float, ...] = tuple(found["begun"])  # type: ignore[arg-type]
+    return SimulatedRow(_row(table, name), peaks=peaks, gains_from_rest=gains, **numbers)  # type: ignore[arg-type]
 
 
 def _methods(table: int) -> tuple[Method, Method]:
-    """The paper's method as the paper used it, and at its best."""
+    """Method with the settings of the paper, and with those of the exact value."""
     if table == 2:
         return ApproximateLinear(realisations=RUNS, conventions="paper2008"), ApproximateLinear()
     return ExpectedValue(realisations=RUNS, conventions="paper2008", jobs=1), ExpectedValue(
@@ -146,7 +146,7 @@ def _row(table: int, name: str) -> PrintedRow:
     return next(row for row in simulated_rows(table) if f"{row.index} {row.case}" == name)
 
 
-def _begun(row: PrintedRow, peak: GainPeak) -> float:
+def _gain_from_rest(row: PrintedRow, peak: GainPeak) -> float:
     """R.m.s. displacement over r.m.s. force in a short run from rest, at the frequency of a peak."""
     if not 0.0 < peak.omega < inf:
         return peak.gain

@@ -88,20 +88,20 @@ def reason(r: SimulatedRow) -> str:
         peak = r.compatible[0]
         return (
             f"the printed value follows the peak at {peak.omega:.1f} rad/s, {peak.gain:.5g} m/N, which is not the "
-            "highest; by which rule is not printed"
+            "highest; the rule of selection is not printed"
         )
     if r.verdict == EITHER:
         peaks = " or ".join(f"{peak.omega:.1f} rad/s, {peak.gain:.5g} m/N" for peak in r.candidates)
-        return f"as from a start at rest at the peak at {peaks}; which of them the printed value follows cannot be told"
+        return f"as from a start at rest at the peak at {peaks}; the printed value is consistent with each of them"
     if r.verdict != DIFFERS:
         return ""
     if r.row.index == "J5" and r.row.table == 2:
         return (
-            "a maximum of raw gains has no expectation where friction adds output of its own; how it was averaged "
-            "there is not printed. Here: smoothed over 0.2 Hz to both sides"
+            "the maximum of raw gains has no expected value where friction adds output that is uncorrelated with the "
+            "input; the averaging is not printed. Here: smoothed over 0.2 Hz to both sides"
         )
     if not r.row.has_friction and r.score is None:
-        return "the printed value differs from the linear norm beside it, which a linear design cannot do"
+        return "the printed value differs from the printed linear norm, which is impossible for a linear design"
     return f"{abs(r.score or 0.0):.1f} standard errors off; no convention that was tried explains it"
 
 
@@ -158,7 +158,7 @@ def _simulated_row(r: SimulatedRow) -> dict[str, Any]:
         "improvement_printed_percent": r.row.improvement,
         "improvement_percent": r.improvement,
         "nearest_peak_omega": None if r.nearest is None else r.nearest.omega,
-        "peaks_from_rest": "; ".join(f"{gain:.6g}" for gain in r.begun),
+        "peaks_from_rest": "; ".join(f"{gain:.6g}" for gain in r.gains_from_rest),
         "peaks": "; ".join(f"{peak.omega:.6g} rad/s: {peak.gain:.6g}" for peak in r.peaks),
     }
 

@@ -8,6 +8,7 @@ from functools import partial
 from operator import call
 from pathlib import Path
 
+from inerter.atomic_io import write_text
 from inerter.figures.networks import draw_networks
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Spring
@@ -32,7 +33,6 @@ from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import study
 from inerter.report.page import PageFigure, environment, inline
 from inerter.work.pool import Pool, worker_pool
-from inerter.writing import write_text
 
 Drawing = Callable[[], list[Path]]
 _DRAWN = {

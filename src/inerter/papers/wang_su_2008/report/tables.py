@@ -7,7 +7,7 @@ import re
 from inerter.figures.labels import typeset, typeset_quantity
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.report.data import reason
-from inerter.papers.wang_su_2008.report.text import budget_value, digits, rig_value, share, signed, with_error
+from inerter.papers.wang_su_2008.report.text import budget_value, digits, format_signed, rig_value, share, with_error
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rows import DIFFERS, OTHER_PEAK
 from inerter.table import Cell, Row, Table
@@ -27,9 +27,9 @@ def compared_table(compared: list[ComparedRow], number: int) -> Table:
             [
                 Cell(typeset(c.row.printed)),
                 Cell(typeset(digits(c.paper2008))),
-                Cell(typeset(signed(c.off_by, 1)), strong=not c.agrees),
+                Cell(typeset(format_signed(c.off_by, 1)), strong=not c.agrees),
                 Cell(typeset(digits(c.exact))),
-                Cell(typeset(f"{signed(share(c))} %")),
+                Cell(typeset(f"{format_signed(share(c))} %")),
             ],
         )
         for c in compared
@@ -45,7 +45,10 @@ def simulated_table(found: Reproduction, number: int) -> Table | None:
             f"{r.row.index} {_unbroken(r.row.title)}",
             [
                 Cell(typeset(r.row.printed)),
-                Cell(typeset(with_error(r.paper2008, r.paper2008_error)), typeset(f"{signed(100.0 * r.difference)} %")),
+                Cell(
+                    typeset(with_error(r.paper2008, r.paper2008_error)),
+                    typeset(f"{format_signed(100.0 * r.difference)} %"),
+                ),
                 Cell(typeset(with_error(r.exact, r.exact_error))),
                 *([] if r.improvement is None else [Cell(f"{r.improvement:.2f} %", f"printed {r.row.improvement} %")]),
                 Cell(r.verdict, strong=r.verdict in (DIFFERS, OTHER_PEAK), prose=True),
@@ -69,7 +72,7 @@ def designs_table(found: list[FoundDesign], number: int) -> Table:
             f"{f.row.index} {f.row.layout}",
             [
                 Cell(typeset(digits(f.value)), f"printed {typeset(f.row.printed)}"),
-                Cell(typeset(f"{signed(f.gain_percent)} %")),
+                Cell(typeset(f"{format_signed(f.gain_percent)} %")),
                 *(
                     Cell(f"{f.parameters[name]:.6g}", f"printed {f.row.parameters[name]:g}")
                     if name in f.parameters
@@ -110,7 +113,7 @@ def budgets_table(found: Reproduction) -> Table | None:
         index, layout, what = name.split(maxsplit=2)
         rows.append(Row(f"{index} {layout}", [Cell(what), Cell(typeset(budget_value(numbers)))]))
     header = ["Design", "Of", "Limit"]
-    caption = "The most friction or backlash, and the softest shaft, with which a design still beats S1"
+    caption = "Break-even values: largest friction or backlash, or smallest shaft stiffness, for an advantage over S1"
     return Table(caption, header, rows) if rows else None
 
 
@@ -123,10 +126,12 @@ def rig_table(found: Reproduction) -> Table | None:
             [
                 Cell(typeset_quantity(p.printed, p.unit)),
                 *(Cell(typeset(text)) for text in rig_value(p)),
-                Cell(typeset(f"{signed(100.0 * p.difference)} %") if p.value == p.value else ""),
+                Cell(typeset(f"{format_signed(100.0 * p.difference)} %") if p.value == p.value else ""),
             ],
         )
         for p in found.rig.parameters
     ]
-    header = ["Parameter", "Printed", "Identified", "95 % interval", "Difference"]
-    return Table("Identified by the staged protocol from simulated records, beside the printed values", header, rows)
+    header = ["Parameter", "Printed", "Identified", "95 % confidence interval", "Difference"]
+    return Table(
+        "Parameters identified by the staged protocol from simulated records, and printed values", header, rows
+    )

@@ -12,7 +12,7 @@ from inerter.papers.wang_su_2008.judging import RULE, Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.paper import PAPER
 from inerter.papers.wang_su_2008.reproduce import Reproduction
-from inerter.papers.wang_su_2008.rig import SIMULATED, Found
+from inerter.papers.wang_su_2008.rig import SIMULATED, IdentifiedParameter
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.report.text import WIDTH
 from inerter.units import format_handy, format_quantity, format_with_interval
@@ -35,7 +35,11 @@ def reproduction_text(found: Reproduction) -> str:
         lines += ["Designs that are best with friction; lower: than the best linear design with it.", ""]
         lines += [_optimum_line(name, numbers) for name, numbers in found.optima.items()] + [""]
     if found.budgets:
-        lines += ["What a printed design of Table 1 can bear before it is no better than S1.", ""]
+        lines += [
+            "Break-even values: largest friction or backlash, or smallest shaft stiffness,",
+            "for which a printed design of Table 1 is better than S1.",
+            "",
+        ]
         for name, numbers in found.budgets.items():
             lines += wrap(f"{name}: {budget_value(numbers)}", WIDTH, subsequent_indent="    ")
         lines.append("")
@@ -45,7 +49,7 @@ def reproduction_text(found: Reproduction) -> str:
     return "\n".join(lines).rstrip()
 
 
-def rig_value(p: Found) -> tuple[str, str]:
+def rig_value(p: IdentifiedParameter) -> tuple[str, str]:
     """Identified value of a parameter and its confidence interval, as texts."""
     low, high = p.interval
     if p.value == p.value:
@@ -54,7 +58,7 @@ def rig_value(p: Found) -> tuple[str, str]:
     return "not identifiable", f"{ends} {format_handy(high, p.unit)}"
 
 
-def _rig_line(p: Found) -> str:
+def _rig_line(p: IdentifiedParameter) -> str:
     value, interval = rig_value(p)
     known = f"identified {value}" if p.value == p.value else value
     return f"{p.name:5}printed {format_quantity(p.printed, p.unit):11}{known:25}{interval}"
@@ -88,7 +92,7 @@ def _compared_line(c: ComparedRow) -> str:
     row = c.row
     return (
         f"{row.table:<6}{row.index:6}{row.case:>4}  {row.layout:9}{row.printed:>12}{digits(c.paper2008):>13}"
-        f"{signed(c.off_by, 1):>6}{digits(c.exact):>13}{signed(share(c)):>7} %"
+        f"{format_signed(c.off_by, 1):>6}{digits(c.exact):>13}{format_signed(share(c)):>7} %"
     )
 
 
@@ -106,7 +110,7 @@ def _designs_text(found: list[FoundDesign]) -> list[str]:
 def _found_lines(f: FoundDesign) -> Iterator[str]:
     yield (
         f"{f.row.table:<6}{f.row.index:6}{f.row.layout:9}{f.row.printed:>12}{digits(f.value):>13}"
-        f"{signed(f.gain_percent):>7} %{f.agreed:>5}/{f.starts}"
+        f"{format_signed(f.gain_percent):>7} %{f.agreed:>5}/{f.starts}"
     )
     pairs = [f"{name} {value:.6g} ({f.row.parameters[name]:g})" for name, value in f.parameters.items()]
     for i in range(0, len(pairs), 2):
@@ -156,7 +160,7 @@ def share(c: ComparedRow) -> float:
     return 100.0 * (c.exact / c.row.value - 1.0)
 
 
-def signed(value: float, decimals: int = 2) -> str:
+def format_signed(value: float, decimals: int = 2) -> str:
     text = f"{value:+.{decimals}f}"
     return text[1:] if float(text) == 0.0 else text
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.hypotheses import Hypothesis, Unknown, Values, through_cell
+from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.initial_estimate import Chain
 from inerter.identification.possible_causes import Details, Suspect
 from inerter.kernels.decorators import kernel, part
@@ -28,12 +28,12 @@ Matrix = NDArray[np.float64]
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
 _MOST_PARTS = 64  # of a sampling interval
 _FINEST = 1.25e-4  # [s] of a step, at most
-_ONE_SIDED = 0.99  # of the friction: what it may differ by to either side, so that it resists both ways
+_ONE_SIDED = 0.99  # of the friction: largest asymmetry, so that it opposes motion in both directions
 
 
 @dataclass(frozen=True)
 class ChainValues:
-    """A chain in numbers. A shaft of no softness is rigid: `ks` is infinite."""
+    """A chain in numbers. A rigid shaft has infinite `ks`."""
 
     ks: float = math.inf
     cs: float = 0.0
@@ -47,7 +47,7 @@ class ChainValues:
     bend: float = 0.0  # [N/m^2]
     skew: float = 0.0  # part of the friction that it has more when it slides up, less when down
     reach: float = 0.0  # [m] of travel over which the friction builds up after a reversal (Dahl 1968)
-    square: float = 0.0  # [N s^2/m^2] of a damping beside the inertance that grows with the square of the speed
+    square: float = 0.0  # [N s^2/m^2] of quadratic damping in parallel with the inertance
     cubic: float = 0.0  # [N/m^3] of the shaft
     slack: float = 0.0  # [m] deflection of the shaft beyond which ...
     beyond: float = 0.0  # ... it is stiffer by this [N/m]
@@ -56,7 +56,7 @@ class ChainValues:
     pitch: float = 1.0  # [m] ... over which it repeats
 
 
-def laws(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
+def law_hypotheses(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
     """Hypotheses on further laws of a chain, for motions of this largest speed [m/s], stroke [m] and force [N]."""
     yield from _parts(chain)
     yield _quadratic(chain, fastest, peak)
@@ -67,33 +67,33 @@ def laws(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iter
         yield _presliding(chain, stroke)
         yield _ripple(chain, stroke)
         yield _stribeck(chain, fastest)
-        yield _place(chain, stroke)
+        yield _position(chain, stroke)
         yield _direction(chain)
 
 
 def _parts(chain: Chain) -> Iterator[Hypothesis]:
-    """The chain with a part more or less."""
+    """Hypotheses of a chain with one element added or removed."""
     if chain.friction is None:
         friction = Friction(free(0.0, 500.0, name="dry_friction"))
         with_it = replace(chain, friction=friction)
-        yield _other(Suspect.DRY_FRICTION, with_it, "one with friction", {"dry_friction": 1.0})
+        yield _with_device(Suspect.DRY_FRICTION, with_it, "one with friction", {"dry_friction": 1.0})
     if chain.drag is None:
         drag = Damper(free(1e-3, 1e5, name="viscous"))
-        yield _other(Suspect.VISCOUS_FRICTION, replace(chain, drag=drag), "one with a damper", {"viscous": 10.0})
+        yield _with_device(Suspect.VISCOUS_FRICTION, replace(chain, drag=drag), "one with a damper", {"viscous": 10.0})
     if chain.spring is None:
         spring, damper = Spring(free(1e4, 1e9, name="shaft")), Damper(free(1.0, 1e6, name="shaft_damping"))
         starts = ({"shaft": k, "shaft_damping": 3e-3 * k} for k in (2e5, 1e6, 5e6))
         elastic = replace(chain, spring=spring, damper=damper)
-        yield _other(Suspect.ELASTIC, elastic, "elastic or elastic-friction", *starts)
+        yield _with_device(Suspect.ELASTIC, elastic, "elastic or elastic-friction", *starts)
         return
     is_rigid = replace(chain, spring=None, damper=None, gap=None)
-    yield _other(Suspect.RIGID, is_rigid, "ideal or friction")
+    yield _with_device(Suspect.RIGID, is_rigid, "ideal or friction")
     if chain.gap is None:
-        play = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
-        yield _other(Suspect.BACKLASH, play, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
+        loose = replace(chain, gap=Gap(free(0.0, 2e-3, name="play")))
+        yield _with_device(Suspect.BACKLASH, loose, "backlash or ball-screw", {"play": 1e-5}, {"play": 1e-4})
 
 
-def _other(name: Suspect, chain: Chain, model: str, *starts: Values) -> Hypothesis:
+def _with_device(name: Suspect, chain: Chain, model: str, *starts: Values) -> Hypothesis:
     device = chain.network()
     layout = format_expression(device, [e.label for e in device.elements()])
     details = {"layout": layout, "model": model}
@@ -112,7 +112,7 @@ def _stribeck(chain: Chain, fastest: float) -> Hypothesis:
     return _changed_values(chain, Suspect.STRIBECK, {"rise": rise, "speed": speed}, details, starts)
 
 
-def _place(chain: Chain, stroke: float) -> Hypothesis:
+def _position(chain: Chain, stroke: float) -> Hypothesis:
     tilt = Unknown("tilt of the friction", "N/m", -1e3 / stroke, 1e3 / stroke, 1.0 / stroke)
     bend = Unknown("bend of the friction", "N/m^2", -1e3 / stroke**2, 1e3 / stroke**2, 1.0 / stroke**2)
 
@@ -176,7 +176,7 @@ def _stiffening(chain: Chain, peak: float) -> Hypothesis:
 
 
 def _second_gap(chain: Chain, peak: float) -> Hypothesis:
-    """A spring beside the shaft that is met at a part of the deflection under the largest force."""
+    """A spring in parallel with the shaft that engages at a part of the deflection under the largest force."""
     part, ratio = Unknown("second gap", "", 0.02, 1.0, 0.3), Unknown("stiffness behind it", "", 0.0, 50.0, 0.3)
 
     def change(plain: ChainValues, values: Values) -> ChainValues:
@@ -219,7 +219,7 @@ def _law(
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         plain = _numbers(chain, values)
         difference = simulate_chain(change(plain, values), e, force.size) - simulate_chain(plain, e, force.size)
-        return np.asarray(force + through_cell(difference, e))
+        return np.asarray(force + read_by_load_cell(difference, e))
 
     return Hypothesis(name, unknowns, read=read, details=details, starts=starts)
 
@@ -244,7 +244,7 @@ def simulate_chain(chain: ChainValues, experiment: Experiment, samples: int) -> 
     z, v = motion.displacement[:samples] - motion.displacement[0], motion.velocity[:samples]
     if math.isinf(chain.ks):
         level = np.maximum(_level(chain, z, v), 0.0)
-        friction = _built_up(z, v, level, chain.reach) if chain.reach > 0.0 else level * np.sign(v)
+        friction = _presliding_friction(z, v, level, chain.reach) if chain.reach > 0.0 else level * np.sign(v)
         return np.asarray(
             chain.b * motion.acceleration[:samples]
             + (chain.c + chain.square * np.abs(v)) * v
@@ -270,7 +270,7 @@ def _level(chain: ChainValues, z: Matrix, v: Matrix) -> Matrix:
     )
 
 
-def _built_up(z: Matrix, v: Matrix, level: Matrix, reach: float) -> Matrix:
+def _presliding_friction(z: Matrix, v: Matrix, level: Matrix, reach: float) -> Matrix:
     """Friction that approaches its level exponentially with the travel since each reversal (Dahl 1968)."""
     turned = [0, *(np.flatnonzero(np.diff(np.sign(v)) != 0.0) + 1), v.size]
     share, last = np.zeros(v.size), 0.0
@@ -315,27 +315,29 @@ def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
                 spring = ks * (middle - side * gap - y - 0.25 * h * w)
                 inertia = stiff + drag
                 if cubic != 0.0 or beyond != 0.0:
-                    more, slope_more = _hardened(middle - side * gap - y - 0.5 * h * w, cubic, slack, beyond)
+                    more, slope_more = nonlinear_shaft_force(
+                        middle - side * gap - y - 0.5 * h * w, cubic, slack, beyond
+                    )
                     spring += more + 0.25 * h * slope_more * w
                     inertia += 0.25 * h * slope_more
                 push = b * w / h + spring + cs * (mean - 0.5 * w) - (0.5 * c + drag) * w - bias
                 if reach > 0.0:
-                    w, bristle = _crept(push, max(level, 0.0), inertia, h, reach, w, bristle)
+                    w, bristle = velocity_with_presliding(push, max(level, 0.0), inertia, h, reach, w, bristle)
                 else:
-                    w = _slid(push, level, inertia)
+                    w = velocity_after_push(push, level, inertia)
                 y += 0.5 * h * (before_w + w)
                 shaft = after - y - side * gap
                 pull = ks * shaft + cs * (rate - w)
                 if cubic != 0.0 or beyond != 0.0:
-                    pull += _hardened(shaft, cubic, slack, beyond)[0]
+                    pull += nonlinear_shaft_force(shaft, cubic, slack, beyond)[0]
                 if gap > 0.0 and side * pull < 0.0:
                     side, pull = 0, 0.0
             else:
                 push = b * w / h - (0.5 * c + drag) * w - bias
                 if reach > 0.0:
-                    w, bristle = _crept(push, max(level, 0.0), loose + drag, h, reach, w, bristle)
+                    w, bristle = velocity_with_presliding(push, max(level, 0.0), loose + drag, h, reach, w, bristle)
                 else:
-                    w = _slid(push, level, loose + drag)
+                    w = velocity_after_push(push, level, loose + drag)
                 y += 0.5 * h * (before_w + w)
                 shaft *= math.exp(-h * ks / cs) if cs > 0.0 else 0.0
                 pull = 0.0
@@ -345,8 +347,8 @@ def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
 
 
 @part()
-def _slid(push: float, level: float, inertia: float) -> float:
-    """The velocity to which a push leads against friction of this level; zero where it holds."""
+def velocity_after_push(push: float, level: float, inertia: float) -> float:
+    """Velocity [m/s] after a step under a force against Coulomb friction of this level; zero where it sticks."""
     if push > level:
         return (push - max(level, 0.0)) / inertia
     if push < -level:
@@ -355,10 +357,10 @@ def _slid(push: float, level: float, inertia: float) -> float:
 
 
 @part()
-def _crept(
+def velocity_with_presliding(
     push: float, level: float, inertia: float, h: float, reach: float, w: float, bristle: float
 ) -> tuple[float, float]:
-    """The velocity against friction after Dahl, and its share of the level: implicit in the velocity."""
+    """Velocity [m/s] after a step against presliding friction (Dahl 1968), and its share of the level; implicit."""
     way = 1.0 if w > 0.0 or (w == 0.0 and push > 0.0) else -1.0
     rate = max(1.0 - bristle * way, 0.0) / reach
     w = (push - level * bristle) / (inertia + level * rate * h)
@@ -367,8 +369,8 @@ def _crept(
 
 
 @part()
-def _hardened(shaft: float, cubic: float, slack: float, beyond: float) -> tuple[float, float]:
-    """What a shaft pulls beyond its stiffness at rest, and the slope of that."""
+def nonlinear_shaft_force(shaft: float, cubic: float, slack: float, beyond: float) -> tuple[float, float]:
+    """Force [N] of a shaft beyond its linear stiffness at a deflection, and its derivative [N/m]."""
     more, slope = cubic * shaft**3, 3.0 * cubic * shaft**2
     if beyond > 0.0 and abs(shaft) > slack:
         more += beyond * (shaft - slack if shaft > 0.0 else shaft + slack)

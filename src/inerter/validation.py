@@ -1,4 +1,4 @@
-"""Checks that every layer makes where input enters."""
+"""Validation of numbers, used by all layers where input enters."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from inerter.errors import InerterError
 
 
 def is_number(value: object) -> TypeGuard[float]:
-    """Whether `value` is a finite real number (a bool is not, nor is an integer beyond floating point)."""
+    """Whether `value` is a finite real number (neither a bool nor an integer beyond floating point)."""
     if not isinstance(value, Real) or isinstance(value, bool):
         return False
     try:
@@ -20,6 +20,6 @@ def is_number(value: object) -> TypeGuard[float]:
 
 
 def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:
-    """Raises `error` unless `value` is a positive, finite number of `unit`."""
+    """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:
         raise error(f"{what} must be a positive number of {unit}, got {value!r}.")

@@ -13,14 +13,21 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
 from inerter.renamed import RenamedAttribute
-from inerter.scatter.spread import Scatter, elements_scatter, nominal, scatter_left_out, scatter_of, with_free_scatter
+from inerter.uncertainty.distributions import (
+    Scatter,
+    elements_scatter,
+    nominal,
+    scatter_left_out,
+    scatter_of,
+    with_free_scatter,
+)
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import mapped, running_on

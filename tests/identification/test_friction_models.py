@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from rigs import device, fit_test
 
 from inerter.identification.experiment import experiment_of
+from inerter.identification.friction_models import ChainValues, law_hypotheses, simulate_chain
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of
-from inerter.identification.laws import ChainValues, laws, simulate_chain
 
 CHAIN = chain_of(device(f=27.5))
 FASTEST, STROKE = 0.02, 1e-3
@@ -19,7 +19,7 @@ FASTEST, STROKE = 0.02, 1e-3
 
 def law(name: str) -> Hypothesis:
     assert CHAIN is not None
-    return next(h for h in laws(CHAIN, FASTEST, STROKE) if h.name == name)
+    return next(h for h in law_hypotheses(CHAIN, FASTEST, STROKE) if h.name == name)
 
 
 @given(st.floats(0.0, 1.0))

@@ -32,8 +32,16 @@ from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_li
 from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import Optimum, check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
-from inerter.trade_off.front import ParetoFront
-from inerter.trade_off.points import FrontPoint, dominates, gap_key, gaps, non_dominated, sparse, thin_out
+from inerter.pareto_fronts.front import ParetoFront
+from inerter.pareto_fronts.points import (
+    FrontPoint,
+    dominates,
+    gap_key,
+    gaps,
+    non_dominated,
+    thin_out,
+    thin_out_triangle,
+)
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -311,7 +319,7 @@ class _Trade:
                 break
             one = self.solve(share @ corners, found)
             found = found if one is None else non_dominated([*found, one], (0, 1, 2))
-        return sparse(found, count, ends)
+        return thin_out_triangle(found, count, ends)
 
 
 def _costly(problem: ConstrainedProblem, first: Sequence[Array]) -> LocalOptimum:

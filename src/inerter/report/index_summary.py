@@ -65,7 +65,7 @@ PLAIN = Wording()
 
 def headlines(results: xr.Dataset, wording: Wording = PLAIN) -> list[str]:
     """Sentences, one per index: best layout, its value, and its improvement over the baseline."""
-    told = _of_sweep if swept_places(results) else _of_designs
+    told = _sweep_headline if swept_places(results) else _design_headline
     return [f"{doubt_of(results, index)}{told(results, index, wording)}" for index in indices(results)]
 
 
@@ -132,7 +132,7 @@ def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: int(results["elements"].sel(layout=name)))
 
 
-def _alike(names: list[str]) -> str:
+def _format_equal_layouts(names: list[str]) -> str:
     return f"{format_list(names)}, equally good" if len(names) > 1 else names[0]
 
 
@@ -166,7 +166,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     """Swept values at which a layout is as good as the baseline, each with its standard error.
 
     Between swept values the improvement follows a monotone cubic; how far a straight line would put the crossing from
-    there is added to the error. Where both are alike over more than one value, there is no crossing.
+    there is added to the error. Where both are equal over more than one value, there is no crossing.
     """
     element = str(swept_element(results))
     row = results.sel(layout=layout, index=index).sortby(element)
@@ -188,10 +188,10 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
 
 def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
     """Pairs of index and sentence on where each layout outperforms the baseline: crossings, or shares of a map."""
-    return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _shares(results)
+    return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _map_share_sentences(results)
 
 
-def _shares(results: xr.Dataset) -> list[tuple[str, str]]:
+def _map_share_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
     """Pairs of index and sentence on the number of points of a map at which each layout outperforms the baseline."""
     sentences = []
     for index in indices(results):
@@ -222,36 +222,38 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
     for index in indices(results):
         for name in compared_layouts(results):
             found = {by: crossings(one, index, name) for by, one in ways.items()}
-            texts = [_places(results, places, write) + by for by, places in found.items() if places]
+            texts = [_format_places(results, places, write) + by for by, places in found.items() if places]
             if texts:
                 said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
 
 
-def _places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer) -> str:
+def _format_places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer) -> str:
     """Swept values with their errors as text; of many, the first and the number of others."""
     more, element = len(found) - _MOST_PLACES, str(swept_element(results))
     texts = [swept_text(results, element, at, write, error) for at, error in found[:_MOST_PLACES]]
     return format_list([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _of_designs(results: xr.Dataset, index: str, wording: Wording) -> str:
+def _design_headline(results: xr.Dataset, index: str, wording: Wording) -> str:
     title = f"Best {_index_label(results, index)}"
     names = best_layouts(results, index)
     if not names:
-        return f"{title}: {_none(results, index)}."
+        return f"{title}: {_no_best_clause(results, index)}."
     ways = {method: way(results, method) for method in methods(results)} or {"": ""}
     parts: list[str] = []
     for method, words in ways.items():
         one = by_method(results, method) if method else results
         if not parts:
             pause = "," if words and "," in title else ""
-            parts.append(f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_verdict(one, index, wording)}")
+            parts.append(
+                f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_best_layouts_clause(one, index, wording)}"
+            )
         elif best_layouts(one, index)[:1] == names[:1]:
-            parts.append(f"{words} still {_still(one, index, names[0])}")
+            parts.append(f"{words} still {_layout_with_improvement(one, index, names[0])}")
         else:
-            parts.append(f"{words} {_verdict(one, index, wording)}")
+            parts.append(f"{words} {_best_layouts_clause(one, index, wording)}")
     return f"{'; '.join(parts)}."
 
 
@@ -261,38 +263,38 @@ def _index_label(results: xr.Dataset, index: str) -> str:
     return title if index in INDICES else title_with_name(title, index)
 
 
-def _verdict(results: xr.Dataset, index: str, wording: Wording) -> str:
+def _best_layouts_clause(results: xr.Dataset, index: str, wording: Wording) -> str:
     """Clause on the best layouts by one method: their value, and its comparison with the baseline."""
     names, baseline = best_layouts(results, index), results.attrs["baseline"]
     if not names:
-        return _none(results, index)
+        return _no_best_clause(results, index)
     design = results.sel(layout=names[0], index=index)
     value = wording.write(float(design["value"]), index_unit(results, index), error_of(design), bound_of(design))
     limit = f", {_STATIC}" if (index, names[0]) in wording.static else ""
-    answer = f"{_alike(names)}, {value}{limit}"
+    answer = f"{_format_equal_layouts(names)}, {value}{limit}"
     if names[0] == baseline:
         return f"{answer}; no other layout is better than this baseline"
     improvement = float(design["improvement"])
     if not np.isfinite(improvement):
-        return f"{answer}; {_without(results, index, baseline)}" if baseline else answer
+        return f"{answer}; {_missing_value_clause(results, index, baseline)}" if baseline else answer
     if improvement < NOTICEABLE:
         return f"{answer}, no better than {baseline}"
-    return f"{answer}, {_better(design)} better than {baseline}"
+    return f"{answer}, {_format_improvement(design)} better than {baseline}"
 
 
-def _still(results: xr.Dataset, index: str, name: str) -> str:
+def _layout_with_improvement(results: xr.Dataset, index: str, name: str) -> str:
     """Layout by another method, with its improvement over the baseline."""
     design = results.sel(layout=name, index=index)
     if name == results.attrs["baseline"] or not np.isfinite(float(design["improvement"])):
         return name
-    return f"{name}, {_better(design)} better"
+    return f"{name}, {_format_improvement(design)} better"
 
 
-def _better(design: xr.Dataset) -> str:
+def _format_improvement(design: xr.Dataset) -> str:
     return improvement_text(design).removeprefix("+")
 
 
-def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
+def _sweep_headline(every: xr.Dataset, index: str, wording: Wording) -> str:
     results, write = one_method(every), wording.write
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
@@ -301,38 +303,38 @@ def _of_sweep(every: xr.Dataset, index: str, wording: Wording) -> str:
     rows = results["improvement" if compared_layouts(results) else "value"].sel(index=index)
     found = {name: ends for name in names_there if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
-        return f"Best {title}: {_none(results, index)}."
+        return f"Best {title}: {_no_best_clause(results, index)}."
     if not compared_layouts(results):
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
         text = write(value, index_unit(results, index), np.nan)
         where = place_text(results, at, write, named=True)
-        return f"Best {title}: {_alike(names)}, {text} at {where}."
+        return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
     if largest < NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
     where = place_text(results, at, write, named=True)
-    best = f"{_alike(names)}, {largest:.1f} % better at {where}"
+    best = f"{_format_equal_layouts(names)}, {largest:.1f} % better at {where}"
     return (
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
-        f"improvement over the sweep lies {_range(least, largest)}."
+        f"improvement over the sweep lies {_format_range(least, largest)}."
     )
 
 
-def _without(results: xr.Dataset, index: str, layout: str) -> str:
+def _missing_value_clause(results: xr.Dataset, index: str, layout: str) -> str:
     """Clause on a layout without a value: infeasible, or not finite."""
     missed = bool(infeasible(results.sel(layout=layout, index=index)))
-    return f"no {layout} keeps the limits" if missed else f"{layout} has no finite value"
+    return f"no feasible {layout}" if missed else f"{layout} has no finite value"
 
 
-def _none(results: xr.Dataset, index: str) -> str:
+def _no_best_clause(results: xr.Dataset, index: str) -> str:
     """Clause on the reason why no layout is best."""
     missed = bool(infeasible(results.sel(index=index)).all())
-    return "no layout keeps the limits" if missed else "no layout has a finite value"
+    return "no layout satisfies the constraints" if missed else "no layout has a finite value"
 
 
-def _range(least: float, largest: float) -> str:
+def _format_range(least: float, largest: float) -> str:
     return "between " + " and ".join(percent(value).removeprefix("+") for value in (least, largest))

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
+from inerter.methods.asking import objective_of
 from strategies import paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError
-from inerter.methods.composite_index import objective_of
-from inerter.scatter.spread import scatter_of
-from inerter.scatter.tolerance import quantile_error
+from inerter.uncertainty.distributions import scatter_of
+from inerter.uncertainty.tolerance import quantile_error
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()

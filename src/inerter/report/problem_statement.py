@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inerter.fields import Field, fields_of
+from inerter.field_metadata import Field, fields_of
 from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ROUGHNESS = "m^3/cycle"
-_ALSO = {  # the same value in the unit in which it is usually told
+_ALSO = {  # the same value in its customary unit
     "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
     "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
     _ROUGHNESS: lambda value: f" ({_road_class(value)})",
@@ -180,12 +180,13 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         )
         if not is_blind(study.optimise):
             what = brief_words_of(study.optimise)
-            yield f"What was made smallest is the value by {what}: {words_of(study.optimise)}."
+            yield f"The minimised value is that by {what}: {words_of(study.optimise)}."
     if study.limits:
         limits = "; ".join(
             f"{limit_words(study, limit)} {_value_text(study, limit.value, limit.unit)}" for limit in study.limits
         )
-        yield f"Every design {'has to keep' if bool(infeasible(results).any()) else 'keeps'} these limits: {limits}."
+        satisfy = "must satisfy" if bool(infeasible(results).any()) else "satisfies"
+        yield f"Every design {satisfy} these constraints: {limits}."
     if study.conditions:
         how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
         yield f"An index is its {how}; limits hold in each. Frequency responses are those outside the conditions."

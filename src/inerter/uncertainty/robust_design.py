@@ -13,7 +13,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
@@ -21,7 +20,7 @@ from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.scatter.spread import (
+from inerter.uncertainty.distributions import (
     Scatter,
     elements_scatter,
     nominal,
@@ -30,7 +29,8 @@ from inerter.scatter.spread import (
     source_values,
     with_free_scatter,
 )
-from inerter.scatter.tolerance import evaluate_sample, quantile_error, rank_weights
+from inerter.uncertainty.tolerance import evaluate_sample, quantile_error, rank_weights
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

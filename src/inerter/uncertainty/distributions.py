@@ -9,10 +9,10 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, NonlinearitySupport
 from inerter.networks.elements import Element, Free, Tied
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import (
     elements_by_label,
     masses,

@@ -9,10 +9,10 @@ from importlib import import_module
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.checks import is_number
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.methods.composite_index import IndexLike
 from inerter.optimisation.active_constraints import ConstraintResult
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

@@ -33,7 +33,7 @@ from inerter.figures.labels import (
     way,
     with_unit,
 )
-from inerter.report.findings import extremes, place_text
+from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table
 
 _LONGEST_NAME = 20
@@ -49,19 +49,19 @@ class _Entry(NamedTuple):
 
 def method_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
     """A table for a terminal: layouts in rows, methods in columns, in several parts if they need more than `width`."""
-    names, unit = _names(results), _unit(results, index)
-    yield from wrap(_what(results, unit), width, initial_indent="  ", subsequent_indent="    ")
+    names, unit = _row_layouts(results), _common_scale(results, index)
+    yield from wrap(_caption_clause(results, unit), width, initial_indent="  ", subsequent_indent="    ")
     labels = [_Entry("layout"), *(_Entry(name[:_LONGEST_NAME]) for name in names)]
     columns = [
         [
             _Entry(*_two_lines(way(results, method))),
-            *(_entry(by_method(results, method), index, name, unit) for name in names),
+            *(_table_entry(by_method(results, method), index, name, unit) for name in names),
         ]
         for method in methods(results)
     ]
     while columns:
-        count = _fitting([labels, *columns], width)
-        yield from _lines([labels, *columns[:count]])
+        count = _count_fitting([labels, *columns], width)
+        yield from _format_lines([labels, *columns[:count]])
         columns = columns[count:]
 
 
@@ -73,18 +73,20 @@ def method_tables(results: xr.Dataset) -> list[Table]:
 
 
 def _table(results: xr.Dataset, index: str) -> Table:
-    unit = _unit(results, index)
+    unit = _common_scale(results, index)
     rows = []
-    for name in _names(results):
-        entries = [_entry(by_method(results, method), index, name, unit) for method in methods(results)]
-        rows.append(Row(name, [Cell(_typeset(entry.first), _typeset(entry.second)) for entry in entries]))
-    caption = f"{title_with_name(index_title(results, index), index)} {_what(results, unit)}"
+    for name in _row_layouts(results):
+        entries = [_table_entry(by_method(results, method), index, name, unit) for method in methods(results)]
+        rows.append(
+            Row(name, [Cell(_typeset_unbroken(entry.first), _typeset_unbroken(entry.second)) for entry in entries])
+        )
+    caption = f"{title_with_name(index_title(results, index), index)} {_caption_clause(results, unit)}"
     return Table(
         typeset(capital(caption)), ["Layout", *(capital(way(results, method)) for method in methods(results))], rows
     )
 
 
-def _what(results: xr.Dataset, unit: Scale) -> str:
+def _caption_clause(results: xr.Dataset, unit: Scale) -> str:
     if not swept_places(results):
         return f"by each method{f', in {unit.unit}' if unit.unit else ''}"
     return "by each method, at its best" + (
@@ -92,22 +94,23 @@ def _what(results: xr.Dataset, unit: Scale) -> str:
     )
 
 
-def _names(results: xr.Dataset) -> list[str]:
+def _row_layouts(results: xr.Dataset) -> list[str]:
     return (compared_layouts(results) if swept_places(results) else []) or layouts(results)
 
 
-def _unit(results: xr.Dataset, index: str) -> Scale:
+def _common_scale(results: xr.Dataset, index: str) -> Scale:
     return scale(results["value"].sel(index=index).values, index_unit(results, index))
 
 
-def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
+def _table_entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
     """Cell with value and improvement; over a sweep, the largest improvement or the least value with its place."""
     row, baseline = results.sel(layout=layout, index=index), results.attrs["baseline"]
     if not swept_places(results):
         value, error, bound = float(row["value"]) * unit.factor, error_of(row) * unit.factor, bound_of(row)
         better = "" if layout == baseline or not baseline else improvement_text(row)
         return _Entry(
-            format_uncertain(value, error, bound) if shows_error(value, error, bound) else _plain(value, bound), better
+            format_uncertain(value, error, bound) if shows_error(value, error, bound) else _format_value(value, bound),
+            better,
         )
     ends = extremes(row["improvement" if compared_layouts(results) else "value"])
     if ends is None:
@@ -121,11 +124,11 @@ def _entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
     return _Entry(text, f"at {place_text(results, place[1])}")
 
 
-def _plain(value: float, bound: float) -> str:
+def _format_value(value: float, bound: float) -> str:
     return f"{value:.{digits_of(value, bound)}g}" if np.isfinite(value) else with_unit(value, "")
 
 
-def _typeset(text: str) -> str:
+def _typeset_unbroken(text: str) -> str:
     return typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
 
 
@@ -136,15 +139,15 @@ def _two_lines(words: str) -> tuple[str, str]:
     return words[:cut].rstrip(), words[cut:]
 
 
-def _fitting(columns: list[list[_Entry]], width: int) -> int:
+def _count_fitting(columns: list[list[_Entry]], width: int) -> int:
     """Number of columns that fit next to that of the labels, at least one."""
     count = len(columns) - 1
-    while count > 1 and max(map(len, _lines(columns[: count + 1]))) > width:
+    while count > 1 and max(map(len, _format_lines(columns[: count + 1]))) > width:
         count -= 1
     return count
 
 
-def _lines(columns: list[list[_Entry]]) -> list[str]:
+def _format_lines(columns: list[list[_Entry]]) -> list[str]:
     widths = [max(len(text) for entry in column for text in entry) for column in columns]
     lines = [
         "  " + "  ".join(f"{entry[part]:<{width}}" for entry, width in zip(entries, widths, strict=True))

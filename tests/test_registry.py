@@ -1,4 +1,4 @@
-"""Tables of rows, and what is true of every row in them."""
+"""Registries, and properties of all of their entries."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from study_text import study_text
 
 import inerter as it
-from inerter import rows
-from inerter.errors import MechanismError, RowError, StudyError, UnknownRowError
-from inerter.fields import fields_of, mounts_of
+from inerter import registry
+from inerter.errors import MechanismError, RegistryError, StudyError, UnknownEntryError
+from inerter.field_metadata import fields_of, mounts_of
 from inerter.files.common.signal_kinds import unit_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import write_resolved
@@ -24,8 +24,8 @@ from inerter.files.study.study import Study
 from inerter.indices.registry import amplitude_of, index_settings, needed_settings
 from inerter.methods.objective import Differentiable
 from inerter.methods.registry import averages, nonlinearities_of, with_gradients, words_of
-from inerter.report.question import vehicle_rows
-from inerter.rows import Rows, made_of_rows
+from inerter.registry import Registry, cache_until_registration
+from inerter.report.problem_statement import vehicle_rows
 from inerter.units import parse_quantity
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)
@@ -35,11 +35,11 @@ TABLES = {"vehicle": it.VEHICLES, "index": it.INDICES, "method": it.METHODS, "el
 
 @pytest.fixture(autouse=True)
 def known() -> Iterator[None]:
-    """Rows of tables that end with their test are no source of numbers later, as no other process has them."""
-    before = set(rows._classes)
+    """Entries removed at the end of their test do not count as sources later, as no other process has them."""
+    before = set(registry._classes)
     yield
-    rows._classes.intersection_update(before)
-    rows._changes += 1
+    registry._classes.intersection_update(before)
+    registry._changes += 1
 
 
 def row(title: str, /, **attributes: Any) -> type:
@@ -49,8 +49,8 @@ def row(title: str, /, **attributes: Any) -> type:
 # --- tables ---
 
 
-def test_a_table_keeps_the_order_in_which_rows_came() -> None:
-    table: Rows[type] = Rows("thing", "key", ("size",), (row("B", key="b", size=1), row("A", key="a", size=2)))
+def test_a_registry_keeps_the_order_of_registration() -> None:
+    table: Registry[type] = Registry("thing", "key", ("size",), (row("B", key="b", size=1), row("A", key="a", size=2)))
     third = row("Third", key="0", size=3)
     assert table.add(third) is third
     assert list(table) == ["b", "a", "0"]
@@ -58,23 +58,23 @@ def test_a_table_keeps_the_order_in_which_rows_came() -> None:
     assert repr(table) == "<thing: b, a, 0>"
     assert table.add(third) is third
     assert table.get("c") is None
-    with pytest.raises(UnknownRowError) as caught:
+    with pytest.raises(UnknownEntryError) as caught:
         table["third"]
-    assert str(caught.value) == "There is no thing 'third' (there are: b, a, 0)."
+    assert str(caught.value) == "Unknown thing 'third'; available: b, a, 0."
     table.remove(third)
     assert (list(table), "0" in table, len(table)) == (["b", "a"], False, 2)
 
 
-def test_only_the_row_itself_is_forgotten() -> None:
+def test_only_the_entry_itself_is_removed() -> None:
     own = row("A", key="a")
-    table: Rows[type] = Rows("thing", "key", (), (own,))
+    table: Registry[type] = Registry("thing", "key", (), (own,))
     table.remove(row("Another", key="a"))
     assert table["a"] is own
 
 
 def test_loading_that_is_interrupted_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Else every table would lack the rows of other distributions from then on."""
-    monkeypatch.setattr(rows, "_loading", False)
+    """Else every registry would lack the entries of other distributions from then on."""
+    monkeypatch.setattr(registry, "_loading", False)
     asked = []
 
     def entries() -> tuple[()]:
@@ -83,19 +83,19 @@ def test_loading_that_is_interrupted_begins_anew(monkeypatch: pytest.MonkeyPatch
             raise KeyboardInterrupt
         return ()
 
-    monkeypatch.setattr(rows, "_entries", entries)
+    monkeypatch.setattr(registry, "_entries", entries)
     with pytest.raises(KeyboardInterrupt):
-        rows.load()
-    rows.load()
-    rows.load()
+        registry.load_plugins()
+    registry.load_plugins()
+    registry.load_plugins()
     assert len(asked) == 2
 
 
-def test_what_is_made_of_rows_is_made_anew_when_they_change() -> None:
-    table: Rows[type] = Rows("thing", "key")
+def test_values_derived_from_registries_are_recomputed_after_a_change() -> None:
+    table: Registry[type] = Registry("thing", "key")
     made = []
 
-    @made_of_rows
+    @cache_until_registration
     def listed() -> tuple[str, ...]:
         made.append(1)
         return tuple(table)
@@ -107,34 +107,36 @@ def test_what_is_made_of_rows_is_made_anew_when_they_change() -> None:
     assert (listed(), len(made)) == ((), 3)
 
 
-def test_a_row_that_cannot_stand_in_its_table_is_told_what_it_lacks() -> None:
-    table: Rows[type] = Rows("thing", "key", ("size", "words"), (row("A", key="a", size=2, words="w"),))
+def test_an_invalid_entry_is_refused_with_its_missing_attributes() -> None:
+    table: Registry[type] = Registry("thing", "key", ("size", "words"), (row("A", key="a", size=2, words="w"),))
     bad = {
-        r"B is no thing: it lacks words": row("B", key="b", size=1),
-        r"B is no thing: it lacks key, size, words": row("B"),
-        r"its key is 3, and must be text": row("B", key=3, size=1, words=""),
+        r"B is not a valid thing: missing attributes words": row("B", key="b", size=1),
+        r"B is not a valid thing: missing attributes key, size, words": row("B"),
+        r"key must be non-empty text, got 3": row("B", key=3, size=1, words=""),
         r"another thing with the key 'a'": row("B", key="a", size=1, words=""),
-        r"no dataclass": type("B", (), {"key": "b", "size": 1, "words": ""}),
+        r"not a dataclass": type("B", (), {"key": "b", "size": 1, "words": ""}),
     }
     for words, each in bad.items():
-        with pytest.raises(RowError, match=words):
+        with pytest.raises(RegistryError, match=words):
             table.add(each)
     assert list(table) == ["a"]
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_our_own_rows_cannot_be_replaced(name: str) -> None:
+def test_entries_of_the_package_cannot_be_replaced(name: str) -> None:
     for known in list(TABLES[name].values()):
         copy = row("Copy", **{word: getattr(known, word) for word in dir(known) if not word.startswith("_")})
-        with pytest.raises(RowError, match=rf"another {'kind of element' if name == 'element' else name} with the"):
+        with pytest.raises(
+            RegistryError, match=rf"another {'kind of element' if name == 'element' else name} with the"
+        ):
             TABLES[name].add(copy)
         assert TABLES[name].add(known) is known
 
 
 @pytest.mark.parametrize("table", [*TABLES.values(), it.SIGNALS, it.PAPERS])
-def test_a_key_that_is_nearly_right_is_proposed(table: Rows[Any]) -> None:
+def test_a_key_that_is_nearly_right_is_proposed(table: Registry[Any]) -> None:
     for key in table:
-        with pytest.raises(it.InerterError, match=rf"no .* '{key}x' \(there are: .*{key}.*\)\. Did you mean '"):
+        with pytest.raises(it.InerterError, match=rf"Unknown .* '{key}x'; available: .*{key}.*\. Did you mean '"):
             table[f"{key}x"]
 
 
@@ -192,7 +194,7 @@ def like_a_car(title: str, *given: Any, **attributes: Any) -> type:
 )
 def test_a_force_has_one_unit_and_one_that_a_signal_has(forces: dict[str, str], words: str, added: Added) -> None:
     added(it.VEHICLES, like_a_car("Pulled", forces=forces))
-    with pytest.raises(RowError, match=words):
+    with pytest.raises(RegistryError, match=words):
         unit_of("road")
 
 
@@ -201,7 +203,7 @@ def test_a_vehicle_has_no_quantity_named_as_the_key_that_names_it(added: Added, 
     added(it.VEHICLES, like_a_car("Named", given))
     path = tmp_path / "study.toml"
     path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
-    with pytest.raises(RowError, match=r"sled has a quantity 'model', a key that \[vehicle\] has already"):
+    with pytest.raises(RegistryError, match=r"sled has a quantity 'model', a key that \[vehicle\] has already"):
         load_study(path)
 
 
@@ -235,15 +237,15 @@ def test_a_setting_without_its_index_is_told(symbol: str, tmp_path: Path) -> Non
             load_study(path)
 
 
-Added = Callable[[Rows[Any], type], None]
+Added = Callable[[Registry[Any], type], None]
 
 
 @pytest.fixture
 def added() -> Iterator[Added]:
-    """Adds rows to tables, for one test."""
-    there: list[tuple[Rows[Any], type]] = []
+    """Add entries to registries, for one test."""
+    there: list[tuple[Registry[Any], type]] = []
 
-    def add(table: Rows[Any], kind: type) -> None:
+    def add(table: Registry[Any], kind: type) -> None:
         there.append((table, table.add(kind)))
 
     yield add
@@ -271,7 +273,7 @@ def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
     added(it.INDICES, index_with(setting))
     path = tmp_path / "study.toml"
     path.write_text(study_text(f'indices = ["J1"]\n{line}'), encoding="utf-8")
-    with pytest.raises(RowError, match=words):
+    with pytest.raises(RegistryError, match=words):
         load_study(path)
 
 
@@ -340,7 +342,7 @@ def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
     added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
     path = tmp_path / "study.toml"
     path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
-    with pytest.raises(RowError, match=words):
+    with pytest.raises(RegistryError, match=words):
         load_study(path)
 
 

@@ -65,7 +65,7 @@ def thin_out(
     return found
 
 
-def sparse(found: list[FrontPoint], count: int, ends: Sequence[FrontPoint]) -> list[FrontPoint]:
+def thin_out_triangle(found: list[FrontPoint], count: int, ends: Sequence[FrontPoint]) -> list[FrontPoint]:
     """At most `count` points of three criteria, without those closest together; the ends are kept."""
     found = list(found)
     while len(found) > count:

@@ -13,16 +13,16 @@ from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.report.findings import Wording, headlines
+from inerter.report.index_summary import Wording, headlines
 from inerter.report.plausibility import result_warnings
-from inerter.report.question import limit_words, of_each
+from inerter.report.problem_statement import limit_words, of_each
 from inerter.report.speeds import speed_sentences
 from inerter.table import Writer
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
 
-def answers(
+def conclusion_sentences(
     results: xr.Dataset,
     study: Study,
     found: Sequence[Answer] = (),
@@ -43,30 +43,31 @@ def answers(
             for task, own in by_task(found).items()
             for sentence in task.sentences(TaskResults(study, results, own), write)
         ),
-        *_of_limits(results, study, write),
+        *_constraint_sentence(results, study, write),
     ]
 
 
-def _of_limits(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str]:
+def _constraint_sentence(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str]:
     """Sentence on the constraints, and on layouts without a feasible design."""
     swept = {sweep.words for sweep in study.sweeps}
     limits = [
-        f"{limit_words(study, one)} {'what is swept' if one.words in swept else _number(one.value, one.unit, write)}"
+        f"{limit_words(study, one)} "
+        + ("the swept value" if one.words in swept else _format_number(one.value, one.unit, write))
         for one in study.limits
     ]
     missed = infeasible(results)
     if limits and bool(missed.all()):
-        yield f"No design has {format_list(limits)}{_nearest(results, study, write)}."
+        yield f"No feasible design with {format_list(limits)}{_closest_design_clause(results, study, write)}."
     elif limits:
         none = [
-            f" Of {name} there is none{at}."
+            f" {name} has no feasible design{at}."
             for name in layouts(results)
-            if (at := _missed_at(results, name)) is not None
+            if (at := _infeasible_places_clause(results, name)) is not None
         ]
-        yield f"These are the best of all designs with {format_list(limits)}.{''.join(none)}"
+        yield f"All designs satisfy {format_list(limits)}.{''.join(none)}"
 
 
-def _missed_at(results: xr.Dataset, layout: str) -> str | None:
+def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:
     """Clause on the swept values at which a layout has no feasible design; empty if at all, None if at none."""
     missed = infeasible(results).sel(layout=layout).all("index").values
     if not missed.any():
@@ -75,7 +76,7 @@ def _missed_at(results: xr.Dataset, layout: str) -> str | None:
     return "" if missed.all() else f" at {int(missed.sum())} of {missed.size} values of {words}"
 
 
-def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
+def _closest_design_clause(results: xr.Dataset, study: Study, write: Writer) -> str:
     """Clause on the design closest to feasibility and its values; empty over a sweep."""
     if study.sweeps:
         return ""
@@ -90,11 +91,11 @@ def _nearest(results: xr.Dataset, study: Study, write: Writer) -> str:
     of = str(values["design"].values[best][0])
     parts = results["limit.part"].stack(design=("layout", "index")).transpose("design", "limit").values[best].tolist()
     told = [
-        f"{of_each(limit.of, part)} {_number(float(value), limit.unit, write)}"
+        f"{of_each(limit.of, part)} {_format_number(float(value), limit.unit, write)}"
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
-    return f"; the nearest, one of {of}, has {format_list(told)}"
+    return f"; closest: {of} with {format_list(told)}"
 
 
-def _number(value: float, unit: str, write: Writer) -> str:
+def _format_number(value: float, unit: str, write: Writer) -> str:
     return write(value, unit, nan).strip()

@@ -14,8 +14,8 @@ import inerter as it
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
 from inerter.files.study.ways import ways
-from inerter.report.answers import answers
-from inerter.report.findings import best_layouts
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.index_summary import best_layouts
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BY_BOTH = ("norm", "expected-value")
@@ -65,7 +65,7 @@ def test_methods_are_told_by_what_they_see(study, losses, methods, told):
 
 def test_no_name_of_a_method_is_in_an_answer(study):
     asked = replace(with_losses(study, it.Friction(10.0)), evaluate=BY_BOTH)
-    told = answers(told_apart(judged(designs()), asked), asked)
+    told = conclusion_sentences(told_apart(judged(designs()), asked), asked)
     assert len(told) == 3
     for sentence in told:
         assert re.match(
@@ -79,7 +79,7 @@ def test_another_layout_may_be_the_best_with_friction(study):
     results = told_apart(judged(designs()), asked)
     results["value"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 1.0
     results["improvement"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = 60.0
-    assert "; with friction S2, 1.0000 +- " in answers(results, asked)[0]
+    assert "; with friction S2, 1.0000 +- " in conclusion_sentences(results, asked)[0]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -120,11 +120,11 @@ def test_a_static_limit_is_called_that(tmp_path):
     result = run_study(soft, tmp_path / "out")
     limit = 1.0 / 15e3 + 1.0 / 150e3
     assert result.data.value.sel(index="J5").values.ravel() == pytest.approx([limit, limit], rel=1e-9)
-    told = answers(result.data, soft)
+    told = conclusion_sentences(result.data, soft)
     assert told[0].startswith("Best dynamic load carrying: S1 and S2, equally good, 73.33 um/N, the static limit")
     assert "static" not in told[1]
     stiff = replace(soft, elements={**soft.elements, "k": it.Spring(300e3, name="k")})
-    assert "static" not in answers(run_study(stiff, tmp_path / "stiff").data, stiff)[0]
+    assert "static" not in conclusion_sentences(run_study(stiff, tmp_path / "stiff").data, stiff)[0]
 
 
 def test_values_that_are_not_numbers_are_no_ties(study):
@@ -133,4 +133,4 @@ def test_values_that_are_not_numbers_are_no_ties(study):
     assert best_layouts(results, "J1") == ["S3"]
     nothing = with_value(designs(), math.nan, layout=["S1", "S2", "S3"], index="J1")
     assert best_layouts(nothing, "J1") == []
-    assert answers(nothing, study)[0] == "Best ride comfort: no layout has a finite value."
+    assert conclusion_sentences(nothing, study)[0] == "Best ride comfort: no layout has a finite value."

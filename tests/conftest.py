@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from importlib import import_module
-from pkgutil import iter_modules
-from types import ModuleType
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
-from inerter import kernels
+import inerter
 from inerter.kernels.decorators import Kernel
 from inerter.kernels.prepare import prepare
 
@@ -36,8 +35,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     config = session.config
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly
     if whole and config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
-        found = [value for module in iter_modules(kernels.__path__) for value in vars(_imported(module.name)).values()]
-        prepare(kernel for kernel in found if isinstance(kernel, Kernel) and kernel.signature is not None)
+        prepare(kernel for kernel in _kernels() if kernel.signature is not None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -58,5 +56,10 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
-def _imported(name: str) -> ModuleType:
-    return import_module(f"{kernels.__name__}.{name}")
+def _kernels() -> Iterator[Kernel]:
+    """All kernels of the package that are not made for one size of system."""
+    root = Path(inerter.__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        if "\n@kernel(" in path.read_text(encoding="utf-8"):
+            module = import_module(".".join((root.name, *path.relative_to(root).with_suffix("").parts)))
+            yield from (value for value in vars(module).values() if isinstance(value, Kernel))

@@ -23,17 +23,26 @@ from inerter.cli.progress import fraction, progress, steps
 from inerter.work.progress import ProgressStep, report, within
 
 SILENCE = 2.0  # seconds
-SLOW = """
+FASTER = 5.0  # the pulse that is waited for here; `test_lines_of_a_long_log_become_seldom` has the usual one
+SLOW = f"""
 import sys, time
 from inerter.work import progress
-from inerter.cli import main
+from inerter.cli import main, pulse
+pulse._SILENCE /= {FASTER}
+pulse._LOOK /= {FASTER}
 inner = main.app
 def slow(*arguments, **settings):
-    time.sleep(5.0)
+    time.sleep(1.3)
     return 0
 main.app = slow
 sys.exit(main.main())
 """
+
+
+@pytest.fixture
+def faster(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("_SILENCE", "_LOOK"):
+        monkeypatch.setattr(pulses, name, getattr(pulses, name) / FASTER)
 
 
 def gaps(command: list[str]) -> tuple[list[float], list[str]]:
@@ -53,7 +62,7 @@ def test_a_command_that_says_nothing_has_a_pulse() -> None:
     between, lines = gaps([sys.executable, "-c", SLOW, "check"])
     assert len(lines) >= 2
     assert all(line.startswith("inerter: preparing") for line in lines)
-    assert max(between) < 2.0 * SILENCE  # the machine may be busy
+    assert max(between) < 2.0 * SILENCE / FASTER  # the machine may be busy
 
 
 def wait(seconds: float) -> None:
@@ -67,23 +76,24 @@ def wait(seconds: float) -> None:
 def in_progress() -> None:
     with progress("study") as shown:
         shown.kernels("a kernel", 1, 9)
-        wait(2.5)
+        wait(0.7)
         shown.cases(0, 9, None, 0)
-        wait(2.5)
+        wait(0.7)
 
 
 def in_steps() -> None:
     with steps("paper") as show:
         show("table", 0, 3)
-        wait(2.5)
+        wait(0.7)
 
 
 def in_fraction() -> None:
     with fraction("record") as show:
         show(0.25)
-        time.sleep(2.5)
+        time.sleep(0.7)
 
 
+@pytest.mark.usefixtures("faster")
 @pytest.mark.parametrize("terminal", [False, True], ids=["log", "terminal"])
 def test_what_shows_the_progress_of_a_part_silences_what_is_around_it(
     terminal: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -94,6 +104,7 @@ def test_what_shows_the_progress_of_a_part_silences_what_is_around_it(
     assert not [line for line in capsys.readouterr().err.splitlines() if line.startswith("inerter:")]
 
 
+@pytest.mark.usefixtures("faster")
 @pytest.mark.parametrize("work", [in_progress, in_steps, in_fraction], ids=lambda work: work.__name__)
 def test_each_way_to_show_progress_has_a_line_in_time(
     work: Callable[[], None], capsys: pytest.CaptureFixture[str]
@@ -129,7 +140,7 @@ def test_lines_of_a_long_log_become_seldom(monkeypatch: pytest.MonkeyPatch, caps
     monkeypatch.setattr(pulses, "time", SimpleNamespace(monotonic=lambda: clock[0]))
     printer, printed = pulses.Pulse(str), list[float]()
     while clock[0] < 3.0 * 3600.0:
-        clock[0] += 0.4
+        clock[0] += pulses._LOOK
         printer(ProgressStep("starts"))
         if capsys.readouterr().err:
             printed.append(clock[0])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rigs import device, fit_test
 
 from inerter.identification.experiment import experiment_of
-from inerter.identification.friction_models import ChainValues, law_hypotheses, simulate_chain
+from inerter.identification.friction_models import ChainValues, _march, law_hypotheses, simulate_chain
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of
 
@@ -52,3 +52,9 @@ def test_a_skewed_friction_takes_energy_and_differs_by_its_share(skew: float) ->
     assert np.all((force * v)[moves] > 0.0)
     assert force[moves & (v > 0.0)] == pytest.approx(20.0 * (1.0 + skew))
     assert force[moves & (v < 0.0)] == pytest.approx(-20.0 * (1.0 - skew))
+
+
+def test_the_force_is_computed_from_the_types_that_its_code_is_prepared_for() -> None:
+    experiment = experiment_of(fit_test(seed=1, duration=1.0))
+    simulate_chain(ChainValues(ks=1e6, cs=3200.0, b=113.0, f=20.0), experiment, experiment.size // 2)
+    assert len(_march.ready().signatures) == 1

@@ -12,6 +12,7 @@ from scipy.special import digamma, k1
 
 import inerter as it
 from inerter.errors import PerformanceIndexError
+from inerter.kernels.excess import corrections
 from inerter.norms import excess
 
 WHEELS = ("front_left", "front_right", "rear_left", "rear_right")
@@ -216,6 +217,13 @@ def test_a_search_has_the_values_that_are_reported_and_their_slopes():
     assert slope * 700.0 == pytest.approx(
         (value(700.0 * math.exp(1e-3)) - value(700.0 * math.exp(-1e-3))) / 2e-3, rel=1e-4
     )
+
+
+def test_corrections_are_called_with_the_types_that_they_are_prepared_for():
+    """Other types would be compiled once more, for a quarter of a minute."""
+    index = it.RandomResponse({"roll_displacement": 1.0}, it.Road(5e-7, 10.0, it.Coherence.isotropic(0.5)))
+    it.Norm().objective(free_car(), index).value_and_gradient(np.array([700.0]))
+    assert len(corrections.ready().signatures) == 1
 
 
 @pytest.mark.campaign

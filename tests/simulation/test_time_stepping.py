@@ -13,6 +13,7 @@ from scipy.signal import lsim
 
 from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, free, state_space
 from inerter.errors import SimulationError
+from inerter.kernels.stepping import march
 from inerter.networks.elements import Network
 from inerter.simulation.time_stepping import Histories, Start, StepTable, step_through
 from inerter.systems.graph import full_graph
@@ -266,7 +267,7 @@ def screw_by_hand(time: np.ndarray, u: Signal, k: float, c: float, eps: float, b
 
     events = [lambda t, x, *mode, i=i: guard(t, x, *mode)[i] for i in (0, 1)]
     for event in events:
-        event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+        event.terminal, event.direction = True, -1.0
     t, x, side, slip = time[0], np.array([0.0, 0.0, 0.0]), 0, 0
     result = np.zeros(time.size)
     while t < time[-1]:
@@ -527,3 +528,8 @@ def test_unusable_input_is_refused() -> None:
 def test_a_node_that_springs_hold_starts_in_balance() -> None:
     r = run(Rig(Spring(1e3) - Spring(3e3)), 0.1, 1e-2, displacement={"device.node0_1": 1.0})
     assert np.abs(r.displacement).max() < 1e-12
+
+
+def test_steps_are_made_of_the_types_that_their_code_is_prepared_for() -> None:
+    run(quarter_car(Spring(120e3) | Damper(3705.4) | SCREW), 0.01, 1e-3)
+    assert len(march.ready().signatures) == 1

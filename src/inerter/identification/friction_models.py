@@ -282,7 +282,7 @@ def _presliding_friction(z: Matrix, v: Matrix, level: Matrix, reach: float) -> M
     return np.asarray(share * level)
 
 
-@kernel("force of a device")
+@kernel("force of a device", "(float64[::1], float64[::1], float64, int64, float64[::1])")
 def _march(z: Any, v: Any, interval: float, parts: int, numbers: Any) -> Any:
     ks, cs, gap, b, f, c, rise, speed, tilt, bend, skew, reach, square, cubic, slack, beyond, cosine, sine, pitch = (
         numbers

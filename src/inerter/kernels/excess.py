@@ -16,7 +16,7 @@ from inerter.kernels.h2 import units
 from inerter.kernels.linalg import factor, solve, solve_rows, solve_transposed
 
 Array = Any
-EXCESS = "Tuple((float64, float64, float64, float64[:,::1]))"  # the type of `Excess.table`
+EXCESS = "Tuple((float64, float64, float64, Array(float64, 2, 'C', True)))"  # of `Excess.table`, which is read-only
 _PLACES = np.array([0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363])
 _WEIGHTS = np.array([0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763])
 _APART = 1.75  # half-widths of a panel that its centre keeps from each pole; 2 for single values, which need a bound

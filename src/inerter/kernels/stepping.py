@@ -301,7 +301,14 @@ def advance_motion(inertia: Array, moved: Array, h: float, known: Array, at: int
         known[i] += h * known[at + i]
 
 
-@kernel("time stepping")
+def _types(types: Any) -> Any:
+    vector, matrix, numbers = types.float64[::1], types.float64[:, ::1], types.int64[::1]
+    step = types.NamedTuple([*[matrix] * 6, types.float64, matrix, matrix], Step)
+    scratch = types.NamedTuple([vector, vector, matrix, numbers] * 2, Scratch)
+    return step, matrix, types.NamedUniTuple(types.int64, 3, Stretch), vector, matrix, scratch, matrix
+
+
+@kernel("time stepping", _types)
 def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array, scratch: Scratch, out: Array) -> Any:
     """Step through `inputs`, a row each; `known` and `law` are kept for the next ones. Samples are added to `out`.
 

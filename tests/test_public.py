@@ -11,7 +11,7 @@ import pytest
 import inerter as it
 from inerter import _OLD, errors
 from inerter.cli.main import app
-from inerter.renamed import renamed_keywords
+from inerter.deprecation import renamed_keywords
 
 ROOT = Path(__file__).parents[1]
 

@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from inerter.renamed import warn_renamed
+from inerter.deprecation import warn_renamed
 
 
 def _homes() -> dict[str, str]:

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from inerter.renamed import warn_renamed
+from inerter.deprecation import warn_renamed
 
 
 class InerterError(Exception):

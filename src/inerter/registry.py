@@ -15,8 +15,8 @@ from threading import RLock
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from inerter.deprecation import warn_renamed
 from inerter.errors import RegistryError, UnknownEntryError
-from inerter.renamed import warn_renamed
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -201,9 +201,9 @@ def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
         study_text('indices = ["J1"]\noptimise = "norm"', elements=elements, layouts='S = "k | c - b"'), "utf-8"
     )
     slow = (
-        "import sys, time\nfrom inerter.work import progress\nbefore = progress.evaluated\n"
+        "import sys, time\nfrom inerter.work import progress\nbefore = progress.count_evaluation\n"
         "import inerter.optimisation.local as local\n"
-        "local.evaluated = lambda: (time.sleep(0.02), before())\n"
+        "local.count_evaluation = lambda: (time.sleep(0.02), before())\n"
         "from inerter.cli.main import main\nsys.exit(main())"
     )
     between, lines = gaps([sys.executable, "-c", slow, "run", str(path), "-o", str(tmp_path / "out"), "-j", "1"])

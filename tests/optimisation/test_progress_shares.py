@@ -32,7 +32,7 @@ class Steps(list):
     def tell(self, step: ProgressStep) -> None:
         self.append(step)
 
-    def evaluated(self) -> None:
+    def count_evaluation(self) -> None:
         pass
 
 

@@ -13,9 +13,9 @@ from study_text import study_text
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.study.journal import journal_of, outcomes
-from inerter.work import kept
-from inerter.work.kept import Kept
-from inerter.work.progress import evaluated
+from inerter.work import checkpoints
+from inerter.work.checkpoints import Checkpoint
+from inerter.work.progress import count_evaluation
 
 FREE = 'k = "20 kN/m"\nc = { from = "300 N s/m", to = "8 kN s/m" }\nb = { from = "1 kg", to = "400 kg" }'
 LIMIT = "\n[study.subject_to]\ndynamic-load-coefficient = { at_most = 0.4 }"
@@ -40,12 +40,12 @@ def counted(stop_at: int | None = None) -> Iterator[list[int]]:
         count[0] += 1
         if count[0] == stop_at:
             raise KeyboardInterrupt
-        evaluated()
+        count_evaluation()
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept, "_SELDOM", 0.0)
+        patch.setattr(checkpoints, "_SELDOM", 0.0)
         for module in ("minimax_level", "local"):
-            patch.setattr(f"inerter.optimisation.{module}.evaluated", count_one)
+            patch.setattr(f"inerter.optimisation.{module}.count_evaluation", count_one)
         yield count
 
 
@@ -70,7 +70,7 @@ def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, 
             it.run_study(study, tmp_path / "out", resume=done > 0 or (tmp_path / "out").exists())
         done += stop - 1
     journal = journal_of(study, tmp_path / "out" / "journal.jsonl")
-    rows = sum(len(one.rows) for one in outcomes(journal) if isinstance(one, Kept))
+    rows = sum(len(one.rows) for one in outcomes(journal) if isinstance(one, Checkpoint))
     assert rows > 0
     with counted() as again:
         result = it.run_study(study, tmp_path / "out", resume=True)
@@ -86,7 +86,7 @@ def test_short_designs_keep_nothing_but_their_outcome(tmp_path: Path) -> None:
     path.write_text(STUDIES["smooth"], encoding="utf-8")
     study = it.load_study(path)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept, "_SELDOM", 1e9)
+        patch.setattr(checkpoints, "_SELDOM", 1e9)
         it.run_study(study, tmp_path / "out")
     assert (tmp_path / "out" / "journal.jsonl").read_bytes().count(b"\n") == 3
 

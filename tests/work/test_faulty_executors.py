@@ -20,7 +20,7 @@ from inerter.cli.main import call
 from inerter.errors import DesignError, InerterError, WorkError
 from inerter.work.pieces import ChunkResult, Piece
 from inerter.work.pool import Pool
-from inerter.work.running import mapped, running_on
+from inerter.work.running import map_items, running_on
 
 STUDY = study_text(
     'indices = ["J1", "J3"]\noptimise = "norm"\nbudgets = ["b"]\nsweep = { k = ["10 kN/m", "20 kN/m", "30 kN/m"] }',
@@ -173,7 +173,7 @@ def test_a_run_ends_right_or_with_a_sentence_and_nothing_is_lost(
 def test_values_are_right_or_there_is_a_sentence(fault: Callable[..., Any], seed: int) -> None:
     items = [float(number) for number in range(200)]
     with Pool(executor=Faulty(fault, now_and_then(seed))) as pool, running_on(pool):
-        found, error = ended(lambda: mapped(np.sqrt, items))
+        found, error = ended(lambda: map_items(np.sqrt, items))
     assert found == [np.sqrt(item) for item in items] or (
         found is None and re.fullmatch(r"[^\n]{20,600}\.", str(error))
     )

@@ -25,7 +25,7 @@ from inerter.work import cluster
 from inerter.work.pieces import WORTH, ChunkResult, Cutter
 from inerter.work.pool import KILLS, Pool, _Start, worker_pool
 from inerter.work.processes import Processes, is_started
-from inerter.work.running import mapped, running_on
+from inerter.work.running import map_items, running_on
 
 PROCESS = "__import__('os').getpid()"  # worked on by `eval`, which every process has
 SLEEP = "__import__('time').sleep(600)"  # an end that is waited for
@@ -112,7 +112,7 @@ def test_the_first_are_worked_on_here_until_processes_would_be_there() -> None:
 
 def test_results_keep_the_order_of_their_items_if_that_is_asked_for() -> None:
     with Processes(2) as processes, running_on(processes):
-        assert mapped(abs, range(-300, 0)) == list(range(300, 0, -1))
+        assert map_items(abs, range(-300, 0)) == list(range(300, 0, -1))
 
 
 def test_a_killed_process_costs_its_pieces_only(tmp_path: Path) -> None:

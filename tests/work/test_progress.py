@@ -14,15 +14,15 @@ import pytest
 
 import inerter as it
 from inerter.kernels.decorators import kernel
-from inerter.work import kept, progress
+from inerter.work import checkpoints, progress
 from inerter.work.forwarding import receive
 from inerter.work.pool import Pool
 
 SILENCE = 2.0  # seconds
 MODULE = "__import__('inerter.work.progress', fromlist=['x'])"
-KEPT = "__import__('inerter.work.kept', fromlist=['x'])"
+CHECKPOINTS = "__import__('inerter.work.checkpoints', fromlist=['x'])"
 REPORT = f"{MODULE}.report('rows', 3, 8, best=1.5)"
-KEEP = f"{KEPT}.keep({KEPT}.Kept('a case', 2, [['mark', 1.0]]))"
+KEEP = f"{CHECKPOINTS}.forward_checkpoint({CHECKPOINTS}.Checkpoint('a case', 2, [['mark', 1.0]]))"
 
 
 @contextmanager
@@ -74,13 +74,13 @@ def test_nor_is_work_that_waits() -> None:
 
 def slowly(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
     """Searches whose every evaluation takes some time."""
-    before = progress.evaluated
+    before = progress.count_evaluation
 
     def slow() -> None:
         time.sleep(seconds)
         before()
 
-    monkeypatch.setattr("inerter.optimisation.minimax_level.evaluated", slow)
+    monkeypatch.setattr("inerter.optimisation.minimax_level.count_evaluation", slow)
 
 
 def test_progress_moves_within_a_search(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -151,13 +151,13 @@ def test_compiling_is_told_with_a_warning_where_nobody_listens(
 
 @pytest.mark.campaign
 def test_own_processes_pass_on_what_they_tell_and_keep() -> None:
-    rows: list[kept.Kept] = []
+    rows: list[checkpoints.Checkpoint] = []
     items = [REPORT, KEEP, "__import__('time').sleep(1.0)"] * 2
-    with receiving_steps() as steps, kept.kept_by(rows.append), Pool(2) as pool:
+    with receiving_steps() as steps, checkpoints.storing_checkpoints(rows.append), Pool(2) as pool:
         pool.begin(int)
         list(pool.spread(eval, items))
     assert next(step for _, step in steps if step.what == "rows").best == 1.5
-    assert rows == [kept.Kept("a case", 2, [["mark", 1.0]])] * 2
+    assert rows == [checkpoints.Checkpoint("a case", 2, [["mark", 1.0]])] * 2
 
 
 def test_an_abandoned_pool_ends_whatever_its_processes_tell() -> None:
@@ -171,7 +171,7 @@ def test_an_abandoned_pool_ends_whatever_its_processes_tell() -> None:
 
 def test_what_another_process_tells_is_taken_by_nobody_if_nobody_listens() -> None:
     receive(it.ProgressStep("rows"))
-    receive(kept.Kept("a case", 0, []))
+    receive(checkpoints.Checkpoint("a case", 0, []))
 
 
 def test_threads_that_tick_end() -> None:
@@ -194,21 +194,25 @@ def test_parts_are_resumed_from_any_prefix_and_only_for_the_same_beginning(seed:
             computed.append(begin)
             return [float(begin[0]), -np.inf, 0.1 + begin[1]]
 
-        return [list(kept.resumed(begin, lambda begin=begin: part(begin))) for begin in begins]
+        return [list(checkpoints.resume_or_compute(begin, lambda begin=begin: part(begin))) for begin in begins]
 
-    whole, written = work(begins), list[kept.Kept]()
+    whole, written = work(begins), list[checkpoints.Checkpoint]()
     stop = int(random.integers(1, 12))
-    with kept.kept_by(written.append), kept.resuming("work", {}), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(kept, "_SELDOM", -1.0)
+    with (
+        checkpoints.storing_checkpoints(written.append),
+        checkpoints.resuming("work", {}),
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setattr(checkpoints, "_SELDOM", -1.0)
         work(begins[:stop])
-    rows = kept.joined(written)
+    rows = checkpoints.join_checkpoints(written)
     assert len(rows) == stop
     computed.clear()
-    with kept.resuming("work", {"work": rows}):
+    with checkpoints.resuming("work", {"work": rows}):
         assert work(begins) == whole
     assert computed == begins[stop:]
     computed.clear()
     other = [*begins[: stop - 1], b"another!", *begins[stop:]]
-    with kept.resuming("work", {"work": rows}):
+    with checkpoints.resuming("work", {"work": rows}):
         work(other)
     assert computed == other[stop - 1 :]

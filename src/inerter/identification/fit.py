@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, Status
 from inerter.identification.experiment import Experiment
 from inerter.identification.identifiability import Identifiability
@@ -17,7 +18,6 @@ from inerter.networks.elements import Network
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.remedy import in_python
-from inerter.renamed import RenamedAttribute
 
 Matrix = NDArray[np.float64]
 

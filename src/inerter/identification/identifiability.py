@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from inerter.deprecation import RenamedAttribute
 from inerter.networks.elements.roles import LinearRole
-from inerter.renamed import RenamedAttribute
 from inerter.units import format_quantity
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import IdentificationError, UnitError
 from inerter.records.uncertain import Uncertain, parse_uncertain
-from inerter.renamed import RenamedAttribute
 from inerter.validation import is_number
 
 POINTS = 128  # starts of a search

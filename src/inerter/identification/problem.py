@@ -22,7 +22,7 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, with_element_values
 from inerter.vehicle.rig import Rig
 from inerter.work.pieces import Item, Result
-from inerter.work.running import mapped, over_threads
+from inerter.work.running import map_items, over_threads
 
 Matrix = NDArray[np.float64]
 _FEWEST = 100  # samples that are compared
@@ -157,7 +157,7 @@ def map_problems(
     The simulations of any process count for the records of the problem.
     """
     found = []
-    answers = mapped(partial(_run_on_problem, work), calls, otherwise, progress)
+    answers = map_items(partial(_run_on_problem, work), calls, otherwise, progress)
     for (problem, _), (result, counts) in zip(calls, answers, strict=True):
         for experiment, count in zip(problem.experiments, counts, strict=True):
             experiment.tally.add(count)

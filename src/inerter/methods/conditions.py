@@ -24,7 +24,7 @@ from inerter.signals.road import Road
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
-from inerter.work.running import mapped
+from inerter.work.running import map_items
 
 Array = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ class OverConditions(OfIndex):
 
     def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The value for a vehicle without free values; what was left out anywhere is among the notes."""
-        found = mapped(partial(_estimate_case, method), self.cases(vehicle))
+        found = map_items(partial(_estimate_case, method), self.cases(vehicle))
         status = worst_of(one.status for one in found)
         notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
         if self.worst:

@@ -32,7 +32,7 @@ from inerter.systems.outputs import check_bounded, check_inputs, find, main_outp
 from inerter.vehicle.mechanism import Mechanism, check_known
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 from inerter.work.pool import Pool
-from inerter.work.running import mapped, running_on
+from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]
 _TOGETHER = 64  # designs that are valued in one call where others take some too
@@ -219,7 +219,7 @@ def evaluate_many(
         _prepare(pool, vehicle, several, method)
         rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
         parts = np.array_split(rows, -(-len(rows) // _TOGETHER)) if len(rows) else [rows]
-        return np.concatenate(mapped(partial(_estimate_rows, vehicle, several, tuple(points), method), parts))
+        return np.concatenate(map_items(partial(_estimate_rows, vehicle, several, tuple(points), method), parts))
 
 
 def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[IndexLike], method: Method) -> None:

@@ -40,7 +40,7 @@ from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.piecewise import PiecewiseSystem
-from inerter.work.running import mapped
+from inerter.work.running import map_items
 
 Array = NDArray[np.float64]
 PROMISE = 0.01  # relative error of a mean that is ok, sampling and what stands in for its excitation apart
@@ -86,7 +86,7 @@ class OnRoads:
         """Results of the realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
-        return mapped(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
+        return map_items(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
 
 
 @dataclass(frozen=True, eq=False)

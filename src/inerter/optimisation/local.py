@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.minimax_level import LogRows, bounded_rows, lowest_level
-from inerter.work.progress import evaluated, report
+from inerter.work.progress import count_evaluation, report
 
 Array = NDArray[np.float64]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
@@ -40,7 +40,7 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
     def logarithm(x: Array) -> tuple[float, Array]:
         point = np.clip(np.exp(x), lower, upper)  # exp(log(bound)) may miss the bound by rounding
         value, gradient = objective.value_and_gradient(point)
-        evaluated()
+        count_evaluation()
         if not (np.isfinite(value) and value > 0.0 and np.all(np.isfinite(gradient))):
             return -_HIDDEN, np.zeros_like(x)
         return float(np.log(value)), gradient * point / value

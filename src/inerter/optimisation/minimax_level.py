@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.work.progress import evaluated
+from inerter.work.progress import count_evaluation
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def lowest_level(
         key = z[:-1].tobytes()
         if key not in memory:
             memory[key] = rows(np.clip(np.exp(z[:-1]), lower, upper))
-            evaluated()
+            count_evaluation()
         return memory[key]
 
     first = np.append(np.log(start), 0.0)

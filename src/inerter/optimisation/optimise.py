@@ -12,6 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
@@ -26,9 +27,8 @@ from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smoot
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
 from inerter.optimisation.threads import one_blas_thread
-from inerter.renamed import RenamedAttribute
 from inerter.vehicle.vehicle import Vehicle
-from inerter.work.kept import resumed
+from inerter.work.checkpoints import resume_or_compute
 from inerter.work.progress import report, within
 from inerter.work.running import running_on
 
@@ -339,7 +339,7 @@ def _starting_points(
         others = [i for i in order if np.isfinite(values[i]) and i not in known]
         return (minima + others)[:starts]
 
-    return [points[int(i)] for i in resumed(points[:starts].tobytes(), best_first)], len(points)
+    return [points[int(i)] for i in resume_or_compute(points[:starts].tobytes(), best_first)], len(points)
 
 
 def _quasi_random_points(count: int, size: int, seed: int) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.optimisation.local import LocalOptimum
-from inerter.work.kept import resumed
+from inerter.work.checkpoints import resume_or_compute
 from inerter.work.progress import report
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ def resumable_search(start: Array, search: Callable[[], LocalOptimum]) -> LocalO
         found = search()
         return [found.value, found.evaluations, found.excess, *found.point]
 
-    value, evaluations, excess, *point = resumed(start.tobytes(), numbers)
+    value, evaluations, excess, *point = resume_or_compute(start.tobytes(), numbers)
     return LocalOptimum(np.array(point), value, int(evaluations), excess)
 
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import RecordError
 from inerter.records.remedy import Action, Remedy
-from inerter.renamed import RenamedAttribute
 from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]

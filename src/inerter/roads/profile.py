@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import RecordError, SignalError
-from inerter.renamed import RenamedAttribute
 from inerter.signals.arguments import positive_number
 from inerter.signals.signal import SampledSignal, Signal
 from inerter.validation import is_number

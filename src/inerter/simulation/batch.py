@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import renamed_keywords
 from inerter.errors import SimulationError, Status
 from inerter.kernels.prepare import prepare_on
-from inerter.renamed import renamed_keywords
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.initial_state import ending_of, initial_state
@@ -35,7 +35,7 @@ from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
-from inerter.work.running import mapped, running_on, threads_here
+from inerter.work.running import map_items, running_on, threads_here
 
 if TYPE_CHECKING:
     import xarray
@@ -168,7 +168,7 @@ def _run_on_executor(
         for i in firsts
         for j in range(count)
     ]
-    found = mapped(partial(_run_designs, same), items, progress=progress)
+    found = map_items(partial(_run_designs, same), items, progress=progress)
     rows = [found[k * count : (k + 1) * count] for k in range(len(firsts))]
     return Batch(
         found[0].outputs,

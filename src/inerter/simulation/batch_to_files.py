@@ -18,7 +18,7 @@ from inerter.simulation.simulate import simulate
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
-from inerter.work.running import mapped, running_on
+from inerter.work.running import map_items, running_on
 
 
 def simulate_to_files(
@@ -62,7 +62,7 @@ def simulate_to_files(
     ]
     with running_on(executor) as pool:
         prepare_on(pool, event_driven.KERNELS)
-        mapped(partial(_write, names, same), items, progress=progress)
+        map_items(partial(_write, names, same), items, progress=progress)
     missing = next((file for row in files for file in row if not file.is_file()), None)
     if missing is not None:
         raise WorkError(f"{str(missing)!r} was written where this process cannot see it: name a folder that all share.")

@@ -14,8 +14,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.atomic_io import export
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import MechanismError, SimulationError, Status
-from inerter.renamed import RenamedAttribute
 from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads

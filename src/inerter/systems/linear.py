@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import LinearSystemError
-from inerter.renamed import RenamedAttribute
 from inerter.systems.polynomials import TransferFunctions
 
 Matrix = NDArray[np.float64]

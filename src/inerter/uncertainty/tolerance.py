@@ -13,12 +13,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.optimisation.threads import one_blas_thread
-from inerter.renamed import RenamedAttribute
 from inerter.uncertainty.distributions import (
     Scatter,
     elements_scatter,
@@ -30,7 +30,7 @@ from inerter.uncertainty.distributions import (
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
-from inerter.work.running import mapped, running_on
+from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]
 _MOST_CORNERS = 10  # values with tolerances up to which all extremes are combined
@@ -237,7 +237,7 @@ def evaluate_sample(design: Vehicle, index: IndexLike, method: Method, scatter: 
         points = dict(zip(own, table.T, strict=True))
         return evaluate_many(with_free_scatter(design, scatter), index, points, method)[:, 0]
     rows = [dict(zip(own, row, strict=True)) for row in table.tolist()]
-    return np.array(mapped(partial(_value, design, index, method), rows))
+    return np.array(map_items(partial(_value, design, index, method), rows))
 
 
 def _value(design: Vehicle, index: IndexLike, method: Method, values: Mapping[str, float]) -> float:

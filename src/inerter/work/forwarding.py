@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 
-from inerter.work.kept import Kept, keep, kept_by
+from inerter.work.checkpoints import Checkpoint, forward_checkpoint, storing_checkpoints
 from inerter.work.progress import ProgressStep, listener_here, receiving_steps
 
 _OFTEN = 0.25  # seconds between two steps of one process
@@ -34,7 +34,7 @@ class _Sender:
             self.told, self.sent = time.monotonic(), not step.over
             self.send(step)
 
-    def evaluated(self) -> None:
+    def count_evaluation(self) -> None:
         self.evaluations += 1
         if time.monotonic() - self.told >= _OFTEN:
             self.tell(replace(self.step, evaluations=self.evaluations))
@@ -51,14 +51,14 @@ def forwarding() -> Iterator[None]:
     if not _SEND:
         yield
         return
-    with receiving_steps(_Sender(_send)), kept_by(_send):
+    with receiving_steps(_Sender(_send)), storing_checkpoints(_send):
         yield
 
 
 def receive(message: object) -> None:
     """Pass a message of a worker process to the listener, or keep its rows."""
-    if isinstance(message, Kept):
-        keep(message)
+    if isinstance(message, Checkpoint):
+        forward_checkpoint(message)
         return
     listener = listener_here()
     if isinstance(message, ProgressStep) and listener is not None:

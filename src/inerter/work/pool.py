@@ -152,7 +152,7 @@ class Pool:
 
     def _receive(self) -> None:
         """Pass on the messages of worker processes."""
-        for message in self._own.told() if self._own is not None else ():
+        for message in self._own.messages() if self._own is not None else ():
             receive(message)
 
     def _submit(

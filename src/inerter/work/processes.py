@@ -66,7 +66,7 @@ class Processes(Executor):
         self._reader: threading.Thread | None = None
         self._over = threading.Event()
 
-    def told(self) -> Iterator[Any]:
+    def messages(self) -> Iterator[Any]:
         """Messages of the processes since the last call."""
         while self._told:
             yield self._told.popleft()

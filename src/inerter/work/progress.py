@@ -55,7 +55,7 @@ class Hearer(Protocol):
         """Receive a step."""
         ...
 
-    def evaluated(self) -> None:
+    def count_evaluation(self) -> None:
         """Take one more evaluation of the search under way."""
         ...
 
@@ -88,7 +88,7 @@ class Listener:
             if is_new or time.monotonic() - self._told >= _OFTEN:
                 self._pass_on()
 
-    def evaluated(self) -> None:
+    def count_evaluation(self) -> None:
         """Take one more evaluation of the search under way."""
         self._evaluations += 1
         if time.monotonic() - self._told >= _OFTEN:
@@ -207,11 +207,11 @@ def counter(what: str, total: int) -> Callable[[float], None]:
     return lambda part: report(what, round(part * total), total)
 
 
-def evaluated() -> None:
+def count_evaluation() -> None:
     """Report one more evaluation of a search."""
     listener = _LISTENER.get()
     if listener is not None:
-        listener.evaluated()
+        listener.count_evaluation()
 
 
 @contextmanager

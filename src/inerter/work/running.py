@@ -47,7 +47,7 @@ def threads_here() -> int:
     return THREADS.get() or os.cpu_count() or 1
 
 
-def mapped(
+def map_items(
     work: Callable[[Item], Result],
     items: Sequence[Item],
     otherwise: Callable[[Callable[[Item], Result], Sequence[Item]], Iterable[Result]] = map,
@@ -65,7 +65,7 @@ def mapped(
             if progress is not None:
                 progress(len(found) / len(items))
         return list(found.values())
-    for number, result in pool.spread(_Numbered(work), list(enumerate(items))):
+    for number, result in pool.spread(_NumberedWork(work), list(enumerate(items))):
         found[number] = result
         if progress is not None:
             progress(len(found) / len(items))
@@ -75,7 +75,7 @@ def mapped(
 
 
 @dataclass(frozen=True)
-class _Numbered(Generic[Item, Result]):
+class _NumberedWork(Generic[Item, Result]):
     """Work on an item that has a number, which its result keeps."""
 
     work: Callable[[Item], Result]

@@ -12,8 +12,8 @@ from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import answer_of
+from inerter.work.checkpoints import Checkpoint
 from inerter.work.journal import Journal
-from inerter.work.kept import Kept
 
 NAME = "journal.jsonl"
 
@@ -24,13 +24,13 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
 
 
-def results_of(journal: Journal) -> Iterator[PartResult | Kept]:
+def results_of(journal: Journal) -> Iterator[PartResult | Checkpoint]:
     """Results of finished parts, and the state of unfinished searches, one at a time.
 
     Raises `StudyError` for an entry that is none of a study.
     """
     for entry in journal.read():
         try:
-            yield answer_of(entry) if "task" in entry else Kept(**entry) if "rows" in entry else Outcome(**entry)
+            yield answer_of(entry) if "task" in entry else Checkpoint(**entry) if "rows" in entry else Outcome(**entry)
         except TypeError:
             raise StudyError(f"{journal.path}: not the journal of a study. Choose another folder with -o.") from None

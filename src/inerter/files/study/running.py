@@ -31,8 +31,8 @@ from inerter.files.study.summary import write_summary
 from inerter.files.study.task_rows import TASKS
 from inerter.files.study.tasks import Answer, Designs, by_task, journal_entry, parts_of
 from inerter.kernels.prepare import ProgressCallback, prepare_on
+from inerter.work.checkpoints import Checkpoint, Row, join_checkpoints, resuming, storing_checkpoints
 from inerter.work.journal import Journal
-from inerter.work.kept import Kept, Row, joined, kept_by, resuming
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
@@ -191,7 +191,7 @@ def _compute_outcomes(
     with (
         logging_steps(),
         journal.appending(results.resume) as append,
-        kept_by(lambda kept: append(kept.to_json())),
+        storing_checkpoints(lambda kept: append(kept.to_json())),
     ):
         of_designs = _results(study, {}, pending, pool, known)
         of_tasks = _results(study, found.designs, (part for part in parts if part not in done), pool, known)
@@ -209,9 +209,9 @@ def _compute_outcomes(
 def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
     """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
     done: _Done = {}
-    searches: dict[str, list[Kept]] = {}
+    searches: dict[str, list[Checkpoint]] = {}
     for one in journals.results_of(journal):
-        if isinstance(one, Kept):
+        if isinstance(one, Checkpoint):
             searches.setdefault(one.name, []).append(one)
             continue
         searches.pop(one.name, None)
@@ -219,7 +219,7 @@ def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
             found.enter(one)
         elif isinstance(one, Answer):
             done[one.part] = one
-    return done, {name: joined(several) for name, several in searches.items()}
+    return done, {name: join_checkpoints(several) for name, several in searches.items()}
 
 
 def _results(

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import NetworkError, StudyError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import keyed_dataclass
@@ -29,7 +30,6 @@ from inerter.methods.method import Method
 from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
-from inerter.renamed import RenamedAttribute
 from inerter.signals.road import Road
 from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
 from inerter.uncertainty.robust_design import Quantile

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import NetworkError
-from inerter.renamed import RenamedAttribute
 from inerter.validation import is_number
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")

@@ -19,7 +19,7 @@ _SELDOM = 1.0  # seconds between two writes: short tasks write nothing
 
 
 @dataclass(frozen=True)
-class Kept:
+class Checkpoint:
     """Rows of the task of that name, of which the first has the number `first`."""
 
     name: str
@@ -27,7 +27,7 @@ class Kept:
     rows: list[Row]
 
     def to_json(self) -> dict[str, Any]:
-        """Dictionary for JSON, the inverse of `Kept(**...)`."""
+        """Dictionary for JSON, the inverse of `Checkpoint(**...)`."""
         return dict(vars(self))
 
 
@@ -35,7 +35,7 @@ class Kept:
 class _Memory:
     name: str
     known: Sequence[Row]
-    keep: Callable[[Kept], object]
+    keep: Callable[[Checkpoint], object]
     number: int = 0  # of the next part
     first: int = 0  # number of the first of what is new
     fresh: list[Row] = field(default_factory=list)
@@ -63,15 +63,15 @@ class _Memory:
         """Hand over new rows."""
         fresh, self.fresh, self.written = self.fresh, [], time.monotonic()
         if fresh:
-            self.keep(Kept(self.name, self.first, fresh))
+            self.keep(Checkpoint(self.name, self.first, fresh))
 
 
 _MEMORY: ContextVar[_Memory | None] = ContextVar("memory", default=None)
-_KEEP: ContextVar[Callable[[Kept], object] | None] = ContextVar("keep", default=None)
+_KEEP: ContextVar[Callable[[Checkpoint], object] | None] = ContextVar("keep", default=None)
 
 
 @contextmanager
-def kept_by(keep: Callable[[Kept], object] | None) -> Iterator[None]:
+def storing_checkpoints(keep: Callable[[Checkpoint], object] | None) -> Iterator[None]:
     """Hand rows kept by the work in this block to a function."""
     before = _KEEP.set(keep)
     try:
@@ -80,7 +80,7 @@ def kept_by(keep: Callable[[Kept], object] | None) -> Iterator[None]:
         _KEEP.reset(before)
 
 
-def keep(kept: Kept) -> None:
+def forward_checkpoint(kept: Checkpoint) -> None:
     """Hand over rows kept by other processes."""
     here = _KEEP.get()
     if here is not None:
@@ -101,13 +101,13 @@ def resuming(name: str, known: Mapping[str, Sequence[Row]]) -> Iterator[None]:
         _MEMORY.reset(before)
 
 
-def resumed(begin: bytes, compute: Callable[[], Sequence[float]]) -> Sequence[float]:
+def resume_or_compute(begin: bytes, compute: Callable[[], Sequence[float]]) -> Sequence[float]:
     """Numbers of the part with input `begin`: kept ones, or computed and kept."""
     memory = _MEMORY.get()
     return compute() if memory is None else memory.row(begin, compute)
 
 
-def joined(several: Sequence[Kept]) -> list[Row]:
+def join_checkpoints(several: Sequence[Checkpoint]) -> list[Row]:
     """All rows of one task, in order."""
     rows: list[Row] = []
     for kept in several:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -157,3 +159,10 @@ def test_an_old_keyword_works_and_tells_the_new_one() -> None:
     assert warned[0].filename == __file__
     with pytest.raises(TypeError, match="both 'output_every' and its old name 'every'"):
         sampled(5, every=2, output_every=2)  # type: ignore[call-arg]
+
+
+def test_old_names_are_no_attributes_of_a_class() -> None:
+    """Tools that list the members of a result warn of nothing."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert "n_starts" in {name for name, _ in inspect.getmembers(it.Optimum)} | set(it.Optimum.__annotations__)

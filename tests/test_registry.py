@@ -389,13 +389,24 @@ def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
         words = "older guesses"
         sees = it.NonlinearitySupport.BOTH
 
+    class Mixin:
+        sees = it.NonlinearitySupport.BOTH
+
+    @dataclass(frozen=True)
+    class Child(Mixin, it.Norm):
+        name = "child"
+
     try:
         with pytest.warns(DeprecationWarning, match="is now") as said:
             it.METHODS.add(Older)
         assert "`Older.sees` is now `nonlinearity_support`" in str(said[1].message)
         assert (words_of("older"), nonlinearities_of("older")) == ("older guesses", it.NonlinearitySupport.BOTH)
+        with pytest.warns(DeprecationWarning, match="is now"):
+            it.METHODS.add(Child)
+        assert nonlinearities_of("child") is it.NonlinearitySupport.BOTH
     finally:
         it.METHODS.remove(Older)
+        it.METHODS.remove(Child)
 
 
 def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:

@@ -1,4 +1,7 @@
-"""Old public names, kept for one version: each works as the new one does, with a `DeprecationWarning`."""
+"""Old public names, kept for one version: reading one gives the new one, with a `DeprecationWarning`.
+
+Keywords of constructors are not kept: results are constructed by the package alone.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,10 @@ class RenamedAttribute:
         self.old = name
 
     def __get__(self, instance: object, owner: type) -> Any:
+        if instance is None:  # as other descriptors
+            return self
         warn_renamed(self.old, self.new)
-        return getattr(owner if instance is None else instance, self.new)
+        return getattr(instance, self.new)
 
 
 def renamed_keywords(**new_names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:

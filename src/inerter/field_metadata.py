@@ -93,7 +93,7 @@ def choice_field(options: tuple[str, ...], sentence: str, *, example: str = "", 
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
-    ...     side: str = dataclasses.field(default="left", metadata=choice(("left", "right"), "Where it is."))
+    ...     side: str = dataclasses.field(default="left", metadata=choice_field(("left", "right"), "Where it is."))
     >>> choices_of(Wheel)
     (TextChoice(name='side', options=('left', 'right'), sentence='Where it is.', example='left',
     key='side', needed=False),)
@@ -109,7 +109,7 @@ def typed_field(form: str, sentence: str, example: str, *, key: str = "") -> Map
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Heard:
-    ...     at: str = dataclasses.field(metadata=formed("output", "Where.", '"sprung_velocity"'))
+    ...     at: str = dataclasses.field(metadata=typed_field("output", "Where.", '"sprung_velocity"'))
     >>> typed_fields_of(Heard)
     (TypedField(name='at', form='output', sentence='Where.', example='"sprung_velocity"', key='at', needed=True),)
     """

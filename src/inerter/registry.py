@@ -52,7 +52,8 @@ class Registry(Mapping[str, Row], Generic[Row]):
         Raises `RegistryError` if another entry has its key, or if an attribute is missing.
         """
         for old, new in self._renamed.items():
-            if old in vars(row) and new not in vars(row):
+            nearest = next((one for one in _bases(row) if {old, new} & vars(one).keys()), None)
+            if nearest is not None and new not in vars(nearest):
                 warn_renamed(f"{getattr(row, '__name__', self._what)}.{old}", new)
                 setattr(row, new, getattr(row, old))
         missing = [name for name in (self._key, *self._required) if not hasattr(row, name)]
@@ -100,6 +101,11 @@ class Registry(Mapping[str, Row], Generic[Row]):
 
     def __repr__(self) -> str:
         return f"<{self._what}: {', '.join(self)}>"
+
+
+def _bases(row: object) -> tuple[object, ...]:
+    """The classes in which attributes of a class are looked up, in that order; an instance stands for itself."""
+    return row.__mro__ if isinstance(row, type) else (row,)
 
 
 def cache_until_registration(make: Callable[[], Made]) -> Callable[[], Made]:

@@ -115,6 +115,25 @@ def test_numbers_have_places_units_and_words_and_take_others():
             assert changed - {place.rpartition(".")[0]} == {place}  # a bound is a part of its range
 
 
+def test_a_number_that_is_put_must_be_one_that_a_file_may_have():
+    def light(bush):
+        if bush.loss > 0.5:
+            raise ValueError("a loss angle of at most 0.5 rad")
+        return bush
+
+    codec = table_of(Bush, check=light)
+    bush, _ = load_tables(codec, {"stiffness": "1 kN/m"})
+    assert codec.put(bush, ("loss",), 0.4).loss == 0.4
+    assert load_tables(codec, {"stiffness": "1 kN/m", "loss": "0.6 rad"})[1]
+    with pytest.raises(ValueError, match=r"at most 0\.5 rad"):
+        codec.put(bush, ("loss",), 0.6)
+
+
+def test_a_default_in_the_schema_is_written_as_in_a_file():
+    default = MOUNTING.schema()["properties"]["bushes"]["additionalProperties"]["properties"]["loss"]["default"]
+    assert not_negative("rad").load(default, None) == 0.0
+
+
 def test_every_key_is_in_the_schema_which_takes_the_whole():
     schema = MOUNTING.schema()
     Draft202012Validator.check_schema(schema)

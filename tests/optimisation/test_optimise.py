@@ -9,6 +9,7 @@ import scipy.optimize
 from campaigns import sampled
 from strategies import paper_quarter_car, random_half_car, random_quarter_car
 
+import inerter as it
 from inerter import (
     Damper,
     Inerter,
@@ -217,3 +218,10 @@ def test_a_question_the_car_cannot_answer_is_refused_before_any_search():
     bare = type(mechanism)(mechanism.coordinates, mechanism.struts, mechanism.tyres, mechanism.roads)
     with pytest.raises(PerformanceIndexError, match=r"measures\.comfort"):
         optimise(bare, J1, Norm())
+
+
+def test_as_many_starts_are_searched_as_are_asked_for():
+    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(500.0, 5e4)))
+    assert it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm(), starts=150).n_starts == 150
+    with pytest.raises(it.InerterError, match="starts"):
+        it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm(), starts=True)

@@ -12,7 +12,7 @@ from study_text import study_text
 
 import inerter as it
 from inerter.cli.main import call
-from inerter.files.study.journal import journal_of, outcomes
+from inerter.files.study.journal import journal_of, results_of
 from inerter.work import checkpoints
 from inerter.work.checkpoints import Checkpoint
 from inerter.work.progress import count_evaluation
@@ -70,7 +70,7 @@ def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, 
             it.run_study(study, tmp_path / "out", resume=done > 0 or (tmp_path / "out").exists())
         done += stop - 1
     journal = journal_of(study, tmp_path / "out" / "journal.jsonl")
-    rows = sum(len(one.rows) for one in outcomes(journal) if isinstance(one, Checkpoint))
+    rows = sum(len(one.rows) for one in results_of(journal) if isinstance(one, Checkpoint))
     assert rows > 0
     with counted() as again:
         result = it.run_study(study, tmp_path / "out", resume=True)

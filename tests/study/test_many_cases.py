@@ -29,7 +29,7 @@ from inerter.figures.curves import thinned_band
 from inerter.figures.labels import one_method
 from inerter.files.study import checking, running, summary
 from inerter.files.study.cases import Case, Cases, Outcome, cases, portable
-from inerter.files.study.journal import journal_of, outcomes
+from inerter.files.study.journal import journal_of, results_of
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import DatasetBuilder, dataset
 from inerter.files.study.running import run_study
@@ -218,7 +218,7 @@ def test_a_case_takes_so_many_bytes_and_no_more(tmp_path: Path, swift: object, p
 
         def read(study: Study = study, journal: Journal = journal) -> None:
             gathered = DatasetBuilder(study)
-            for outcome in outcomes(journal):
+            for outcome in results_of(journal):
                 assert isinstance(outcome, Outcome)
                 gathered.enter(outcome)
 

@@ -20,9 +20,9 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.study.cases import Outcome, cases
 from inerter.files.study.checking import check_study
-from inerter.files.study.journal import journal_of, outcomes
+from inerter.files.study.journal import journal_of, results_of
 from inerter.files.study.loading import load_study
-from inerter.files.study.running import result_names, run_study
+from inerter.files.study.running import csv_text, result_names, run_study
 from inerter.methods.method import evaluate
 
 SWEEP = """
@@ -62,8 +62,8 @@ def lines(journal: Path) -> list[str]:
 
 HELD = """
 from inerter.files.study import running
-left, run_case = iter(range({count})), running.run_case
-running.run_case = lambda *given, **more: time.sleep(600.0) if next(left, None) is None else run_case(*given, **more)
+left, run_part = iter(range({count})), running.run_part
+running.run_part = lambda *given, **more: time.sleep(600.0) if next(left, None) is None else run_part(*given, **more)
 """
 
 
@@ -260,7 +260,7 @@ def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
     study = load_study(write(tmp_path, points=2))
     run_study(study, tmp_path / "out")
     path = tmp_path / "out" / "journal.jsonl"
-    found = list(outcomes(journal_of(study, path)))
+    found = list(results_of(journal_of(study, path)))
     assert [outcome.part for outcome in found] == list(cases(study))
     for outcome in found:
         assert isinstance(outcome, Outcome)
@@ -282,3 +282,7 @@ def test_undamped_layout_is_a_result_with_a_status(tmp_path: Path) -> None:
     assert np.all(np.isinf(row.value))
     assert np.all(row.status.str.startswith("marginal"))
     assert len(result.failures) == 4
+
+
+def test_numbers_of_numpy_are_numbers_in_csv() -> None:
+    assert csv_text([["a", np.float64(1.5)], [None, 2.0]]) == "a,1.5\n,2.0\n"

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
-from inerter.methods.asking import objective_of
 from strategies import paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError
+from inerter.methods.composite_index import objective_of
 from inerter.uncertainty.distributions import scatter_of
 from inerter.uncertainty.tolerance import quantile_error
 

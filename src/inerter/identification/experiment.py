@@ -200,8 +200,8 @@ def transient_samples(experiment: Experiment, system: PiecewiseSystem, level: fl
     if runs[0] is None or runs[1] is None:
         return 0
     name = load_cell_output(experiment.record)
-    map_problems = np.abs(runs[0][name] - runs[1][name]) > level
-    return int(np.flatnonzero(map_problems)[-1]) + 1 if map_problems.any() else 0
+    differs = np.abs(runs[0][name] - runs[1][name]) > level
+    return int(np.flatnonzero(differs)[-1]) + 1 if differs.any() else 0
 
 
 def steps_per_interval(integration: event_driven.Integration) -> int:

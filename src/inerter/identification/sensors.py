@@ -140,8 +140,8 @@ def periodic_displacement(experiment: Experiment) -> Matrix:
     use = experiment.kept & (record.time - record.time[0] > period)
     fitted = columns @ np.linalg.lstsq(columns[use], motion.displacement[use])[0]
     noise = motion.noise * math.sqrt(min(2.0 * motion.bandwidth * record.interval, 1.0))
-    map_problems = np.flatnonzero(np.abs(motion.displacement - fitted)[: int(np.flatnonzero(use)[-1])] > _ALIKE * noise)
-    begun = int(map_problems[-1]) + 1 if map_problems.size else 0
+    deviating = np.flatnonzero(np.abs(motion.displacement - fitted)[: int(np.flatnonzero(use)[-1])] > _ALIKE * noise)
+    begun = int(deviating[-1]) + 1 if deviating.size else 0
     if begun > record.time.size // 2:
         return motion.displacement
     return np.concatenate([motion.displacement[:begun], fitted[begun:]])

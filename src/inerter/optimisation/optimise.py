@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -121,8 +122,8 @@ def optimise(
     SLSQP. The same seed gives the same result.
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
-    the local optima of a quick approximation that many starts find; `agreed` then counts searches within 1e-4 of the
-    best.
+    the local optima of a quick approximation that many starts find; `n_converged` then counts searches within 1e-4 of
+    the best.
 
     `subject_to` are constraints: `at_most`, `at_least` or `equal` of other indices by the same method, or of
     `static_stiffness`. Then all searches are SLSQP, or COBYQA, with constraints in logarithms. An optimum satisfies
@@ -136,7 +137,13 @@ def optimise(
     check_request(vehicle, index, method)
     free = check_free(vehicle)
     starts = 8 * len(free) if starts is None else starts
-    if not isinstance(starts, Integral) or starts < 1 or not isinstance(seed, Integral) or seed < 0:
+    if (
+        isinstance(starts, bool)
+        or not isinstance(starts, Integral)
+        or starts < 1
+        or not isinstance(seed, Integral)
+        or seed < 0
+    ):
         raise DesignError(f"`starts` and `seed` must be integers, starts >= 1, seed >= 0; got {starts}, {seed}.")
     limits = check_limits(subject_to)
     with one_blas_thread(), running_on(executor):
@@ -326,7 +333,8 @@ def _starting_points(
     objective: Objective | ConstrainedProblem, lower: Array, upper: Array, starts: int, seed: int
 ) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
-    unit = _quasi_random_points(2 ** min(6 + lower.size, 12), lower.size, seed)
+    count = max(2 ** min(6 + lower.size, 12), 2 ** math.ceil(math.log2(starts)))
+    unit = _quasi_random_points(count, lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
     report("samples", 0, len(points), share=0.0)
 

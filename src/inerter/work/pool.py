@@ -158,7 +158,7 @@ class Pool:
     def _submit(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Piece[Item]]
     ) -> None:
-        executor = self._given or self._processes()
+        executor = self._processes() if self._given is None else self._given
         slots, ahead = max(self.slots, 1), _AHEAD if self._given is None else _AFAR
         while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
             under_way[submit_call(executor, run_chunk, work, piece)] = piece
@@ -237,7 +237,9 @@ def _persistent(work: Callable[[Item], Result], lost: Callable[[Item], Result] |
     for _ in range(KILLS):
         with suppress(MemoryError):
             return work(item)
-    return _result_of_lost_item(item, lost)
+    if lost is not None:
+        return lost(item)
+    raise WorkError(f"Out of memory, {KILLS} times, while running the same item, {str(item)[:80]}.")
 
 
 @contextmanager

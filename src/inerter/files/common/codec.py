@@ -112,10 +112,9 @@ class Declaration:
             found["description"] = self.sentence
         if (example := example_value(self.example)) is not None:
             found["examples"] = [example]
-        if isinstance(self.default, str | int | float):
-            found["default"] = self.default
-        elif isinstance(self.default, tuple) and self.default:
-            found["default"] = list(self.default)
+        default = None if self.default in (REQUIRED, None) else self.codec.dump(self.default)
+        if isinstance(default, str | int | float) or (isinstance(default, list) and default):
+            found["default"] = default
         return found
 
 
@@ -217,7 +216,7 @@ class TableCodec(Codec):
         return f"It belongs in [{'.'.join(elsewhere[0])}]." if elsewhere else nearest(name, self.names)
 
     def dump(self, value: Any) -> dict[str, Any]:
-        """The table, without what is None or empty."""
+        """The table without keys whose entry is None or an empty table."""
         values = self.values(value)
         entries = {
             one.name: one.codec.dump(part) for one in self.keys if (part := values.get(one.attribute)) is not None
@@ -255,7 +254,8 @@ class TableCodec(Codec):
         """The object with another number at a key, or below it."""
         values = self.values(value)
         one = next(one for one in self.keys if one.name == keys[0])
-        return self.make(**{**values, one.attribute: one.codec.put(values.get(one.attribute), keys[1:], number)})
+        part = one.codec.put(values.get(one.attribute), keys[1:], number)
+        return self.check(self.make(**{**values, one.attribute: part}))
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table, and those at its keys."""
@@ -271,7 +271,7 @@ def table_of(kind: Any, **more: Any) -> TableCodec:
 
 @dataclass(frozen=True)
 class Scalar(Codec):
-    """An entry without keys of its own: `check` turns it into its value, or raises ValueError."""
+    """An entry without keys of its own: `check` parses it, and raises ValueError for an invalid one."""
 
     check: Callable[[Any], Any]
     describe: Callable[[], dict[str, Any]]  # its JSON Schema, made when it is asked for: rows may be added until then

@@ -89,7 +89,7 @@ class StudyPart(ABC, Generic[ResultT]):
 
 
 def run_part(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[ResultT], threads: int = 1) -> ResultT:
-    """The result of a part. A failure is a result with a status and a sentence, so that one part never ends a study."""
+    """The result of a part; of one that raises an error of `FAILURES`, its `failure_answer`, and the study goes on."""
     try:
         with (
             one_blas_thread(),

@@ -94,8 +94,8 @@ def run_study(
     `folder` may be a part of results that are being written. `jobs` is a number of processes of our own: with more
     than one, a script that calls this needs the line `if __name__ == "__main__":`, because processes are started
     afresh and import it. An `executor` (of `concurrent.futures`, of a dask client, of mpi4py) works in their place, and
-    goes on afterwards. Results do not depend on it. `progress` is told whenever some are done how many designs and
-    parts are, how many there are, the last one, and how many have a status that is not ok. `finish` may add files to
+    goes on afterwards. Results do not depend on it. `progress(done, total, last, not_ok)` is called whenever some are
+    done: numbers of designs and parts, the last one, and the number whose status is not ok. `finish` may add files to
     the results, in the folder that it is given. What the work needs of compiled code is compiled first, if it is not
     yet; `compiling` is called when a kernel is begun, with its title, its number from 1 and how many there are.
 
@@ -144,7 +144,7 @@ def csv_text(rows: Iterable[Sequence[object]]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     for row in rows:
-        writer.writerow("" if one is None else repr(one) if isinstance(one, float) else one for one in row)
+        writer.writerow("" if one is None else repr(float(one)) if isinstance(one, float) else one for one in row)
     return text.getvalue()
 
 
@@ -171,8 +171,8 @@ def _compute_outcomes(
     found = DatasetBuilder(study)
     done, known = _read(journal, found) if results.resume else ({}, {})
     parts = parts_of(study)
-    pending = found.pending()
-    if pending:
+    pending, left = found.pending(), [part for part in parts if part not in done]
+    if pending or left:
         _prepare(pool, study, compiling)
     total = len(found.cases) + len(parts)
 
@@ -194,7 +194,7 @@ def _compute_outcomes(
         storing_checkpoints(lambda kept: append(kept.to_json())),
     ):
         of_designs = _results(study, {}, pending, pool, known)
-        of_tasks = _results(study, found.designs, (part for part in parts if part not in done), pool, known)
+        of_tasks = _results(study, found.designs, left, pool, known)
         for ready in chain(of_designs, of_tasks):
             append(*map(journal_entry, ready))
             for result in ready:
@@ -202,7 +202,7 @@ def _compute_outcomes(
             tell(ready[-1])
         lost = len(found.pending()) + len(set(parts) - set(done))
         if lost:
-            raise WorkError(f"the executor has given no result for {lost} of {total}, and others in their place.")
+            raise WorkError(f"the executor returned no result for {lost} of {total} parts, and others twice.")
     return found, done, len(pending)
 
 

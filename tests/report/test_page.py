@@ -241,7 +241,7 @@ def test_networks_are_drawn_where_the_question_is(study, tmp_path):
     assert sum(file.suffix == ".svg" for file in files) == len(study.layouts)
     source = report(designs(), study, tmp_path)
     page = Page(source)
-    asked = source.partition("What was asked</h2>")[2].partition("<h2")[0]
+    asked = source.partition("Problem definition</h2>")[2].partition("<h2")[0]
     assert page.tags.count("svg") == asked.count("<svg") == len(study.layouts)
     names = Counter(value for key, value in page.attributes if key == "id")
     assert set(names.values()) == {1}

@@ -76,7 +76,7 @@ def run(
     Parameters
     ----------
     study
-        The study file (TOML). examples/quarter-car.toml shows all there is.
+        The study file (TOML). examples/quarter-car.toml is a commented example.
     """
     from inerter.cli.commands import run as command
 

@@ -174,9 +174,9 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         swept = " and of ".join(sweep.words for sweep in study.sweeps)
         again = f", and again for each value of {swept}" if swept else ""
         yield (
-            f"The free values of each layout were chosen for each index on its own{again}, within their bounds, by "
-            f"local searches from many starting points of a sample with seed {study.seed}. Agreement is the number of "
-            "searches that ended at the best value found."
+            f"The design variables of each layout were optimised separately for each index{again}, within bounds, "
+            f"by multi-start local searches (starting points sampled with seed {study.seed}). Agreement is the number "
+            "of searches that converged to the best value."
         )
         if not is_blind(study.optimise):
             what = brief_words_of(study.optimise)

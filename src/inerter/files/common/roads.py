@@ -66,7 +66,10 @@ class CoherenceTable:
         words="track of the coherence",
     )
     level: float | None = key(
-        _LEVELS, "Coherence at all spatial frequencies, or its limit for long waves.", "level = 0.6", default=None
+        _LEVELS,
+        "Coherence of the tracks (signed, not its square) at all spatial frequencies, or its limit for long waves.",
+        "level = 0.6",
+        default=None,
     )
     wavenumber: float | None = key(
         QuantityCodec("cycle/m", if_given=True),

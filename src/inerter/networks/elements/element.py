@@ -30,6 +30,7 @@ class Element(Network):
     quantity: ClassVar[str]
     unit: ClassVar[str]
     sentence: ClassVar[str]
+    unit_note: ClassVar[str] = ""  # after the unit, where the value alone may be misread
     example: ClassVar[str]  # of a value with its unit
     more: ClassVar[tuple[Field, ...]] = ()  # further numbers, all positive
     # to analysis

@@ -22,6 +22,7 @@ class Gap(Element):
     quantity: ClassVar[str] = "half_width"
     unit: ClassVar[str] = "m"
     sentence: ClassVar[str] = "Free travel to either side of the middle (half of the backlash)."
+    unit_note: ClassVar[str] = "half of the backlash"
     example: ClassVar[str] = "0.1 mm"
     linear: ClassVar[LinearRole] = LinearRole.CLOSED
     switch: ClassVar[SwitchRole] = SwitchRole(

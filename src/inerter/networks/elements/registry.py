@@ -30,7 +30,8 @@ def kinds_by_unit() -> dict[str, type[Element]]:
 
 def format_unit_kinds() -> str:
     """Kinds of elements by unit, in words, such as "N/m spring"."""
-    return ", ".join(f"{unit} {kind.key}" for unit, kind in kinds_by_unit().items())
+    notes = {kind: f" ({kind.unit_note})" if kind.unit_note else "" for kind in kinds_by_unit().values()}
+    return ", ".join(f"{unit} {kind.key}{notes[kind]}" for unit, kind in kinds_by_unit().items())
 
 
 def kinds_in_unit() -> dict[str, type[Element]]:

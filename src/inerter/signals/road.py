@@ -85,7 +85,7 @@ class Road:
     roughness: float = field(
         metadata=quantity(
             "m^3/cycle",
-            "Gd(n0) of ISO 8608 [m^3] or kappa = Gd(n0) n0^2 / 2 [m^3/cycle]; else class or profile.",
+            "Gd(n0) of ISO 8608 [m^3] or kappa = Gd(n0) n0^2 / 2 [m^3/cycle].",
             "5e-7 m^3/cycle",
         )
     )

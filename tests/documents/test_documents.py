@@ -23,7 +23,7 @@ from inerter.cli.main import app, call
 from inerter.files.identification.loading import load_identification
 
 PYTHON = [page for page in PAGES if blocks(page)]
-LONG = {"staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
+LONG = {"README.md", "staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
 WRITTEN = {"study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 

@@ -130,6 +130,7 @@ SELDOM = [  # those that take long, and of which a part, or what is much the sam
     FITTED,
     SLOW,
     "inerter identify bench.csv --model ball-screw",
+    "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench",
     'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2',
 ]
 

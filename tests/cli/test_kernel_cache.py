@@ -112,6 +112,16 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
 
 
+def test_another_installation_of_the_same_sources_uses_the_cache(tmp_path: Path) -> None:
+    """As the two commands of the README make two: for use, and to work on the package."""
+    for name, compiles in (("one", True), ("other", False)):
+        (tmp_path / name / "temporary").mkdir(parents=True)
+        number, said = compile_with(tmp_path / "cache", tmp_path / name / "temporary")
+        assert number == "42.0\n"
+        assert ("compiling the numerical kernels" in said) == compiles
+    assert len([*(tmp_path / "cache").rglob("*.nbc")]) == 1
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(8))
 def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: Path, seed: int) -> None:

@@ -23,7 +23,7 @@ from inerter.cli.main import app, call
 from inerter.files.identification.loading import load_identification
 
 PYTHON = [page for page in PAGES if blocks(page)]
-LONG = {"staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
+LONG = {"README.md", "staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
 WRITTEN = {"study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 
@@ -130,6 +130,7 @@ SELDOM = [  # those that take long, and of which a part, or what is much the sam
     FITTED,
     SLOW,
     "inerter identify bench.csv --model ball-screw",
+    "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench",
     'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2',
 ]
 

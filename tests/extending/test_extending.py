@@ -154,9 +154,9 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def results(place: Path, study: Path) -> Path:
+def results(session: Session, study: Path) -> Path:
     """The folder of `inerter run -j 2`."""
-    inerter(place, "run", study.name, "-o", "out", "-j", "2", cwd=study.parent)
+    session.command("run", study.name, "-o", "out", "-j", "2", cwd=study.parent)
     return study.parent / "out"
 
 
@@ -286,7 +286,7 @@ def test_a_simulation_file_knows_the_vehicle_the_element_and_the_signal(session:
     assert "J_friction" in said
 
 
-def test_a_task_is_worked_on_and_told_as_our_own(session: Session, place: Path, tmp_path: Path) -> None:
+def test_a_task_is_worked_on_and_told_as_our_own(session: Session, tmp_path: Path) -> None:
     text = BASE.replace('["norm", "quadrature", "statistical-linearisation"]', '["norm"]').replace(', "T1", "W1"', "")
     moment = '{ from = "1e-5 kg m^2", to = "2e-3 kg m^2" }'
     text = text.replace(f"moment = {moment}", 'moment = "1e-4 kg m^2"')
@@ -295,7 +295,7 @@ def test_a_task_is_worked_on_and_told_as_our_own(session: Session, place: Path, 
     (tmp_path / "bought.toml").write_text(text, encoding="utf-8")
     assert "and 2 catalogues." in " ".join(session.command("check", "bought.toml", cwd=tmp_path)[0].split())
     assert "values that are sold" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
-    said = json.loads(inerter(place, "run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path).stdout)
+    said = json.loads(session.command("run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path)[0])
     by = {one["layout"]: one for one in said["catalogues"]}
     assert set(by) == {"S1", "S3"}
     for design in said["designs"]:

@@ -25,6 +25,7 @@ def paper() -> it.Fit:
     return it.identify([fit_test(seed=1)], BALL_SCREW, seed=0)
 
 
+@pytest.mark.campaign
 def test_the_experiment_of_the_paper(paper):
     """Every parameter within 2 % of the truth and inside its interval; no backlash is an upper bound, not a number."""
     assert paper.status.ok
@@ -42,6 +43,7 @@ def test_the_experiment_of_the_paper(paper):
     assert any(sentence.startswith("gap:") for sentence in paper.next_experiment)
 
 
+@pytest.mark.campaign
 def test_what_a_fit_says_of_itself(paper):
     comparison = paper.comparisons[0]
     assert comparison.variance_explained() > 0.999

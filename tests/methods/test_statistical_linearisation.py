@@ -67,7 +67,7 @@ def half_car(front, rear):
     return paper_half_car(k | c - b | front, Spring(100e3) | c | rear)
 
 
-@pytest.mark.parametrize("conventions", ["exact", "paper2008"])
+@pytest.mark.parametrize("conventions", sampled(["exact", "paper2008"], ["exact"]))
 def test_both_struts_of_a_half_car(conventions):
     """A plain fixed-point iteration with `h2`, on outputs of the struts' travel, whose rate is the velocity."""
     forces, dampers = np.array([50.0, 200.0]), np.array([1e3, 1e3])

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import logarithmic, random_stable
@@ -100,7 +101,7 @@ def local_maxima(gain, omegas, zetas):
     return found
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), range(4)))
 @pytest.mark.parametrize("lightest", [1e-6, 1e-2])
 def test_every_peak_of_many_modes(seed, lightest):
     rng = np.random.default_rng(seed)

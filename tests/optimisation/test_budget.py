@@ -233,7 +233,7 @@ def test_a_stiffness_is_looked_for_up_to_a_thousand_times_its_value(kept):
         assert found.status.message.startswith(f"the design is better for {'every' if kept < 1.0 else 'no'} k from ")
 
 
-@pytest.mark.parametrize("expected", [0.09, 0.11, 9e3, 11e3])
+@pytest.mark.parametrize("expected", sampled([0.09, 0.11, 9e3, 11e3], [0.09, 9e3]))
 def test_a_friction_that_is_not_there_yet_is_looked_for_between_a_tenth_of_a_newton_and_ten_kilonewtons(expected):
     """All power that enters, kt S / 2 for a road velocity of density S, leaves by the damping; friction adds to it."""
     damping, more = 6e3, 300.0
@@ -329,7 +329,7 @@ def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
     assert over.value == pytest.approx(alone.value, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", sampled(range(6), [0, 1]))
 def test_a_budget_is_no_better_than_what_it_rests_on(seed):
     """Random cars by a method that is inaccurate where friction sticks, looked at between the points of its grid."""
     rng = np.random.default_rng([seed, 31])

@@ -236,7 +236,7 @@ def test_weighted_comfort_with_a_limit_on_travel():
     assert best.sensitivities == {"suspension travel at most 3 mm": best.limits[0].sensitivity}
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", sampled(range(4), [0]))
 def test_a_peak_gain_that_some_design_has_can_be_asked_for(seed):
     """Its highest peak is the one that has to be there, whichever of two unequal ones that is."""
     rng = np.random.default_rng([seed, 77])

@@ -56,7 +56,7 @@ EXPECTED = [(1, "J1 1"), (1, "J1 4"), (1, "J3 9"), (1, "J3 10"), (1, "J5 6"), (1
 EXPECTED += [(3, "J1 9"), (3, "J3 7"), (3, "J5 3")]
 
 
-@pytest.mark.parametrize(("table", "name"), sampled(EXPECTED, [row for row in EXPECTED if row != (1, "J5 6")]))
+@pytest.mark.parametrize(("table", "name"), sampled(EXPECTED, [(1, "J1 4"), (1, "J3 9"), (1, "J5 10"), (3, "J1 9")]))
 def test_rows_of_the_expected_value(table: int, name: str) -> None:
     """Within what four runs, the printed digits and the conventions explain, from the printed designs alone."""
     row = computed_row(table, name)
@@ -288,7 +288,7 @@ def test_claims_follow_the_curves() -> None:
     assert verdict(5, as_claimed) is CONTRADICTED  # nothing is worse than S1 here
 
 
-@pytest.mark.parametrize("number", [4, 5, 8, 9, 10])
+@pytest.mark.parametrize("number", sampled([4, 5, 8, 9, 10], [4, 8]))
 def test_noise_shows_no_claim(number: int) -> None:
     """Evidence in which no relation is certain leaves a claim undetermined, whichever way the curves lie."""
     for twist in (1.0, -1.0):

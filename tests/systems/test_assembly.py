@@ -229,7 +229,7 @@ def test_any_mechanism_agrees_with_the_nodal_solve(seed):
     assert difference(frequency_response(system, omega), mechanism, system.inputs, OUTPUTS, omega) < 1e-8
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", sampled(range(30), range(10)))
 def test_no_passive_mechanism_is_unstable(seed):
     rng = np.random.default_rng(seed)
     for car in (random_quarter_car(rng, random_network(rng)), three_axles(*(random_network(rng) for _ in range(3)))):

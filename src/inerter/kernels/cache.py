@@ -58,7 +58,7 @@ def is_kept(kernel: Kernel) -> bool:
     """Whether the cache has compiled code of a kernel, or cannot hold any; the compiler may still reject the code."""
     code = kernel.function.__code__
     folder = cache_folder(Path(code.co_filename))
-    return folder is None or any(folder.rglob(f"*.{code.co_qualname}-{code.co_firstlineno}.*.nbi"))
+    return folder is None or any(folder.glob(f"*.{code.co_qualname}-{code.co_firstlineno}.*.nbi"))
 
 
 def announce() -> None:

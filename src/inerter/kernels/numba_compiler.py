@@ -10,6 +10,7 @@ import gc
 import hashlib
 import io
 import os
+import secrets
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -109,6 +110,10 @@ class _CheckedFiles(IndexDataCacheFile):
             yield content
             file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
 
+    def _data_name(self, number: int) -> str:
+        """Two processes that compile at once would take the next free number both, and one the code of the other."""
+        return f"{self._index_name.removesuffix('.nbi')}.{secrets.token_hex(4)}.nbc"
+
 
 def _check(path: str) -> None:
     """Raises `ValueError` unless the file ends in the check sum of what comes before; one that is missing may be."""
@@ -119,17 +124,26 @@ def _check(path: str) -> None:
 
 
 class _Cache(FunctionCache):
-    """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not."""
+    """The compiler's cache, which may fail: what cannot be read is compiled, and what cannot be kept is not.
 
-    def __init__(self, function: Callable[..., Any]) -> None:
+    The compiler has a folder for each place where the package is installed, and a stamp with the time of the source.
+    Here the folder's name tells the source (see `cache.source_hash`), so that all installations share what it holds.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
-        self._cache_file.__class__ = _CheckedFiles
+        if Path(self._cache_path).is_relative_to(folder):  # elsewhere if nothing can be written in it
+            with suppress(OSError):
+                Path(self._cache_path).rmdir()
+            self._cache_path = str(folder)
+        base: Any = self._impl.filename_base
+        self._cache_file = _CheckedFiles(self._cache_path, base, "")  # type: ignore[no-untyped-call]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         try:
             return super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
         except Exception:  # a file cut short may raise anything
-            warn_of_damage(Path(self.cache_path).parents[1])
+            warn_of_damage(Path(self.cache_path).parent)
             self._forget()
             return None
 
@@ -138,7 +152,7 @@ class _Cache(FunctionCache):
             super().save_overload(sig, data)  # type: ignore[no-untyped-call]
         except OSError as error:
             self._forget()
-            warn_of_no_cache(Path(self.cache_path).parents[1], error)
+            warn_of_no_cache(Path(self.cache_path).parent, error)
         except RuntimeError:  # no code: Ctrl-C came while LLVM handed it over to Python, which can only ignore it there
             raise KeyboardInterrupt from None
 
@@ -152,7 +166,7 @@ def _cache_in(folder: Path | None, function: Callable[..., Any]) -> _Cache | Non
     if folder is None:
         return None
     try:
-        found: Any = _Cache(function)
+        found: Any = _Cache(function, folder)
     except RuntimeError:  # no place at all can be written
         found = None
     if found is not None and Path(found.cache_path).is_relative_to(folder):

@@ -20,7 +20,9 @@ from inerter.app.documents import problems
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.app.requests import ENDPOINTS
+from inerter.files.study.places import places
 from inerter.methods.registry import METHODS
+from inerter.networks.elements import Free
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.networks.parser import network, parse_expression
 from inerter.units import parse_quantity
@@ -306,6 +308,151 @@ def takes(document: dict[str, Any], place: str, value: float, unit: str, **_: An
     """Whether a sweep of this place is accepted."""
     sweep = {place: {"from": f"{0.9 * value!r} {unit}", "to": f"{1.1 * value!r} {unit}", "points": 2}}
     return problems({**document, "study": {**document["study"], "sweep": sweep}}) == []
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_the_parts_of_a_document_are_those_of_its_study(client: TestClient, path: Path) -> None:
+    """Each number has the text that its keys lead to, and the value of its place; networks are those of layouts."""
+    document = tomllib.loads(path.read_text(encoding="utf-8"))
+    if problems(document):
+        return
+    study = it.load_study(path)
+    told = client.post("/api/study/parts", json={"study": document}).json()
+    known = places(study)
+    for row in told["numbers"]:
+        entry, number = entry_at(document, row["path"]), known[row["place"]]
+        assert row["words"] == number.words
+        if isinstance(entry, dict):
+            assert set(entry) == {"from", "to"}
+            assert isinstance(number.value, Free)
+            assert (row["value"], row["name"], row["may_be_free"]) == (None, number.value.name, True)
+        else:
+            value = parse_quantity(entry, row["unit"]) if isinstance(entry, str) else entry
+            assert row["value"] == value
+            assert number.value == (parse_quantity(entry, number.unit) if isinstance(entry, str) else entry)
+    given = {place for place, number in known.items() if number.value is not None}
+    assert {row["place"] for row in told["numbers"]} >= given - {
+        place for place in given if is_left_out(document, place)
+    }
+    for layout, row in told["layouts"].items():
+        struts = " | ".join(study.layouts[layout].struts.values())
+        assert set(row["elements"]) <= set(re.findall(r"\w+", struts))
+        assert sorted(row["free"]) == sorted(study.design(layout).free_values())
+    for row in told["networks"]:
+        assert row["text"] == entry_at(document, row["path"])
+        assert network(row["text"], **study.elements) == network(written(row["tree"]), **study.elements)
+    assert {name: row["kind"] for name, row in told["elements"].items()} == {
+        name: element.key for name, element in study.elements.items()
+    }
+
+
+def entry_at(document: Any, path: list[str]) -> Any:
+    for key in path:
+        document = document[key]
+    return document
+
+
+def is_left_out(document: Any, place: str) -> bool:
+    """Whether a place is a bound, whose number stands for it, or has a default that the file does not say."""
+    keys = place.split(".")
+    if keys[-1] in {"from", "to"}:
+        return True
+    try:
+        entry_at(document, keys if keys[1:] else ["elements", *keys])
+    except KeyError:
+        return keys[1] not in document.get("study", {}).get("subject_to", {})
+    return False
+
+
+def written(tree: Any) -> str:
+    """A tree of an answer as an expression, with brackets around each group."""
+    if tree["kind"] == "element":
+        return str(tree["name"])
+    return "(" + {"parallel": " | ", "series": " - "}[tree["kind"]].join(map(written, tree["parts"])) + ")"
+
+
+def test_an_unfinished_document_has_parts(client: TestClient) -> None:
+    """What is wrong keeps its number, without a value; a network that is being typed keeps the others."""
+    document = changed(
+        elements={"k": "120 parrots", "c": {"tied": "2 * cs"}, "cs": "1 kN s/m", "g": {"kind": "gap"}},
+        layouts={"S9": "k | c - (", "S8": "k | zz"},
+    )
+    document["vehicle"] = {**document["vehicle"], "sprung_mass": "heavy"}
+    told = client.post("/api/study/parts", json={"study": document}).json()
+    rows = {tuple(row["path"]): row for row in told["numbers"]}
+    assert rows["elements", "k"]["value"] is None
+    assert rows["elements", "c", "tied"]["value"] is None
+    assert rows["elements", "g"]["value"] is None
+    assert (rows["vehicle", "sprung_mass"]["value"], rows["vehicle", "sprung_mass"]["unit"]) == (None, "kg")
+    assert rows["elements", "cs"]["value"] == 1000.0
+    networks = {tuple(row["path"]): row for row in told["networks"]}
+    assert "tree" not in networks["layouts", "S9"]
+    assert networks["layouts", "S9"]["at"] == [9, 10]
+    assert networks["layouts", "S8"]["names"] == ["k", "zz"]
+    assert "zz" in networks["layouts", "S8"]["sentence"]
+    assert told["layouts"]["S9"]["elements"] == ["k", "c"]
+    assert told["elements"]["c"]["kind"] == "damper"
+    assert "S9" in told["elements"]["cs"]["layouts"]
+
+
+@given(data=st.data())
+def test_parts_of_a_spoilt_document(client: TestClient, data: st.DataObject) -> None:
+    """Whatever stands somewhere in a document, there is an answer, and its keys lead to entries."""
+    document = copy.deepcopy(DOCUMENT)
+    anything = st.recursive(
+        st.none() | st.booleans() | st.integers(-9, 9) | st.text(max_size=5),
+        lambda i: st.lists(i, max_size=2) | st.dictionaries(st.text(max_size=3), i, max_size=2),
+        max_leaves=4,
+    )
+    section = data.draw(st.sampled_from(sorted(document)))
+    if isinstance(document[section], dict) and data.draw(st.booleans()):
+        document[section][data.draw(st.sampled_from(sorted(document[section])) | st.text(max_size=3))] = data.draw(
+            anything
+        )
+    else:
+        document[section] = data.draw(anything)
+    told = client.post("/api/study/parts", json={"study": document})
+    assert told.status_code == 200
+    for row in [*told.json()["numbers"], *told.json()["networks"]]:
+        entry_at(document, row["path"])
+    renamed = client.post("/api/study/rename", json={"study": document, "names": {"k": "stiff"}}).json()["study"]
+    assert (
+        client.post("/api/study/rename", json={"study": renamed, "names": {"stiff": "k"}}).json()["study"] == document
+    )
+
+
+def test_elements_are_renamed_wherever_the_study_has_them(client: TestClient) -> None:
+    document = {
+        "vehicle": {"model": "quarter-car", "seat": {"mass": "70 kg", "network": "k | cs"}},
+        "elements": {"k": "1 kN/m", "cs": {"tied": "0.5 * c"}, "c": "1 N s/m"},
+        "layouts": {"S1": "k | (c", "S2": {"strut": "k - c2"}},
+        "conditions": [{"k": "2 kN/m", "road.speed": "3 m/s", "name": "k"}],
+        "study": {
+            "sweep": {"elements.k": ["1 N/m", "2 N/m"]},
+            "tolerance": {"elements": {"k": 0.1}, "c": 0.1},
+            "budgets": ["c", "k"],
+        },
+    }
+    told = client.post("/api/study/rename", json={"study": document, "names": {"k": "c", "c": "k"}}).json()["study"]
+    assert told == {
+        "vehicle": {"model": "quarter-car", "seat": {"mass": "70 kg", "network": "c | cs"}},
+        "elements": {"c": "1 kN/m", "cs": {"tied": "0.5 * k"}, "k": "1 N s/m"},
+        "layouts": {"S1": "c | (k", "S2": {"strut": "c - c2"}},
+        "conditions": [{"c": "2 kN/m", "road.speed": "3 m/s", "name": "k"}],
+        "study": {
+            "sweep": {"elements.c": ["1 N/m", "2 N/m"]},
+            "tolerance": {"elements": {"c": 0.1}, "k": 0.1},
+            "budgets": ["k", "c"],
+        },
+    }
+    assert list(told["elements"]) == ["c", "cs", "k"]
+
+
+@pytest.mark.parametrize("name", ["c", "2k", "", "k-1", "layout"])
+def test_a_name_that_an_element_cannot_have(client: TestClient, name: str) -> None:
+    told = client.post("/api/study/rename", json={"study": DOCUMENT, "names": {"k": name}})
+    assert told.status_code == 400
+    assert told.json()["sentence"].endswith(".")
 
 
 def test_the_page_knows_no_method_by_its_name() -> None:

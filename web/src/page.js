@@ -57,7 +57,7 @@ export function Page({ store, api, enter }) {
           <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
       : html`<main>
           <div class="columns">
-            <${NetworkPanel} store=${store} />
+            <${NetworkPanel} store=${store} api=${api} />
             <${ValuesPanel} store=${store} />
             <${AnswersPanel} store=${store} api=${api} />
           </div>

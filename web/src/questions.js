@@ -1,9 +1,9 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
+import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
-import { names, parse } from "./network/algebra.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, namesIn, networksIn, strutsOf, textOf } from "./state/document.js";
+import { isRange, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @typedef {import("./state/store.js").State} State */
@@ -46,7 +46,7 @@ export function comparedOf({ view, history }) {
 
 /** @type {((state: State, document: Document) => Row[])[]} */
 const ROWS = [
-  (_, document) => [{ panel: "network", path: "network/parse", body: { text: textOf(document), elements: document.study.elements ?? {} } }],
+  (_, { study }) => [{ panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) }],
   (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
   (state, document) => [{ panel: "indices", path: "panel/indices", ofDesigns: true, body: { ...about(document), methods: methodNames(state) } }],
   (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", ofDesigns: true, body: about(document) }] : []),
@@ -136,91 +136,37 @@ function comparison(state) {
 function unitsOf(state, document) {
   const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
   if (asked.length === 0) return [];
-  const items = asked.map(({ text, unit }) => (unit === null ? { text } : { text, unit }));
+  const items = asked.map(({ text, unit }) => ({ text, unit }));
   /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
   const learnt = (value) => ({ type: "measured", quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])) });
   return [{ panel: "units", path: "quantities", body: { items }, learnt }];
 }
 
-/** The key by which the size of a unit is kept. @param {string} written @param {string | null} unit */
-export const unitKey = (written, unit) => `${written} in ${unit ?? "its element's unit"}`;
+/** The key by which the size of a unit is kept. @param {string} written @param {string} unit */
+export const unitKey = (written, unit) => `${written} in ${unit}`;
 
-/** @param {State} state @param {Document} document @returns {{key: string, text: string, unit: string | null}[]} */
-export function unitsIn({ about }, document) {
-  /** @type {Map<string, {key: string, text: string, unit: string | null}>} */
+/** The units in which numbers, their bounds and their values are written, where these are not the SI units.
+ * @param {State} state @param {Document} document @returns {{key: string, text: string, unit: string}[]} */
+export function unitsIn(state, { study, values, ranges }) {
+  /** @type {Map<string, {key: string, text: string, unit: string}>} */
   const found = new Map();
-  /** @param {unknown} text @param {string | null} unit */
+  /** @param {unknown} text @param {string} unit */
   const add = (text, unit) => {
     const apart = takenApart(text);
-    if (apart === null || apart.unit === unit) return;
+    if (apart === null || apart.unit === "" || unit === "" || apart.unit === unit) return;
     const key = unitKey(apart.unit, unit);
-    found.set(key, { key, text: `1 ${apart.unit}`.trim(), unit });
+    found.set(key, { key, text: `1 ${apart.unit}`, unit });
   };
-  for (const { place, unit } of numbersOf(about, document)) {
-    const entry = valueAtPlace(document.study, place);
-    for (const text of isRange(entry) ? [entry.from, entry.to] : [entry]) add(text, unit);
-  }
-  for (const entry of Object.values(document.study.elements ?? {})) {
-    for (const text of isRange(entry) ? [entry.from, entry.to] : typeof entry === "string" ? [entry] : Object.values(entry ?? {})) add(text, null);
-  }
-  const own = new Map(fieldsOfVehicle(about, document).map(({ key, unit }) => [key, unit]));
-  for (const of of Object.values(document.values)) for (const [name, text] of Object.entries(of)) add(text, document.study.elements?.[name] === undefined ? (own.get(name) ?? null) : null);
-  for (const [place, range] of Object.entries(document.ranges)) {
-    const unit = numbersOf(about, document).find((number) => number.place.join(".") === place)?.unit ?? null;
-    for (const text of Object.values(range)) add(text, unit);
+  for (const { path, unit, name } of numbersOf(state)) {
+    const entry = entryAt(study, path);
+    const bounds = ranges[path.join(".")];
+    const chosen = name === "" ? [] : Object.values(values).map((of) => of[name]);
+    for (const text of [...(isRange(entry) ? [entry.from, entry.to] : [entry]), bounds?.from, bounds?.to, ...chosen]) {
+      add(text, unit);
+    }
   }
   return [...found.values()];
 }
-
-/** A number of vehicle or road. Of one in a table of the file's own, such as a lever, the unit is that in which it is written.
- * @typedef {{place: string[], unit: string, sentence: string, own: boolean, mayBeFree: boolean}} NumberRow */
-
-/** The quantities of the vehicle's kind. @param {any} about @param {Document} document @returns {{key: string, unit: string, sentence: string, may_be_free: boolean}[]} */
-export const fieldsOfVehicle = (about, { study }) => about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model)?.fields ?? [];
-
-/** Every number of vehicle and road: those that all of their kind have, then what else stands in their tables. @param {any} about @param {Document} document @returns {NumberRow[]} */
-export function numbersOf(about, document) {
-  const { study } = document;
-  return Object.entries({ vehicle: fieldsOfVehicle(about, document), road: about?.road ?? [] }).flatMap(([section, fields]) => {
-    /** @type {NumberRow[]} */
-    const known = fields
-      .filter((/** @type {any} */ { key, unit }) => unit && valueAtPlace(study, [section, key]) !== undefined)
-      .map((/** @type {any} */ { key, unit, sentence, may_be_free }) => ({ place: [section, key], unit, sentence, own: false, mayBeFree: may_be_free }));
-    const there = new Set(known.map(({ place }) => place[1]));
-    const more = numbersIn(study[section], [section]).filter(({ place }) => place.length > 2 || !there.has(place[1]));
-    return [...known, ...more];
-  });
-}
-
-/** The numbers in a table, and in the tables in it. @param {unknown} table @param {string[]} place @returns {NumberRow[]} */
-function numbersIn(table, place) {
-  if (typeof table === "string" || typeof table === "number") {
-    const apart = takenApart(String(table));
-    return apart ? [{ place, unit: apart.unit, sentence: "", own: true, mayBeFree: false }] : [];
-  }
-  if (table === null || typeof table !== "object" || Array.isArray(table) || isRange(table)) return [];
-  return Object.entries(table).flatMap(([key, inside]) => numbersIn(inside, [...place, key]));
-}
-
-/** @param {any} table @param {string[]} place @returns {any} */
-export const valueAtPlace = (table, place) => place.reduce((inside, key) => inside?.[key], table);
-
-/** The elements of networks that stand with the vehicle, such as that of a seat. @param {import("./state/document.js").Study} study */
-export const namesOfVehicle = ({ vehicle }) =>
-  networksIn(vehicle).flatMap((text) => {
-    const tree = parse(text);
-    return tree === null ? [] : names(tree);
-  });
-
-/** What is free in a layout: elements of its networks and of the vehicle's own, numbers of the vehicle. @param {import("./state/document.js").Study} study @param {string} layout */
-export function freeIn(study, layout) {
-  const elements = [...namesIn(study, layout), ...namesOfVehicle(study)].filter((name) => isRange(study.elements?.[name]));
-  const numbers = Object.entries(study.vehicle ?? {}).filter(([, entry]) => isRange(entry));
-  return [...new Set([...elements, ...numbers.map(([name]) => name)])];
-}
-
-/** The free values of a layout that nobody has chosen yet: they are in the middle of their bounds. @param {Pick<Document, "study" | "values">} document @param {string} layout */
-export const unchosenIn = ({ study, values }, layout) => freeIn(study, layout).filter((name) => values[layout]?.[name] === undefined);
 
 /** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document @returns {string[]} */
 export function mountsOf(about, { study, layout }) {

@@ -145,7 +145,7 @@ const isSimulation = (tables) => tables !== null && typeof tables === "object" &
 async function openSimulation(store, api, name, { signal, simulation, ...study }) {
   const { about } = store.get();
   const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
-  if (model?.moved === RIG) return say(store, `${name}: ${takeDevice(store, study)}`);
+  if (model?.moved === RIG) return say(store, `${name}: ${await takeDevice(store, api, study)}`);
   if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
   say(store, `${name} is open as a study of its vehicle; what drove the simulation is left out.`);
@@ -156,7 +156,7 @@ async function openFit(store, api, file) {
   const fit = JSON.parse(await file.text());
   if (typeof fit.elements !== "string") return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
   const { study } = await api.post("study/read", { text: fit.elements, name: file.name });
-  say(store, `${file.name}: ${takeFitted(store, fit, study ?? {})}`);
+  say(store, `${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
 }
 
 /** @param {Store} store @param {Api} api @param {File} file */

@@ -1,12 +1,11 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost } from "./api.js";
-import { unitOf } from "./kinds.js";
+import { freeIn, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
-import { freshName, names, parse, renamed } from "./network/algebra.js";
+import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
-import { freeIn } from "./questions.js";
-import { isRange, nextLayout, textOf } from "./state/document.js";
+import { nextLayout, textOf } from "./state/document.js";
 
 /** @typedef {import("./state/store.js").Store} Store */
 /** @typedef {import("./api.js").Api} Api */
@@ -26,19 +25,22 @@ export async function optimise(store, api, asked) {
     }
     const { designs, at_speeds: speeds } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
     if (store.get().history.present.study !== study) return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
-    return withSpeeds(takeOptima(store, designs), speeds);
+    return withSpeeds(takeOptima(store, designs, null, study), speeds);
   } catch (error) {
     return /** @type {Error} */ (error).message;
   }
 }
 
 /** The values of optima become the present values of their layouts, in one step; returns what to tell, doubts first.
- * @param {Store} store @param {any[]} designs @param {string | null} gesture */
-export function takeOptima(store, designs, gesture = null) {
+ * Where they are known to be of the study that is open, `of` is that study.
+ * @param {Store} store @param {any[]} designs @param {string | null} gesture
+ * @param {import("./state/document.js").Study | null} of */
+export function takeOptima(store, designs, gesture = null, of = null) {
   const { study } = store.get().history.present;
   const found = designs.map((best) => ({ best, values: best.texts ?? textsOf(store.get(), best.parameters ?? {}) }));
   const chosen = found.filter(({ values }) => Object.keys(values).length > 0);
-  const taken = chosen.filter(({ best, values }) => isHere(study, best.layout, Object.keys(values)));
+  const taken =
+    of === study ? chosen : chosen.filter(({ best, values }) => isHere(store.get(), best.layout, Object.keys(values)));
   const doubts = doubted(designs.flatMap(membersOf));
   if (chosen.length === 0) return doubts || "No value is free: nothing to choose. Make one free by its button.";
   if (taken.length === 0) return `${doubts}These are values of a layout ${chosen[0].best.layout} that has ${Object.keys(chosen[0].values).join(", ")} free, which is not in the study that is open; nothing was changed.`;
@@ -49,9 +51,10 @@ export function takeOptima(store, designs, gesture = null) {
 /** What is told of optima, with what they become at other speeds: doubts first. @param {string} text @param {{doubts: string[], others: string[]} | undefined} speeds */
 export const withSpeeds = (text, speeds) => [...(speeds?.doubts ?? []), text, ...(speeds?.others ?? [])].join(" ");
 
-/** Whether a layout is in the study, and has these values free. @param {import("./state/document.js").Study} study @param {string} layout @param {string[]} values */
-function isHere(study, layout, values) {
-  const free = layout in (study.layouts ?? {}) ? freeIn(study, layout) : [];
+/** Whether a layout has these values free.
+ * @param {import("./state/store.js").State} state @param {string} layout @param {string[]} values */
+function isHere(state, layout, values) {
+  const free = freeIn(state, layout);
   return values.every((name) => free.includes(name));
 }
 
@@ -82,16 +85,17 @@ export async function openStudy(store, api, study) {
 export async function beginAtBest(store, api, gesture = null) {
   const { study } = store.get().history.present;
   const index = study.study?.indices?.[0];
-  const free = [study.elements, study.vehicle].some((table) => Object.values(table ?? {}).some(isRange));
   const method = quickMethod(store.get())?.name;
-  if (!index || !free || !method) return;
+  if (!index || !method) return;
   store.dispatch({ type: "choosing", study });
   try {
+    const parts = await api.post("study/parts", { study });
+    if (Object.values(parts.layouts).every((/** @type {any} */ { free }) => free.length === 0)) return;
     if (!(await isSmall(api, study, Object.keys(study.layouts ?? {})[0]))) return;
     const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
     const { present } = store.get().history;
     if (present.study !== study || Object.keys(present.values).length > 0) return;
-    takeOptima(store, designs, gesture);
+    takeOptima(store, designs, gesture, study);
     const doubts = doubted(designs.flatMap(membersOf));
     if (doubts) store.dispatch({ type: "said", text: doubts.trim() });
   } catch {
@@ -107,37 +111,40 @@ async function isSmall(api, study, layout) {
   return coordinates.length <= SMALL;
 }
 
-/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would have the name of another
- * element gets a new one. Returns what to tell. @param {Store} store @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
-export function takeDevice(store, { elements = {}, layouts = {} }) {
+/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would have the
+ * name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
+ * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
+export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const document = store.get().history.present;
-  const written = Object.values(layouts)[0];
-  const tree = typeof written === "string" ? parse(written) : null;
-  if (tree === null) return "There is no device that could be taken.";
   if (document.layout === "") return "Open a study first: the device joins its strut.";
   const known = document.study.elements ?? {};
-  /** @type {{[name: string]: any}} */
-  const added = {};
-  let text = String(written);
-  for (const name of new Set(names(tree))) {
-    const other = name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]);
-    const own = other ? freshName(name, [...Object.keys(known), ...Object.keys(elements), ...Object.keys(added)]) : name;
-    text = renamed(text, name, own);
-    if (name in elements) added[own] = elements[name];
-  }
+  const taken = [...Object.keys(known), ...Object.keys(elements)];
+  const others = Object.keys(elements).filter(
+    (name) => name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]),
+  );
+  /** @type {{[name: string]: string}} */
+  const names = {};
+  for (const name of others) names[name] = freshName(name, [...taken, ...Object.values(names)]);
+  const { study: device } = await api.post("study/rename", { study: { elements, layouts }, names });
+  const { networks } = await api.post("study/parts", { study: device });
+  const network = networks.find((/** @type {any} */ { tree }) => tree !== undefined);
+  if (network === undefined) return "There is no device that could be taken.";
+  if (store.get().history.present !== document) return "The study was changed meanwhile; take the device again.";
   const name = nextLayout(document);
   const gesture = `device ${Date.now()}`;
   store.change({ type: "layoutAdded", name }, gesture);
   const before = textOf(store.get().history.present);
-  store.change({ type: "drawn", text: before ? `${before} | ${text}` : text, added }, gesture);
+  const text = before ? `${before} | ${network.text}` : network.text;
+  store.change({ type: "drawn", text, added: device.elements }, gesture);
   store.dispatch({ type: "rested" });
   return `The device is in the new layout ${name}, beside the strut that was there.`;
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.
- * @param {Store} store @param {any} fit @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
-export function takeFitted(store, fit, device) {
-  if (isOk(fit.status) && device !== null) return takeDevice(store, device);
+ * @param {Store} store @param {Api} api @param {any} fit
+ * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
+export async function takeFitted(store, api, fit, device) {
+  if (isOk(fit.status) && device !== null) return takeDevice(store, api, device);
   return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
 }
 

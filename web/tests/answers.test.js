@@ -1,11 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { answerOf, questions, soughtAnswer, soughtOf, unchosenIn } from "../src/questions.js";
+import { unchosenIn } from "../src/library.js";
+import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js";
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
 import { budgetTold } from "../src/panels/answers.js";
 import { createStore } from "../src/state/store.js";
+import { partsOf } from "./reading.js";
 
 const study = (/** @type {any} */ { title, k = "120 kN/m", strut = "k | c", model = "quarter-car" }) => ({
   title,
@@ -15,7 +17,7 @@ const study = (/** @type {any} */ { title, k = "120 kN/m", strut = "k | c", mode
   study: { indices: ["J1"], baseline: "S1", optimise: "norm" },
 });
 const ABOUT = { vehicles: [{ key: "quarter-car", fields: [], mounts: ["strut"] }], road: [], elements: [], methods: [{ name: "norm", sees: "neither", searches: true, averages: false }] };
-const PANELS = ["network", "check", "indices", "response"];
+const PANELS = ["parts", "check", "indices", "response"];
 
 /** A generator of numbers in [0, 1) from a seed (mulberry32). */
 function random(seed) {
@@ -132,11 +134,16 @@ test("messages stand below each other; one about the same replaces the one befor
 });
 
 test("what is free is unchosen until it has a value, in each layout by itself", () => {
-  const { study: of } = opened({ title: "seat" }).history.present;
-  assert.deepEqual(unchosenIn({ study: of, values: {} }, "S2"), ["c"]);
-  assert.deepEqual(unchosenIn({ study: of, values: { S1: { c: "1 N s/m" } } }, "S2"), ["c"]);
-  assert.deepEqual(unchosenIn({ study: of, values: { S2: { c: "1 N s/m" } } }, "S2"), []);
-  assert.deepEqual(unchosenIn({ study: { ...of, vehicle: { ...of.vehicle, sprung_mass: { from: "1 kg", to: "2 kg" } } }, values: {} }, "S2"), ["c", "sprung_mass"]);
+  const state = opened({ title: "seat" });
+  const unchosen = (/** @type {any} */ of, /** @type {any} */ values) => {
+    const parted = reduce(of, { type: "parted", parts: partsOf(of.history.present.study) });
+    return unchosenIn(parted, { layout: "S2", values });
+  };
+  assert.deepEqual(unchosenIn(state, { layout: "S2", values: {} }), []); // the library has not said yet
+  assert.deepEqual(unchosen(state, {}), ["c"]);
+  assert.deepEqual(unchosen(state, { c: "1 N s/m" }), []);
+  const sprung = { type: "freed", place: ["vehicle", "sprung_mass"], name: "sprung_mass", from: "1 kg", to: "2 kg" };
+  assert.deepEqual(unchosen(change(state, sprung), {}), ["c", "sprung_mass"]);
 });
 
 test("a doubt is told once for all that it is about, and before anything else", () => {
@@ -149,21 +156,32 @@ test("a doubt is told once for all that it is about, and before anything else", 
   assert.match(budgetTold({ ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
 });
 
-test("only what is given is handed on: no withheld device, no values of another study", () => {
+test("only what is given is handed on: no withheld device, no values of another study", async () => {
   const store = createStore();
   store.change({ type: "opened", study: study({ title: "seat" }) });
+  store.dispatch({ type: "parted", parts: partsOf(store.get().history.present.study) });
   const before = store.get().history.present;
   const fit = { status: "inaccurate: the model leaves 13 times", parameters: { b: { value: null, interval: [null, null] } } };
   const device = { elements: { b2: "123 kg" }, layouts: { device: "b2" } };
   const known = { ...fit, parameters: { b: { value: null, interval: [113, 122] } } }; // what explains the misfit says of it
-  for (const each of [fit, known]) assert.match(takeFitted(store, each, device), /^Not to be relied on: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/);
+  /** @type {any} */
+  const api = {
+    post: async (/** @type {string} */ path, /** @type {any} */ body) =>
+      path === "study/parts" ? partsOf(body.study) : { study: body.study },
+  };
+  const refused = /^Not to be relied on: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
+  for (const each of [fit, known]) assert.match(await takeFitted(store, api, each, device), refused);
   assert.equal(store.get().history.present, before);
   assert.match(takeOptima(store, [{ layout: "S9", index: "J1", texts: { c: "1 N s/m" }, status: "ok" }]), /nothing was changed/);
   assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { f: "1 N" }, status: "ok" }]), /nothing was changed/);
   assert.equal(store.get().history.present, before);
-  assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { c: "1 N s/m" }, status: { norm: "infeasible" }, message: "a limit is broken" }]), /^Not to be relied on: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/);
+  const optimum = { layout: "S2", index: "J1", texts: { c: "1 N s/m" } };
+  const broken = { ...optimum, status: { norm: "infeasible" }, message: "a limit is broken" };
+  const said = /^Not to be relied on: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/;
+  assert.match(takeOptima(store, [broken]), said);
   const given = { status: "ok", parameters: { b: { value: 123, interval: [120, 125] } } };
-  assert.match(takeFitted(store, given, device), /^The device is in the new layout/);
+  assert.match(await takeFitted(store, api, given, device), /^The device is in the new layout/);
+  assert.equal(store.get().history.present.study.layouts?.S3, "k | c | b2");
 });
 
 test("what optima become at other speeds stands before them where it is doubtful", () => {

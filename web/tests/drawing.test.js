@@ -1,10 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { parse } from "../src/network/algebra.js";
 import { HALF_HEIGHT, HALF_WIDTH, drawing } from "../src/network/drawing.js";
+import { read } from "./reading.js";
 
-const TEXTS = ["k", "k | c", "k - c", "k | c - b", "k | c - (ks | cs) - (b | f)", "(a | b) - (c | d - (e | f))", Array.from({ length: 40 }, (_, i) => `e${i}`).join(" | ")];
-const each = (check) => TEXTS.forEach((text) => check(drawing(parse(text)), text));
+const MANY = Array.from({ length: 40 }, (_, i) => `e${i}`).join(" | ");
+const NESTED = ["k | c - (ks | cs) - (b | f)", "(a | b) - (c | d - (e | f))"];
+const TEXTS = ["k", "k | c", "k - c", "k | c - b", ...NESTED, MANY];
+const each = (check) => TEXTS.forEach((text) => check(drawing(read(text)), text));
 
 test("no two symbols touch, and all are inside the drawing", () => {
   each(({ placed, left, right, height }, text) => {
@@ -19,7 +21,8 @@ test("no two symbols touch, and all are inside the drawing", () => {
 });
 
 test("every end of a line meets a symbol's lead, another line, or an end of the whole", () => {
-  const on = ([x, y], [[x1, y1], [x2, y2]]) => x >= Math.min(x1, x2) && x <= Math.max(x1, x2) && y >= Math.min(y1, y2) && y <= Math.max(y1, y2);
+  const between = (x, a, b) => x >= Math.min(a, b) && x <= Math.max(a, b);
+  const on = ([x, y], [[x1, y1], [x2, y2]]) => between(x, x1, x2) && between(y, y1, y2);
   each(({ placed, lines, height }, text) => {
     for (const line of lines.filter(([[x1], [x2]]) => x1 === x2)) {
       for (const end of line) {

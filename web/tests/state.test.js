@@ -1,11 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { after, empty, namesIn, textOf } from "../src/state/document.js";
+import { after, empty, textOf } from "../src/state/document.js";
 import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated, placed, withUnit } from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
-import { limited, limitsIn } from "../src/panels/asked.js";
+import { limited } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
-import { comparedOf, namesOfVehicle, numbersOf, questions } from "../src/questions.js";
+import { elementsIn, freeIn, numbersOf, treeOf } from "../src/library.js";
+import { comparedOf, questions, unitsIn } from "../src/questions.js";
+import { partsOf } from "./reading.js";
 
 const STUDY = {
   title: "car",
@@ -25,8 +27,8 @@ const CHANGES = [
   { type: "valued", layout: "S1", values: { c: "3 kN s/m" } },
   { type: "valuedAll", values: { S1: { c: "3 kN s/m" }, S2: { c: "7 kN s/m" } } },
   { type: "ranged", place: "elements.k", from: "1 kN/m", to: "1 MN/m" },
-  { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2000 kg" },
-  { type: "fixed", place: ["elements", "c"], text: "4 kN s/m" },
+  { type: "freed", place: ["elements", "b"], name: "b", from: "1 kg", to: "2000 kg" },
+  { type: "fixed", place: ["elements", "c"], name: "c", text: "4 kN s/m" },
   { type: "drawn", text: "k | c | b" },
   { type: "drawn", text: "k | ", added: { f: "10 N" } },
   { type: "selected", layout: "S1" },
@@ -35,7 +37,7 @@ const CHANGES = [
   { type: "layoutRemoved" },
   { type: "strutsParted", struts: ["front", "rear"] },
   { type: "strutsJoined" },
-  { type: "elementRenamed", old: "c", name: "damper" },
+  { type: "elementRenamed", old: "c", name: "damper", study: STUDY },
   { type: "elementRemoved", name: "b" },
   { type: "designKept", name: "mine" },
   { type: "designTaken", name: "mine" },
@@ -105,22 +107,23 @@ test("the drag of a slider is one step, two drags are two", () => {
   assert.equal(store.get().history.present.study.elements.k, "60 kN/m");
 });
 
-test("a name is changed wherever the study has it", () => {
-  const { study, values } = after(after(open(), { type: "valued", layout: "S2", values: { c: "1 N s/m" } }), { type: "elementRenamed", old: "c", name: "d" });
-  assert.deepEqual(study.layouts, { S1: "k | d", S2: "k | d - b" });
-  assert.deepEqual(Object.keys(study.elements), ["k", "d", "b"]);
-  assert.deepEqual(values, { S2: { d: "1 N s/m" } });
-  const swept = after(after(open(), { type: "elementRenamed", old: "k", name: "spring" }), { type: "elementRenamed", old: "b", name: "wheel" }).study.study;
-  assert.deepEqual([Object.keys(swept.sweep), swept.budgets], [["spring"], ["wheel"]]);
+test("a name is another one beside the study too: in values, and in the ranges of sliders", () => {
+  const ranged = (/** @type {any} */ document, /** @type {string} */ place) => after(document, { type: "ranged", place, from: "1", to: "2" });
+  const valued = after(open(), { type: "valued", layout: "S2", values: { c: "1 N s/m" } });
+  const before = ["elements.c", "elements.c.gap", "elements.c2"].reduce(ranged, valued);
+  const study = { ...STUDY, title: "renamed" };
+  const document = after(before, { type: "elementRenamed", old: "c", name: "d", study });
+  assert.equal(document.study, study);
+  assert.deepEqual(document.values, { S2: { d: "1 N s/m" } });
+  assert.deepEqual(Object.keys(document.ranges), ["elements.d", "elements.d.gap", "elements.c2"]);
 });
 
 test("what is freed begins at its value in every layout, and what is fixed keeps its bounds for later", () => {
-  const freed = after(open(), { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2000 kg" });
+  const freed = after(open(), { type: "freed", place: ["elements", "b"], name: "b", from: "1 kg", to: "2000 kg" });
   assert.equal(freed.values.S2.b, "300 kg");
-  const fixed = after(freed, { type: "fixed", place: ["elements", "b"], text: "400 kg" });
+  const fixed = after(freed, { type: "fixed", place: ["elements", "b"], name: "b", text: "400 kg" });
   assert.equal(fixed.study.elements.b, "400 kg");
   assert.deepEqual(fixed.ranges["elements.b"], { from: "1 kg", to: "2000 kg" });
-  assert.deepEqual(namesIn(fixed.study, "S2"), ["k", "c", "b"]);
 });
 
 test("questions follow from the state alone, and nothing of the page's own goes into a study", () => {
@@ -130,7 +133,7 @@ test("questions follow from the state alone, and nothing of the page's own goes 
   store.change({ type: "opened", study: STUDY });
   store.change({ type: "ranged", place: "elements.k", from: "1 kN/m", to: "1 MN/m" });
   const asked = questions(store.get());
-  assert.deepEqual(asked.map(({ panel }) => panel), ["network", "check", "indices", "response", "units"]);
+  assert.deepEqual(asked.map(({ panel }) => panel), ["parts", "check", "indices", "response"]);
   for (const { body } of asked.slice(1, 4)) assert.deepEqual(body.study, STUDY);
 });
 
@@ -154,31 +157,48 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(shown(null), "–");
 });
 
-test("every number of vehicle and road has a row, whatever table it stands in", () => {
-  const study = {
-    vehicle: { model: "mechanism", coordinates: { body: "19 t" }, struts: { s: { upper: { body: 1, pitch: "-9.5 m" }, network: "k | c" } } },
-    road: { speed: "25 m/s", class: "C", coherence: { wavenumber: "0.2 cycle/m" } },
-  };
-  const rows = numbersOf(ABOUT, { ...empty(), study });
-  const told = Object.fromEntries(rows.map(({ place, unit }) => [place.join("."), unit]));
-  assert.deepEqual(told, {
-    "vehicle.coordinates.body": "t",
-    "vehicle.struts.s.upper.body": "",
-    "vehicle.struts.s.upper.pitch": "m",
-    "road.speed": "m/s",
-    "road.coherence.wavenumber": "cycle/m",
-  });
+test("what the library said of a study stands until it says more, without what the document has no longer", () => {
+  const store = createStore();
+  store.change({ type: "opened", study: STUDY });
+  store.dispatch({ type: "parted", parts: partsOf(STUDY) });
+  const places = () => numbersOf(store.get()).map(({ place }) => place);
+  assert.deepEqual(places(), ["vehicle.sprung_mass", "k", "c", "b"]);
+  assert.deepEqual([elementsIn(store.get(), "S2"), freeIn(store.get(), "S2")], [["k", "c", "b"], ["c"]]);
+  store.change({ type: "elementRemoved", name: "b" });
+  store.change({ type: "fixed", place: ["elements", "c"], name: "c", text: "4 kN s/m" });
+  assert.deepEqual(places(), ["vehicle.sprung_mass", "k", "c"]);
+  assert.deepEqual(freeIn(store.get(), "S2"), []);
 });
 
-test("an element is called otherwise in the networks of a vehicle too", () => {
-  const study = { ...STUDY, vehicle: { seat: { mass: "70 kg", network: "k | c" } } };
-  const document = after({ ...empty(), study, layout: "S1" }, { type: "elementRenamed", old: "c", name: "damper" });
-  assert.deepEqual(document.study.vehicle, { seat: { mass: "70 kg", network: "k | damper" } });
-  assert.deepEqual(namesOfVehicle(document.study), ["k", "damper"]);
+test("a tree is known by its text: from the library, or since it was drawn here", () => {
+  const store = createStore();
+  store.change({ type: "opened", study: STUDY });
+  assert.equal(treeOf(store.get(), "k | c - b"), null);
+  assert.equal(treeOf(store.get(), "constructor"), null);
+  store.dispatch({ type: "parted", parts: partsOf(STUDY) });
+  const tree = treeOf(store.get(), "k | c - b");
+  assert.equal(tree?.kind, "parallel");
+  store.dispatch({ type: "planted", text: "k", tree: { kind: "element", name: "k" } });
+  store.dispatch({ type: "parted", parts: partsOf(STUDY) });
+  assert.equal(treeOf(store.get(), "k | c - b"), tree); // the same, so that nothing is drawn anew
+  assert.deepEqual(treeOf(store.get(), "k"), { kind: "element", name: "k" });
+});
+
+test("the units are asked in which numbers, bounds and values are written, if they are not those of the library", () => {
+  const store = createStore();
+  const elements = { ...STUDY.elements, k: "120 N s/mm", b: "3 N s/m", f: "parrots" };
+  store.change({ type: "opened", study: { ...STUDY, elements } });
+  store.dispatch({ type: "parted", parts: partsOf({ ...STUDY, elements }) });
+  store.change({ type: "valued", layout: "S1", values: { c: "2 MN s/m" } });
+  store.change({ type: "ranged", place: "elements.b", from: "1 lbf s/in", to: "9 N s/m" });
+  const keys = unitsIn(store.get(), store.get().history.present).map(({ key }) => key);
+  const units = ["N s/mm", "kN s/m", "MN s/m", "lbf s/in"].map((unit) => `${unit} in N s/m`);
+  assert.deepEqual(keys.toSorted(), units.toSorted());
 });
 
 test("what is made free gets a method that chooses it, and keeps one that is there", () => {
-  const freed = { type: "freed", place: ["elements", "b"], from: "1 kg", to: "2 kg", method: "norm" };
+  const bounds = { from: "1 kg", to: "2 kg" };
+  const freed = { type: "freed", place: ["elements", "b"], name: "b", ...bounds, method: "norm" };
   const document = after(empty(), { type: "opened", study: STUDY });
   assert.equal(after(document, freed).study.study.optimise, "norm");
   const chosen = after(document, { type: "placed", place: ["study", "optimise"], value: "other" });
@@ -197,12 +217,17 @@ test("limits are put and taken away one by one, and no empty table is left", () 
     table = limited(table, place, value);
     if (value === undefined) expected.delete(place.join("."));
     else expected.set(place.join("."), value);
-    const found = limitsIn(table).map(({ path, sense, value: text }) => [[...path, sense].join("."), text]);
-    assert.deepEqual(new Map(found), expected);
+    assert.deepEqual(new Map(textsIn(table)), expected);
     assert.equal(table === undefined, expected.size === 0);
     assert.ok(!JSON.stringify(table ?? 1).includes("{}"));
   }
 });
+
+/** The texts in a table, and in the tables in it, by their places. @returns {[string, string][]} */
+const textsIn = (/** @type {any} */ table, /** @type {string[]} */ path = []) =>
+  Object.entries(table ?? {}).flatMap(([key, inside]) =>
+    typeof inside === "string" ? [[[...path, key].join("."), inside]] : textsIn(inside, [...path, key]),
+  );
 
 test("a slider of what is negative keeps the sign, and the ends of its scale", () => {
   for (const [lower, upper] of [[-1, -100], [2, 50]]) {

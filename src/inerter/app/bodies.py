@@ -50,6 +50,19 @@ class CheckStudy(Body):
     study: Document
 
 
+class StudyParts(Body):
+    """A study document, finished or not."""
+
+    study: Document
+
+
+class RenameElements(Body):
+    """A study document, and new names of its elements by the old ones."""
+
+    study: Document
+    names: dict[Name, Name]
+
+
 class WriteStudy(Body):
     """A study document, and designs at which it is to be fixed, if any."""
 

@@ -9,7 +9,7 @@ from typing import Any
 from starlette.requests import Request
 from starlette.responses import FileResponse, Response
 
-from inerter.app import about, bodies, documents, parts
+from inerter.app import about, bodies, documents, parts, study_parts
 from inerter.app.api_description import Endpoint, openapi
 from inerter.app.calls import call, panel
 from inerter.app.designs import designs_of
@@ -67,6 +67,14 @@ async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> R
     swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
     lane = server.lanes["slow" if swept else "quick"]
     return as_json(await lane.answer(Waiting((call, "inerter.app.study_check:check_document", body.study))))
+
+
+async def _study_parts(server: Server, request: Request, body: bodies.StudyParts) -> dict[str, Any]:
+    return await asyncio.to_thread(study_parts.parts_of_document, body.study)
+
+
+async def _rename(server: Server, request: Request, body: bodies.RenameElements) -> dict[str, Any]:
+    return await asyncio.to_thread(study_parts.renamed_document, body.study, body.names)
 
 
 async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
@@ -202,6 +210,8 @@ ENDPOINTS = (
     Endpoint("GET", "/api/examples/{name}", "One of them", _example),
     Endpoint("POST", "/api/study/read", "The document of a study file, and its problems", _read, bodies.ReadStudy),
     Endpoint("POST", "/api/study/check", "What is to be known before any work", _check, bodies.CheckStudy),
+    Endpoint("POST", "/api/study/parts", "Networks, elements and numbers", _study_parts, bodies.StudyParts),
+    Endpoint("POST", "/api/study/rename", "Other names of elements", _rename, bodies.RenameElements),
     Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),
     Endpoint("POST", "/api/network/parse", "A network as a tree with places", _parse, bodies.ParseNetwork),
     Endpoint("POST", "/api/quantity", "A quantity read or written", _quantity, bodies.Quantity),

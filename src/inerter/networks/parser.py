@@ -24,6 +24,7 @@ class ExpressionError(NetworkError):
         return str(self.args[0])
 
 
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
 
 
@@ -68,6 +69,15 @@ def names(expression: str) -> tuple[str, ...]:
     Raises `NetworkError` for characters that are not part of the syntax.
     """
     return tuple(dict.fromkeys(text for text, _ in _tokens(expression) if text[0].isalpha()))
+
+
+def rename_in_expression(expression: str, names: Mapping[str, str]) -> str:
+    """The expression with other names, all else as it is written; it need not be a network yet.
+
+    >>> rename_in_expression("c | k - (c |", {"c": "k", "k": "c"})
+    'k | c - (k |'
+    """
+    return _NAME.sub(lambda found: names.get(found[0], found[0]), expression)
 
 
 def format_expression(network: Network, names: Iterable[str]) -> str:

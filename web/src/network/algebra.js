@@ -1,4 +1,5 @@
 // The algebra of networks as they are written: `|` is parallel, `-` is series and binds tighter, brackets group.
+// Texts are written here, and read by the library alone.
 //
 // A tree is a frozen value: {kind: "element", name}, or {kind: "series" | "parallel", parts} with two parts or more,
 // none of them of its own kind. Each function that changes a tree gives another one.
@@ -9,9 +10,6 @@
 /** @typedef {number[]} Path  where a part is: the place among the parts of the whole, then among the parts of that... */
 /** @typedef {"series" | "parallel"} Joint */
 
-const TOKEN = /\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()-]))/y;
-const DEEPEST = 100;
-
 /** @param {string} name @returns {Leaf} */
 export const element = (name) => ({ kind: "element", name });
 
@@ -21,52 +19,9 @@ export function join(kind, parts) {
   return flat.length === 1 ? flat[0] : { kind, parts: flat };
 }
 
-/** The tree that a text describes, or null where it is none. @param {string} text @returns {Tree | null} */
-export function parse(text) {
-  const tokens = tokensOf(text);
-  if (tokens === null) return null;
-  let at = 0;
-  let depth = 0;
-
-  /** @returns {Tree | null} */
-  function atom() {
-    const token = tokens?.[at++];
-    if (token === undefined) return null;
-    if (token !== "(") return /^[A-Za-z]/.test(token) ? element(token) : null;
-    if (++depth > DEEPEST) return null;
-    const inside = joined("parallel");
-    depth -= 1;
-    return tokens?.[at++] === ")" ? inside : null;
-  }
-
-  /** @param {Joint} kind @returns {Tree | null} */
-  function joined(kind) {
-    const [sign, next] = kind === "parallel" ? ["|", () => joined("series")] : ["-", atom];
-    const parts = [];
-    do {
-      const part = next();
-      if (part === null) return null;
-      parts.push(part);
-    } while (tokens?.[at] === sign && ++at);
-    return join(kind, parts);
-  }
-
-  const tree = joined("parallel");
-  return at === tokens.length ? tree : null;
-}
-
-/** @param {string} text @returns {string[] | null} */
-function tokensOf(text) {
-  const tokens = [];
-  const end = text.trimEnd().length;
-  TOKEN.lastIndex = 0;
-  while (TOKEN.lastIndex < end) {
-    const match = TOKEN.exec(text);
-    if (match === null) return null;
-    tokens.push(match[1] ?? match[2]);
-  }
-  return tokens.length ? tokens : null;
-}
+/** A tree of the library, with what is of the same kind taken in. @param {any} tree @returns {Tree} */
+export const canonical = (tree) =>
+  tree.kind === "element" ? element(tree.name) : join(tree.kind, tree.parts.map(canonical));
 
 /** A tree as text, with the brackets that it needs. @param {Tree} tree @param {"" | "|" | "-"} inside @returns {string} */
 export function written(tree, inside = "") {
@@ -156,11 +111,6 @@ export function shiftAt(tree, path, step) {
   if (group === null || group.kind === "element" || group.parts[i + step] === undefined) return tree;
   const parts = changedAt(changedAt(group.parts, i, group.parts[i + step]), i + step, group.parts[i]);
   return replaceAt(tree, above, { kind: group.kind, parts });
-}
-
-/** A text in which a name is another one; also where the text is no network (yet). @param {string} text @param {string} old @param {string} name */
-export function renamed(text, old, name) {
-  return text.replace(/[A-Za-z][A-Za-z0-9_]*/g, (word) => (word === old ? name : word));
 }
 
 /** A name with this beginning that is not taken. @param {string} symbol @param {Iterable<string>} taken */

@@ -1,10 +1,9 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
-import { kindOf } from "../kinds.js";
+import { elementsIn, kindOf, unchosenIn } from "../library.js";
 import { seek } from "../asking.js";
 import { judging, methodsOf, quickMethod } from "../methods.js";
 import { answerOf, baselineOf, shownDesigns, soughtAnswer } from "../questions.js";
-import { namesIn } from "../state/document.js";
 import { estimated, placed, printed, shown, withUnit } from "../state/scale.js";
 import { Being, Moving } from "../parts/clock.js";
 import { Doubts, Unchosen, doubted, isOk } from "../parts/doubts.js";
@@ -34,7 +33,7 @@ export function AnswersPanel({ store, api }) {
       </select></label>
     </div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
-    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...document, ...design, values: document.values }))} />
+    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
     <${Doubts} members=${membersOf(value)} />
     <${Indices} state=${state} shown=${shown} layout=${document.layout} baseline=${baseline} />
     <${Limits} value=${value} />
@@ -172,7 +171,7 @@ function Optimise({ store, api, indices }) {
 function Budget({ store, api, indices }) {
   const state = store.get();
   const document = state.history.present;
-  const names = namesIn(document.study, document.layout);
+  const names = elementsIn(state, document.layout);
   const baseline = baselineOf(document).layout;
   if (names.length === 0 || indices.length === 0 || document.layout === baseline) return null;
   const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];

@@ -1,7 +1,9 @@
 // What is asked of the study: its indices, and the limits that every design keeps.
 
+import { numbersOf } from "../library.js";
 import { html } from "../parts/html.js";
 import { answerOf } from "../questions.js";
+import { entryAt } from "../state/document.js";
 import { Entry } from "./values.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -17,7 +19,7 @@ export function AskedPanel({ store }) {
   const state = store.get();
   const { study } = state.history.present;
   const asked = study.study?.indices ?? [];
-  const limits = limitsIn(study.study?.subject_to);
+  const limits = limitsOf(state);
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol) ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
   /** @param {Limit} limit @param {string | undefined} value */
@@ -61,10 +63,15 @@ function limitable(state) {
   return [...indexNames(state).map(({ symbol }) => symbol), ...struts.map((strut) => `${STIFFNESS}.${strut}`)];
 }
 
-/** The limits in a table, and in the tables in it. @param {any} table @param {string[]} path @returns {Limit[]} */
-export function limitsIn(table, path = []) {
-  if (table === null || typeof table !== "object") return [];
-  return Object.entries(table).flatMap(([key, inside]) => (SENSES.includes(key) ? [{ path, sense: key, value: inside }] : limitsIn(inside, [...path, key])));
+/** The limits of the study, as the library lists them. @param {State} state @returns {Limit[]} */
+function limitsOf(state) {
+  const { study } = state.history.present;
+  const rows = numbersOf(state).filter(({ path }) => PLACE.every((key, level) => path[level] === key));
+  return rows.map(({ path }) => ({
+    path: path.slice(PLACE.length, -1),
+    sense: path.at(-1) ?? "",
+    value: entryAt(study, path),
+  }));
 }
 
 /** The table of limits with another value at a place; without one, the limit and the tables that are then empty are taken away.

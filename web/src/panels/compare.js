@@ -4,8 +4,8 @@ import { withUnit } from "../state/scale.js";
 import { html, useState } from "../parts/html.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
+import { unchosenIn } from "../library.js";
 import { answerOf, choicesOf, comparedOf } from "../questions.js";
-import { textsOf } from "../state/document.js";
 import { Measured, membersOf, percent } from "./answers.js";
 
 const [FEWEST, MOST] = [2, 4];
@@ -31,17 +31,22 @@ export function ComparePanel({ store }) {
         ${keys.toSorted((one, other) => order(choices, one) - order(choices, other)).map((key) => html`<option key=${key} value=${key}>${choices[order(choices, key)].name}${key.startsWith("kept ") ? " (kept)" : ""}</option>`)}
       </select></label> ${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}</p>`}
     <${Keep} store=${store} />
-    ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} answer=${answer} compared=${compared} />`}
+    ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>` : html`<${Table} state=${state} answer=${answer} compared=${compared} />`}
   </div>`;
 }
 
 /** @param {import("../questions.js").Choice[]} choices @param {string} key */
 const order = (choices, key) => choices.findIndex((choice) => choice.key === key);
 
-/** @param {{answer: import("../state/answers.js").Shown, compared: import("../questions.js").Choice[]}} props */
-function Table({ answer, compared }) {
+/** @param {{state: import("../state/store.js").State, answer: import("../state/answers.js").Shown,
+ * compared: import("../questions.js").Choice[]}} props */
+function Table({ state, answer, compared }) {
   const { value, sentence } = answer;
-  const designs = compared.map(({ name, study, design }) => ({ name, study, layout: design.layout, values: { [design.layout]: design.values } }));
+  // What is free in a design of another study, the answer alone tells.
+  const designs = compared.map(({ name, kept, design }, i) => ({
+    name,
+    unchosen: kept ? (value?.designs[i]?.unchosen ?? []) : unchosenIn(state, design),
+  }));
   const first = html`<${Being} shown=${answer} /><${Unchosen} designs=${designs} /><${Doubts} members=${membersOf(value)} />${sentence && html`<p class="problem" role="alert">${sentence}</p>`}`;
   if (!value) return first;
   const columns = value.designs;
@@ -50,7 +55,7 @@ function Table({ answer, compared }) {
   return html`${first}<div class="scroll" tabindex="0" role="region" aria-label="Comparison"><table class=${`compared ${answer.before ? "stale" : ""}`} style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}>
     <thead><tr><th scope="col"></th>${columns.map((/** @type {any} */ { name }, /** @type {number} */ i) => html`<th scope="col" key=${i} title=${name}>${name}</th>`)}</tr></thead>
     <tbody>
-      <tr><th scope="row">network</th>${columns.map((/** @type {any} */ { network }, /** @type {number} */ i) => html`<td key=${i}><code>${[...new Set(textsOf(network))].join("; ")}</code></td>`)}</tr>
+      <tr><th scope="row">network</th>${columns.map((/** @type {any} */ { network }, /** @type {number} */ i) => html`<td key=${i}><code>${[...new Set(typeof network === "string" ? [network] : Object.values(network))].join("; ")}</code></td>`)}</tr>
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>${columns.map((/** @type {any} */ { numbers }, /** @type {number} */ i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
       ${columns[0].results.map((/** @type {any} */ first, /** @type {number} */ row) => html`<tr key=${first.index}><th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, first.unit)}</span></th>
         ${columns.map((/** @type {any} */ { results, unchosen }, /** @type {number} */ i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0} unchosen=${unchosen.length > 0 || columns[0].unchosen.length > 0} />`)}</tr>`)}

@@ -1,7 +1,8 @@
 // The simulated road: histories with stick and open gaps shaded, and the car in motion.
 
 import { Plot } from "../plot.js";
-import { answerOf } from "../questions.js";
+import { unchosenIn } from "../library.js";
+import { answerOf, designOf } from "../questions.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
@@ -37,7 +38,7 @@ export function HistoryPanel({ store }) {
   }} /></label>`;
   return html`<div class=${answer.before ? "stale" : ""} aria-busy=${answer.is === "coming"}>
     <${Being} shown=${answer} />
-    <${Unchosen} designs=${[{ ...document, name: document.layout }]} />
+    <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
     <div class="row">
       <label>Show <select value=${signal?.name ?? ""} onChange=${(/** @type {Event} */ event) => setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>

@@ -1,7 +1,7 @@
 // The car in motion, drawn from its mechanism: bodies, struts as networks, tyres, the road that passes below.
 
 import { drawing } from "../network/drawing.js";
-import { kindOf } from "../kinds.js";
+import { kindOf, numbersOf } from "../library.js";
 import { html, useEffect, useRef, useState } from "../parts/html.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
@@ -16,6 +16,7 @@ const RADIUS = 24;
 const METRE = 130; // [px] along the car, where there is room for it
 const OVERHANG = 60; // [px] of a body beyond its struts
 const THICK = 26; // [px] of a body
+const SPEED = "road.speed"; // which moves the road along
 const SPEEDS = [1, 0.5, 0.25, 0.1];
 
 /** @param {{store: Store, motion: Motions, mechanism: any}} props */
@@ -24,8 +25,8 @@ export function Motion({ store, motion, mechanism }) {
   const clock = useRef({ at: 0, frames: 0 });
   const scene = useRef(/** @type {Scene | null} */ (null));
   const [width, setWidth] = useState(0);
-  const { view, history } = store.get();
-  const speed = speedOf(history.present.study.road?.speed);
+  const { view } = store.get();
+  const speed = numbersOf(store.get()).find(({ place }) => place === SPEED)?.value ?? 20;
   scene.current = { motion, mechanism, store, travel: speed, stretch: stretchOf(motion) };
 
   useEffect(() => {
@@ -65,12 +66,6 @@ export function Motion({ store, motion, mechanism }) {
 }
 
 /** @typedef {{motion: Motions, mechanism: any, store: Store, travel: number, stretch: number}} Scene */
-
-/** The speed in m/s as far as it is written so; it only moves the road along. @param {unknown} text */
-function speedOf(text) {
-  const match = /^\s*([\d.eE+-]+)\s*(m\/s|km\/h)\s*$/.exec(String(text ?? ""));
-  return match ? Number(match[1]) / (match[2] === "km/h" ? 3.6 : 1) : 20;
-}
 
 /** Pixels of a metre up and down, so that the largest motion is well seen. @param {Motions} motion */
 function stretchOf({ coordinates, roads }) {

@@ -1,14 +1,27 @@
 // The strut as a drawn network, and as text; both are the same value, and either can be edited.
 
-import { freshName, joinAt, leaves, moveTo, names, parse, partAt, removeAt, replaceAt, element as leaf, shiftAt, written } from "../network/algebra.js";
+import {
+  element as leaf,
+  freshName,
+  joinAt,
+  leaves,
+  moveTo,
+  names,
+  partAt,
+  removeAt,
+  replaceAt,
+  shiftAt,
+  written,
+} from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
-import { kindOf } from "../kinds.js";
-import { answerOf, mountsOf } from "../questions.js";
+import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
+import { mountsOf } from "../questions.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
+/** @typedef {import("../api.js").Api} Api */
 /** @typedef {import("../network/algebra.js").Tree} Tree */
 /** @typedef {import("../network/algebra.js").Path} Path */
 /** @typedef {import("../network/algebra.js").Joint} Joint */
@@ -19,8 +32,8 @@ const [SMALLEST, LARGEST] = [0.075, 0.113]; // [rem] a point of the drawing
 const MANY = 8; // elements from where a drawing may be laid across the page
 const FAR = 6; // [px] from where a press is a drag
 
-/** @param {{store: Store}} props */
-export function NetworkPanel({ store }) {
+/** @param {{store: Store, api: Api}} props */
+export function NetworkPanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const mounts = mountsOf(state.about, document);
@@ -37,7 +50,7 @@ export function NetworkPanel({ store }) {
         ? html`<span class="quiet">The same strut everywhere.</span> <button type="button" onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
         : html`<button type="button" onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
     </div>`}
-    <${Editor} store=${store} />
+    <${Editor} store=${store} api=${api} />
   </section>`;
 }
 
@@ -73,12 +86,12 @@ function Layouts({ store }) {
   </div>`;
 }
 
-/** @param {{store: Store}} props */
-function Editor({ store }) {
+/** @param {{store: Store, api: Api}} props */
+function Editor({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const text = textOf(document);
-  const tree = useMemo(() => parse(text), [text]);
+  const tree = treeOf(state, text);
   const [last, setLast] = useState(/** @type {{tree: Tree | null, of: string}} */ ({ tree: null, of: "" }));
   const of = JSON.stringify([document.study.title, document.layout, document.strut]);
   const [how, setHow] = useState(/** @type {Joint} */ ("series"));
@@ -88,11 +101,11 @@ function Editor({ store }) {
   const shownTree = tree ?? (text.trim() !== "" && last.of === of ? last.tree : null); // what is being typed keeps the drawing of before
   const path = pathIn(shownTree, state);
   const selected = shownTree && partAt(shownTree, path);
-  const editing = { store, how };
+  const editing = { store, api, how };
   return html`<${Toolbar} editing=${editing} off=${tree === null && text.trim() !== ""} selected=${selected} setHow=${setHow} />
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
-      : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path} stale=${tree === null} />`}
+      : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path} stale=${wrongIn(state) !== null && tree === null} />`}
     ${shownTree && (state.view.across || leaves(shownTree).length > MANY) && html`<button type="button" class="chip" aria-pressed=${state.view.across} onClick=${() => store.dispatch({ type: "viewed", view: { across: !state.view.across } })}>Across the page</button>`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
@@ -114,20 +127,22 @@ function Trail({ store, tree, path }) {
 /** @param {Tree} part */
 const described = (part) => (part.kind === "element" ? `${part.name} is selected` : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
 
-/** @typedef {{store: Store, how: Joint}} Editing */
+/** @typedef {{store: Store, api: Api, how: Joint}} Editing */
 
 /** What is selected in a tree: the whole of it where there is no such part. @param {Tree | null} tree @param {State} state @returns {Path} */
 const pathIn = (tree, { view }) => (tree !== null && partAt(tree, view.path) !== null ? view.path : []);
 
 /** The tree and what is selected in it, as of now: what is drawn may be a frame older. @param {Store} store @returns {{tree: Tree | null, path: Path}} */
 function present(store) {
-  const tree = parse(textOf(store.get().history.present));
+  const tree = treeOf(store.get(), textOf(store.get().history.present));
   return { tree, path: pathIn(tree, store.get()) };
 }
 
 /** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
 function draw(store, tree, path, added) {
-  store.change({ type: "drawn", text: written(tree), added });
+  const text = written(tree);
+  store.dispatch({ type: "planted", text, tree });
+  store.change({ type: "drawn", text, added });
   store.dispatch({ type: "viewed", view: { path } });
 }
 
@@ -211,30 +226,38 @@ function Toolbar({ editing, off, selected, setHow }) {
         ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
       </select></label>
       <button type="button" disabled=${off || selected === null} onClick=${() => remove(store)}>Delete</button>
-      <${Rename} store=${store} selected=${selected} />
+      <${Rename} store=${store} api=${editing.api} selected=${selected} />
     </div>
   </div>`;
 }
 
-/** @param {{store: Store, selected: Tree | null}} props */
-function Rename({ store, selected }) {
+/** @param {{store: Store, api: Api, selected: Tree | null}} props */
+function Rename({ store, api, selected }) {
   const [told, setTold] = useState("");
   const old = selected?.kind === "element" ? selected.name : ""; // the form stays: a drawing that moves cannot be dragged in
   return html`<form class="row" key=${old} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
-    const taken = name in (store.get().history.present.study.elements ?? {});
-    if (name === old) setTold("");
-    else if (!/^[A-Za-z][A-Za-z0-9_]*$/.test(name)) setTold("A name begins with a letter and has letters, digits and underscores.");
-    else if (taken) setTold(`There is an element named ${name} already.`);
-    else {
-      setTold("");
-      store.change({ type: "elementRenamed", old, name });
-    }
+    void renameElement(store, api, old, name).then(setTold);
   }}>
     <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old} autocomplete="off" spellcheck=${false} /></label>
     <button disabled=${old === ""}>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
   </form>`;
+}
+
+/** Another name for an element, wherever the study has it; returns what to tell.
+ * @param {Store} store @param {Api} api @param {string} old @param {string} name */
+async function renameElement(store, api, old, name) {
+  if (name === old) return "";
+  const { study } = store.get().history.present;
+  try {
+    const renamed = await api.post("study/rename", { study, names: { [old]: name } });
+    if (store.get().history.present.study !== study) return "The study was changed meanwhile; name it again.";
+    store.change({ type: "elementRenamed", old, name, study: renamed.study });
+    return "";
+  } catch (error) {
+    return /** @type {Error} */ (error).message;
+  }
 }
 
 /** @param {{editing: Editing, tree: Tree, path: Path, stale: boolean}} props */
@@ -277,9 +300,11 @@ function Schematic({ editing, tree, path, stale }) {
 function Symbol({ one, state, chosen, entrance, store, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
-  const label = [one.name, kind?.key ?? "unknown element", value].filter(Boolean).join(", ");
+  const { elements = {} } = state.history.present.study;
+  const unknown = !kind && (!(one.name in elements) || layoutsWith(state, one.name) !== null);
+  const label = [one.name, kind?.key ?? (unknown ? "unknown element" : ""), value].filter(Boolean).join(", ");
   const select = () => same(store.get().view.path, one.path) || store.dispatch({ type: "viewed", view: { path: one.path } });
-  return html`<g class=${`element ${chosen ? "chosen" : ""} ${kind ? "" : "unknown"}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
     onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
@@ -406,9 +431,10 @@ function beginDrag(store, down, from, setOver) {
 /** The text of the network, with what is wrong underlined. @param {{store: Store, text: string}} props */
 function Text({ store, text }) {
   const state = store.get();
-  const { value } = answerOf(state, "network");
-  const wrong = value && "sentence" in value ? value : null;
-  const missing = parse(text) === null ? [] : names(/** @type {Tree} */ (parse(text))).filter((name) => !(name in (state.history.present.study.elements ?? {})));
+  const wrong = wrongIn(state);
+  const tree = treeOf(state, text);
+  const { elements = {} } = state.history.present.study;
+  const missing = tree === null ? [] : names(tree).filter((name) => !(name in elements));
   const kinds = state.about?.elements ?? [];
   return html`<div class="text">
     <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>

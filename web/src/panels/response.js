@@ -3,6 +3,7 @@ import { withUnit } from "../state/scale.js";
 import { Being } from "../parts/clock.js";
 import { Unchosen } from "../parts/doubts.js";
 import { Plot } from "../plot.js";
+import { unchosenIn } from "../library.js";
 import { answerOf, shownDesigns } from "../questions.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
@@ -23,7 +24,7 @@ export function ResponsePanel({ store }) {
   useShown("response", state);
   return html`<div class=${shown.before ? "stale" : ""} aria-busy=${shown.is === "coming"}>
     <${Being} shown=${shown} />
-    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...document, ...design, values: document.values }))} />
+    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study." : sentence}</p>`}
     <div class="row" role="group" aria-label="Index">${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index} onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
     ${!first && html`<div class="plot empty"></div>`}

@@ -62,6 +62,12 @@ async function forget(store, api, id) {
   store.dispatch({ type: "unrecorded", id });
 }
 
+/** @param {Store} store @param {Api} api @param {any} fit */
+async function takeIn(store, api, fit) {
+  const text = await takeFitted(store, api, fit, fit.device).catch((/** @type {Error} */ error) => error.message);
+  store.dispatch({ type: "said", about: "device", text });
+}
+
 /** @param {{store: Store, api: Api, job: import("../state/store.js").Job}} props */
 function Fit({ store, api, job }) {
   const running = job.state === "waiting" || job.state === "running";
@@ -78,7 +84,7 @@ function Fit({ store, api, job }) {
       </table></div>
       ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
       ${result.device
-        ? html`<button type="button" class="main" onClick=${() => store.dispatch({ type: "said", about: "device", text: takeFitted(store, result, result.device) })}>Take the device into the editor</button>`
+        ? html`<button type="button" class="main" onClick=${() => void takeIn(store, api, result)}>Take the device into the editor</button>`
         : html`<p>${withheld(result)}</p>`}
       <${Files} api=${api} job=${job} />`}
   </section>`;

@@ -1,12 +1,12 @@
 // What scatter of its elements makes of an index of the design, and which of them matters.
 
 import { seek } from "../asking.js";
-import { soughtAnswer, soughtOf } from "../questions.js";
+import { elementsIn, unchosenIn } from "../library.js";
+import { designOf, soughtAnswer, soughtOf } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
 import { download } from "../remembering.js";
-import { namesIn } from "../state/document.js";
 import { shown, withUnit } from "../state/scale.js";
 import { indicesOf, percent } from "./answers.js";
 
@@ -21,7 +21,7 @@ export function TolerancePanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const indices = indicesOf(state);
-  const names = namesIn(document.study, document.layout);
+  const names = elementsIn(state, document.layout);
   const answer = soughtAnswer(state, "tolerance");
   const { is, value, sentence } = answer;
   if (names.length === 0 || indices.length === 0) return html`<p class="quiet">There is no element, or no index, to be asked about.</p>`;
@@ -35,7 +35,7 @@ export function TolerancePanel({ store, api }) {
     <div class="row"><label>Index <select name="index">${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}</select></label> <button>Find out</button></div>
     <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
-  <${Unchosen} designs=${[{ ...document, name: document.layout }]} />
+  <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />
   ${value &&
     html`<${Scattered} value=${value} />
     <p class="row"><button type="button" onClick=${async () => download(await api.blob("export/csv", { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }), `tolerance-${value.index}.csv`)}>Save (CSV)</button></p>`}`;

@@ -1,5 +1,4 @@
 // What makes an answer doubtful stands before it: an answer is no better than the worst of what it is made of.
-import { unchosenIn } from "../questions.js";
 import { html } from "./html.js";
 
 /** Something an answer is made of, with its status: a word, or a word, a colon and a message. @typedef {{of: string, status: string | null | undefined, message?: string}} Member */
@@ -32,10 +31,10 @@ export function Doubts({ members }) {
   return doubts.length === 0 ? null : html`<div class="doubts problem" role="alert">${doubts.map((doubt) => html`<p key=${doubt}><b>Not to be relied on.</b> ${doubt}</p>`)}</div>`;
 }
 
-/** What is no answer, since nobody has chosen it. @param {{designs: {name: string, layout: string, study: import("../state/document.js").Study, values: import("../state/document.js").Values}[]}} props */
+/** What is no answer, since nobody has chosen it. @param {{designs: {name: string, unchosen: string[]}[]}} props */
 export function Unchosen({ designs }) {
-  const found = designs.map((design) => ({ name: design.name, free: unchosenIn(design, design.layout) })).filter(({ free }) => free.length > 0);
+  const found = designs.filter(({ unchosen }) => unchosen.length > 0);
   return found.length === 0
     ? null
-    : html`<p class="unchosen" role="status">Not chosen yet: ${found.map(({ name, free }) => `${free.join(", ")} of ${name}`).join("; ")}. The free values are in the middle of their bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
+    : html`<p class="unchosen" role="status">Not chosen yet: ${found.map(({ name, unchosen }) => `${unchosen.join(", ")} of ${name}`).join("; ")}. The free values are in the middle of their bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
 }

@@ -3,7 +3,7 @@
 // `study` is the file, as JSON of its TOML tables, with quantities as they were written. What a file does not hold stands
 // beside it: the present values of free elements (by layout), the ranges of sliders, designs by name.
 
-import { freshName, names, parse, renamed } from "../network/algebra.js";
+import { freshName } from "../network/algebra.js";
 
 /** @typedef {{from: string, to: string, [more: string]: unknown}} Range */
 /** @typedef {string | Range | {[key: string]: unknown}} ElementEntry */
@@ -19,8 +19,8 @@ import { freshName, names, parse, renamed } from "../network/algebra.js";
  *  | {type: "valued", layout: string, values: {[element: string]: string}}
  *  | {type: "valuedAll", values: Values}
  *  | {type: "ranged", place: string, from: string, to: string}
- *  | {type: "freed", place: string[], from: string, to: string, method?: string}
- *  | {type: "fixed", place: string[], text: string}
+ *  | {type: "freed", place: string[], name: string, from: string, to: string, method?: string}
+ *  | {type: "fixed", place: string[], name: string, text: string}
  *  | {type: "drawn", text: string, added?: {[name: string]: ElementEntry}}
  *  | {type: "selected", layout: string, strut?: string | null}
  *  | {type: "layoutAdded", name: string}
@@ -28,7 +28,7 @@ import { freshName, names, parse, renamed } from "../network/algebra.js";
  *  | {type: "layoutRemoved"}
  *  | {type: "strutsParted", struts: string[]}
  *  | {type: "strutsJoined"}
- *  | {type: "elementRenamed", old: string, name: string}
+ *  | {type: "elementRenamed", old: string, name: string, study: Study}
  *  | {type: "elementRemoved", name: string}
  *  | {type: "designKept", name: string}
  *  | {type: "designTaken", name: string}
@@ -48,22 +48,25 @@ const CHANGES = {
   }),
   valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
-  freed: (document, { place, from, to, method }) => {
-    const [section, name] = place;
-    const entry = /** @type {any} */ (document.study)[section]?.[name];
+  freed: (document, { place, name, from, to, method }) => {
+    const entry = entryAt(document.study, place);
     const text = typeof entry === "string" ? entry : null;
     const users = text === null ? [] : Object.keys(document.study.layouts ?? {});
     const values = { ...document.values };
     for (const layout of users) values[layout] = { ...values[layout], [name]: /** @type {string} */ (text) };
     const { study } = document;
-    const searched = method === undefined || study.study?.optimise !== undefined ? study : placed(study, ["study", "optimise"], method); // what is free needs a method that chooses it
+    // What is free needs a method that chooses it.
+    const has = method === undefined || study.study?.optimise !== undefined;
+    const searched = has ? study : placed(study, ["study", "optimise"], method);
     return { ...document, values, study: placed(searched, place, { from, to }) };
   },
-  fixed: (document, { place, text }) => {
-    const [section, name] = place;
-    const entry = /** @type {any} */ (document.study)[section]?.[name];
-    const ranges = isRange(entry) ? { ...document.ranges, [place.join(".")]: { from: entry.from, to: entry.to } } : document.ranges;
-    const values = Object.fromEntries(Object.entries(document.values).map(([layout, of]) => [layout, without(of, name)]));
+  fixed: (document, { place, name, text }) => {
+    const entry = entryAt(document.study, place);
+    const bounds = isRange(entry) ? { [place.join(".")]: { from: entry.from, to: entry.to } } : {};
+    const ranges = { ...document.ranges, ...bounds };
+    const values = Object.fromEntries(
+      Object.entries(document.values).map(([layout, of]) => [layout, without(of, name)]),
+    );
     return { ...document, ranges, values, study: placed(document.study, place, text) };
   },
   drawn: (document, { text, added = {} }) => {
@@ -100,7 +103,7 @@ const CHANGES = {
     return standing({ ...document, strut: struts[0], study: placed(document.study, ["layouts", document.layout], each) });
   },
   strutsJoined: (document) => ({ ...document, strut: null, study: placed(document.study, ["layouts", document.layout], textOf(document)) }),
-  elementRenamed: (document, { old, name }) => elementRenamed(document, old, name),
+  elementRenamed: (document, { old, name, study }) => elementRenamed(document, old, name, study),
   elementRemoved: (document, { name }) => ({
     ...document,
     study: { ...document.study, elements: without(document.study.elements ?? {}, name) },
@@ -143,18 +146,6 @@ export function textOf({ study, layout, strut }) {
   return typeof text === "string" ? text : "";
 }
 
-/** All texts of a layout. @param {LayoutEntry | undefined} entry @returns {string[]} */
-export const textsOf = (entry) => (typeof entry === "string" ? [entry] : Object.values(entry ?? {}).filter((text) => typeof text === "string"));
-
-/** The names of the elements of a layout. @param {Study} study @param {string} layout @returns {string[]} */
-export function namesIn(study, layout) {
-  const found = textsOf(study.layouts?.[layout]).flatMap((text) => {
-    const tree = parse(text);
-    return tree === null ? [] : names(tree);
-  });
-  return [...new Set(found)];
-}
-
 /** @param {unknown} entry @returns {entry is Range} */
 export const isRange = (entry) => typeof entry === "object" && entry !== null && "from" in entry && "to" in entry;
 
@@ -171,46 +162,24 @@ export function nextLayout(document) {
 /** @param {Study} study @param {string} symbol */
 export const nextElement = (study, symbol) => freshName(symbol, Object.keys(study.elements ?? {}));
 
-/** @param {Document} document @param {string} old @param {string} name @returns {Document} */
-function elementRenamed(document, old, name) {
-  const { study } = document;
-  if (name in (study.elements ?? {})) return document;
-  /** @param {LayoutEntry} entry @returns {LayoutEntry} */
-  const changed = (entry) =>
-    typeof entry === "string"
-      ? renamed(entry, old, name)
-      : Object.fromEntries(Object.entries(entry).map(([strut, text]) => [strut, renamed(text, old, name)]));
-  const layouts = Object.fromEntries(Object.entries(study.layouts ?? {}).map(([key, entry]) => [key, changed(entry)]));
-  const values = Object.fromEntries(Object.entries(document.values).map(([layout, of]) => [layout, keyRenamed(of, old, name)]));
-  const settings = study.study && settingsRenamed(study.study, old, name);
-  const elements = keyRenamed(study.elements ?? {}, old, name);
-  const vehicle = study.vehicle && networksRenamed(study.vehicle, old, name);
-  const ranges = keyRenamed(document.ranges, `elements.${old}`, `elements.${name}`);
-  return { ...document, values, ranges, study: { ...study, elements, layouts, ...(vehicle && { vehicle }), ...(settings && { study: settings }) } };
+/** The document whose study has another name of an element: it is called so beside the study too.
+ * @param {Document} document @param {string} old @param {string} name @param {Study} study @returns {Document} */
+function elementRenamed(document, old, name, study) {
+  const values = Object.fromEntries(
+    Object.entries(document.values).map(([layout, of]) => [layout, keyRenamed(of, old, name)]),
+  );
+  const [before, after] = [`elements.${old}`, `elements.${name}`];
+  const ranges = Object.fromEntries(
+    Object.entries(document.ranges).map(([place, range]) => {
+      const inside = place === before || place.startsWith(`${before}.`);
+      return [inside ? after + place.slice(before.length) : place, range];
+    }),
+  );
+  return standing({ ...document, values, ranges, study });
 }
 
-const NETWORK = "network"; // the key under which a vehicle has networks of its own
-
-/** The networks in a table of a vehicle, and in the tables in it. @param {any} table @returns {string[]} */
-export function networksIn(table) {
-  if (table === null || typeof table !== "object") return [];
-  return Object.entries(table).flatMap(([key, inside]) => (key === NETWORK && typeof inside === "string" ? [inside] : networksIn(inside)));
-}
-
-/** A table of a vehicle in whose networks an element is called otherwise. @param {any} table @param {string} old @param {string} name @returns {any} */
-function networksRenamed(table, old, name) {
-  if (table === null || typeof table !== "object" || Array.isArray(table)) return table;
-  return Object.fromEntries(Object.entries(table).map(([key, inside]) => [key, key === NETWORK && typeof inside === "string" ? renamed(inside, old, name) : networksRenamed(inside, old, name)]));
-}
-
-/** @param {{[key: string]: any}} settings @param {string} old @param {string} name */
-function settingsRenamed(settings, old, name) {
-  const { sweep, budgets } = settings;
-  const result = { ...settings };
-  if (sweep) result.sweep = keyRenamed(keyRenamed(sweep, old, name), `elements.${old}`, `elements.${name}`);
-  if (Array.isArray(budgets)) result.budgets = budgets.map((each) => (each === old ? name : each));
-  return result;
-}
+/** What stands in a table at a place. @param {any} table @param {string[]} place @returns {any} */
+export const entryAt = (table, place) => place.reduce((inside, key) => inside?.[key], table);
 
 /** A table with something at a place; `undefined` takes the key away. @param {any} table @param {string[]} place @param {unknown} value @returns {any} */
 function placed(table, place, value) {

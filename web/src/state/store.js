@@ -3,19 +3,23 @@
 
 import { answered, asked, turned } from "./answers.js";
 import { after, empty, isChange } from "./document.js";
+import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
 /** @typedef {import("./document.js").Document} Document */
 /** @typedef {import("./document.js").Change} Change */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
 /** @typedef {import("../network/algebra.js").Path} Path */
+/** @typedef {import("../network/algebra.js").Tree} Tree */
+/** @typedef {import("../library.js").Parts} Parts */
 /** @typedef {import("./answers.js").Answers} Answers */
 /** What the page has to say: `about` tells which message a newer one replaces. @typedef {{about: string, text: string}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null, sentence: string | null, result: any}} Job  `begun`: in seconds since 1970, by the clock of the server */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View  `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with; `across`: the drawing over the width of the page */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values are being chosen just now.
- * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any}, choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, records: any[], view: View, about: any, connection: Connection, messages: Message[]}} State */
+ * `parts`: what the library last said that a study is made of; `trees`: networks that are known, by their texts.
+ * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any}, choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View, about: any, connection: Connection, messages: Message[]}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
@@ -27,6 +31,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "choosing", study: import("./document.js").Study}
  *  | {type: "chosen", study: import("./document.js").Study}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
+ *  | {type: "parted", parts: Parts}
+ *  | {type: "planted", text: string, tree: Tree}
  *  | {type: "worked", job: Partial<Job> & {id: string}}
  *  | {type: "dropped", id: string}
  *  | {type: "recorded", record: any}
@@ -47,6 +53,8 @@ export const initial = () => ({
   choosing: null,
   work: {},
   quantities: {},
+  parts: null,
+  trees: {},
   records: [],
   view: { path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false, compared: [], against: "", seconds: 10, seed: 0, across: false },
   about: null,
@@ -78,6 +86,8 @@ const STEPS = {
   choosing: (state, { study }) => ({ ...state, choosing: study }),
   chosen: (state, { study }) => (state.choosing === study ? { ...state, choosing: null } : state),
   measured: (state, { quantities }) => ({ ...state, quantities: { ...state.quantities, ...quantities } }),
+  parted: (state, { parts }) => ({ ...state, parts, trees: { ...treesIn(parts), ...state.trees } }),
+  planted: (state, { text, tree }) => ({ ...state, trees: { ...state.trees, [text]: tree } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),
   dropped: (state, { id }) => ({ ...state, work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)) }),
   recorded: (state, { record }) => ({ ...state, records: [...state.records.filter(({ id }) => id !== record.id), record] }),
@@ -88,6 +98,10 @@ const STEPS = {
   said: (state, { text, about = text }) => ({ ...state, messages: [...without(state.messages, about), { about, text }].slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: without(state.messages, about) }),
 };
+
+/** The trees of networks, by their texts. @param {Parts} parts @returns {{[text: string]: Tree}} */
+const treesIn = ({ networks }) =>
+  Object.fromEntries(networks.flatMap(({ text, tree }) => (tree ? [[text, canonical(tree)]] : [])));
 
 /** @param {Message[]} messages @param {string} about */
 const without = (messages, about) => messages.filter((each) => each.about !== about);

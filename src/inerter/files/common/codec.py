@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeVar, dataclass_transform
+from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from inerter.errors import InerterError
 from inerter.files.common.kinds import kind_with
@@ -64,8 +64,37 @@ class LoadContext:
         return raw
 
 
+@dataclass(frozen=True)
+class Entry:
+    """An entry without keys of its own as a file has it, valid or not, and the codec that reads it."""
+
+    codec: Codec
+    raw: Any
+    keys: KeyPath = ()
+    sentence: str = ""
+    words: str = ""  # of its number, as the nearest key declares them
+    names: tuple[str, ...] = ()  # of the author's own, in the keys that lead to it; the nearest first
+
+    def below(self, key: str, *, name: str = "", sentence: str = "", words: str = "") -> Entry:
+        """The entry in a table, at a key that declares words and a sentence, or that is a name of the author's own."""
+        return Entry(
+            self.codec,
+            self.raw,
+            (key, *self.keys),
+            self.sentence or sentence,
+            self.words or ("" if self.names else words),
+            (*self.names, name) if name else self.names,
+        )
+
+    def value(self) -> Any:
+        """The value; `INVALID` for an invalid entry."""
+        return LoadContext({}, self.codec, self.keys).read(self.codec, self.raw)
+
+
 class Codec:
     """A kind of entry of a file: reads, writes and describes it, and finds and replaces the numbers in its value."""
+
+    is_number: ClassVar[bool] = False  # whether the value has one number without a key of its own
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """Value of the entry; raises ValueError, or adds problems to the context and returns `INVALID`."""
@@ -86,6 +115,18 @@ class Codec:
     def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
         """The value with another number at these keys, in its SI unit."""
         return number
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The entries without keys of their own in an entry of a file, which may be invalid."""
+        yield Entry(self, raw)
+
+    def keys_in_file(self, raw: Any, keys: KeyPath) -> KeyPath:
+        """The keys in a file to the number that has these keys in the value."""
+        return keys
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The entry of a file, valid or not, with other names of elements."""
+        return raw
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables that the entry may hold or be, by their places."""
@@ -256,6 +297,20 @@ class TableCodec(Codec):
         one = next(one for one in self.keys if one.name == keys[0])
         part = one.codec.put(values.get(one.attribute), keys[1:], number)
         return self.check(self.make(**{**values, one.attribute: part}))
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The entries of all keys that a table gives."""
+        for one in self.keys if isinstance(raw, Mapping) else ():
+            if one.name in raw:
+                for entry in one.codec.raw_entries(raw[one.name]):
+                    yield entry.below(one.name, sentence=one.sentence, words=one.words)
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with other names of elements in the entries of its keys."""
+        if not isinstance(raw, Mapping):
+            return raw
+        codecs = {one.name: one.codec for one in self.keys}
+        return {key: codecs[key].rename(entry, names) if key in codecs else entry for key, entry in raw.items()}
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table, and those at its keys."""

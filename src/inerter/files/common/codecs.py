@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codec import INVALID, Codec, Entry, KeyPath, LoadContext, TableCodec
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.units import quote_value
@@ -54,6 +54,20 @@ class TaggedCodec(Codec):
     def put(self, value: Any, keys: Sequence[str], number: float) -> Any:
         """The value with another number in its table."""
         return self.table_of(value).put(value, keys, number)
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The entries of the table that the word at `tag` selects; empty where it selects none."""
+        table = self._selected(raw)
+        yield from () if table is None else table.raw_entries(raw)
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with other names of elements."""
+        table = self._selected(raw)
+        return raw if table is None else table.rename(raw, names)
+
+    def _selected(self, raw: Any) -> TableCodec | None:
+        word = raw.get(self.tag) if isinstance(raw, Mapping) else None
+        return self.of().get(word) if isinstance(word, str) else None
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """Tables of all words, by their key paths."""
@@ -106,6 +120,18 @@ class NamesCodec(Codec):
         name = ".".join(keys[:count])
         return {**value, name: self.item.put(value[name], keys[count:], number)}
 
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The entries of all names."""
+        for name, part in raw.items() if isinstance(raw, Mapping) else ():
+            for entry in self.item.raw_entries(part):
+                yield entry.below(name, name=name)
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with other names of elements in its entries."""
+        if not isinstance(raw, Mapping):
+            return raw
+        return {name: self.item.rename(part, names) for name, part in raw.items()}
+
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables of its entries."""
         yield from self.item.tables((*place, "*"))
@@ -129,6 +155,14 @@ class RowsCodec(Codec):
         *above, name = context.place
         rows = (replace(context, place=(*above, f"{name}[{i}]")) for i in range(1, len(raw) + 1))
         return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """Empty: places in a list have no names."""
+        yield from ()
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The list with other names of elements in its tables."""
+        return [self.item.rename(one, names) for one in raw] if isinstance(raw, list) else raw
 
     def dump(self, value: Any) -> list[Any]:
         """List of the tables."""
@@ -171,6 +205,10 @@ class ByPlaceCodec(NamesCodec):
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Empty: the numbers belong to other key paths."""
+        yield from ()
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """Empty for the same reason."""
         yield from ()
 
     def schema(self) -> dict[str, Any]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from inerter.errors import UnitError
 from inerter.field_metadata import Field
-from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codec import INVALID, Codec, Declaration, Entry, KeyPath, LoadContext, TableCodec
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import (
     AMOUNT,
@@ -30,6 +30,7 @@ from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
 from inerter.networks.elements import NAME, Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
+from inerter.networks.parser import rename_in_expression
 from inerter.units import parse_quantity, quote_value
 
 KIND = "kind"
@@ -63,6 +64,8 @@ class ElementCodec(Codec):
 
     One that is tied is read as its expression, since the others may come later.
     """
+
+    is_number: ClassVar[bool] = True
 
     free: bool = True
     tied: bool = False
@@ -102,9 +105,12 @@ class ElementCodec(Codec):
         ranges = [RANGE.schema()] if self.free else []
         return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties])
 
-    def numbers(self, value: Element, words: str) -> Iterator[tuple[KeyPath, Number]]:
+    def numbers(self, value: Element | TieEntry, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Value of the element with its bounds, and its further numbers, by their keys."""
-        yield from with_bounds(Number(value.unit, words, value.value, value.may_vanish))
+        if isinstance(value, TieEntry):
+            yield (), Number("", words, None)
+            return
+        yield from with_bounds(Number(value.unit, words, value.value, value.may_vanish, self.free))
         for field in value.more:
             yield (field.name,), Number(field.unit, field.in_words, getattr(value, field.name))
 
@@ -118,15 +124,49 @@ class ElementCodec(Codec):
         more = {field.name: getattr(value, field.name) for field in value.more}
         return type(value).of(old, value.name, **{**more, part: number})
 
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The element, with the sentence on its kind."""
+        kind = self.kind_of(raw)
+        yield Entry(self, raw, sentence="" if kind is None else f"{kind.key}: {kind.sentence}")
+
+    def kind_of(self, raw: Any) -> type[Element] | None:
+        """Kind of the element that an entry states; None where it states none, or is tied."""
+        value = Entry(self, raw, ("unnamed",)).value()
+        return type(value) if isinstance(value, Element) else None
+
+    def keys_in_file(self, raw: Any, keys: KeyPath) -> KeyPath:
+        """The keys in a table that names the kind, or an expression."""
+        if self.tied and is_tie(raw):
+            return (TIED,)
+        if keys or not _names_kind(raw):
+            return keys
+        kind = ELEMENTS.get(raw[KIND]) if isinstance(raw[KIND], str) else None
+        quantity = "" if kind is None else kind.fields()[0].name
+        return (quantity,) if quantity in raw else keys
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The element with other names in its expression, if it is tied."""
+        tied = self.tied and is_tie(raw) and isinstance(raw[TIED], str)
+        return {**raw, TIED: rename_in_expression(raw[TIED], names)} if tied else raw
+
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table of a range."""
         if self.free:
             yield place, RANGE
 
 
-def elements_codec(*, free: bool, tied: bool = False, least: int = 1) -> NamesCodec:
+class ElementsCodec(NamesCodec):
+    """Elements by their names."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The elements by other names, in their order."""
+        raw = super().rename(raw, names)
+        return {names.get(name, name): entry for name, entry in raw.items()} if isinstance(raw, Mapping) else raw
+
+
+def elements_codec(*, free: bool, tied: bool = False, least: int = 1) -> ElementsCodec:
     """The section [elements], with at least as many of them."""
-    return NamesCodec(ElementCodec(free, tied), element_name, least)
+    return ElementsCodec(ElementCodec(free, tied), element_name, least)
 
 
 def with_tied_values(entries: Mapping[str, Element | TieEntry]) -> tuple[dict[str, Element], list[Problem]]:

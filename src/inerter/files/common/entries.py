@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from inerter.field_metadata import Field, TextChoice
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
@@ -15,6 +15,7 @@ from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
+from inerter.networks.parser import rename_in_expression
 from inerter.units import format_quantity, parse_quantity, quote_value, unit_in
 
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
@@ -47,6 +48,8 @@ class QuantityCodec(Codec):
 
     One that is a place `if_given` has none where the file leaves it out.
     """
+
+    is_number: ClassVar[bool] = True
 
     unit: str  # SI
     least: str = "positive"  # or "not negative", or empty for either sign
@@ -86,7 +89,9 @@ class QuantityCodec(Codec):
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Quantity, and its bounds if it is a design variable."""
         if value is not None or not self.if_given:
-            yield from with_bounds(Number(self.unit, words, value, self.least == "not negative"))
+            yield from with_bounds(
+                Number(self.unit, words, value, self.least == "not negative", self.free, self.least == "")
+            )
 
     def put(self, value: Any, keys: Sequence[str], number: float) -> float | Free:
         """The number, or the free value with another bound."""
@@ -265,9 +270,21 @@ class SomeOfFile(Codec):
         return list_schema({"anyOf": [words_schema(self.known({})), TEXT_SCHEMA]})
 
 
+class NameListCodec(Scalar):
+    """A list of names of elements."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The list with other names."""
+        if not isinstance(raw, list):
+            return raw
+        return [names.get(one, one) if isinstance(one, str) else one for one in raw]
+
+
 def some_names(example: str) -> Codec:
-    """List of at least one name, without repetition; whether the names exist is checked later."""
-    return _list_of(text, lambda: example, lambda: TEXT_SCHEMA)
+    """List of at least one element, without repetition; whether the elements exist is checked later."""
+    return NameListCodec(
+        lambda values: _check_list(values, text, lambda: example), lambda: list_schema(TEXT_SCHEMA), list_or_none
+    )
 
 
 def _list_of(one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]) -> Codec:
@@ -324,7 +341,15 @@ def expression(value: Any) -> str:
     return value
 
 
-EXPRESSION = Scalar(expression, lambda: EXPRESSION_SCHEMA)
+class ExpressionCodec(Scalar):
+    """The expression of a network."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The expression with other names, even where it is not finished."""
+        return rename_in_expression(raw, names) if isinstance(raw, str) else raw
+
+
+EXPRESSION = ExpressionCodec(expression, lambda: EXPRESSION_SCHEMA)
 _TAKEN = frozenset(
     (
         "layout index method other parameter point omega value standard_error improvement other_value parameter_value "

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.errors import NetworkError
 from inerter.field_metadata import mounts_of
-from inerter.files.common.codec import INVALID, REQUIRED, Codec, LoadContext, TableCodec, section, without_none
+from inerter.files.common.codec import INVALID, REQUIRED, Codec, Entry, LoadContext, TableCodec, section, without_none
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import EXPRESSION, layout_name
 from inerter.files.common.problem import EntryError, Problem, at
@@ -73,6 +73,14 @@ class LayoutCodec(Codec):
     def dump(self, value: StrutLayout) -> str | dict[str, str]:
         """The text, or a table for several mounts."""
         return dict(value.struts) if len(value.struts) > 1 else next(iter(value.struts.values()))
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """The text for all mounts, or those of the mounts."""
+        yield from (NamesCodec(EXPRESSION) if isinstance(raw, Mapping) else EXPRESSION).raw_entries(raw)
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The networks with other names of elements."""
+        return (NamesCodec(EXPRESSION) if isinstance(raw, Mapping) else EXPRESSION).rename(raw, names)
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of a text, of the mounts of each model, and of mounts of the author's own."""

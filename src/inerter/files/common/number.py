@@ -15,3 +15,5 @@ class Number:
     words: str  # what it is, in sentences and on axes
     value: Value | None
     may_vanish: bool = False
+    may_be_free: bool = False
+    signed: bool = False  # whether it may be negative

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from inspect import getdoc
-from typing import Any
+from typing import Any, ClassVar
 
 from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
@@ -13,7 +13,6 @@ from inerter.files.common.codec import (
     Codec,
     KeyPath,
     LoadContext,
-    Scalar,
     TableCodec,
     key,
     keyed_dataclass,
@@ -26,7 +25,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
 from inerter.networks.elements import NAME
-from inerter.units import parse_one_of, parse_quantity, quote_value
+from inerter.units import PURE, parse_one_of, parse_quantity, quote_value
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
@@ -84,6 +83,8 @@ def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
 class InertiaCodec(Codec):
     """A mass, or the moment of inertia of an angle."""
 
+    is_number: ClassVar[bool] = True
+
     def load(self, raw: Any, context: LoadContext) -> float:
         """The mass [kg], or an `Inertia`."""
         return inertia(raw)
@@ -109,14 +110,35 @@ def _unit_of(value: float) -> str:
     return "kg m^2" if isinstance(value, Inertia) else "kg"
 
 
-_LEVER = Scalar(lever, lambda: {"anyOf": [{"type": "number"}, quantity_schema("m")]})
+@dataclass(frozen=True)
+class LeverCodec(Codec):
+    """A lever: a mere number, or a length for an angle."""
+
+    is_number: ClassVar[bool] = True
+
+    def load(self, raw: Any, context: LoadContext) -> float:
+        """The number, or a `Length` [m]."""
+        return lever(raw)
+
+    def schema(self) -> dict[str, Any]:
+        """The JSON Schema of both."""
+        return {"anyOf": [{"type": "number"}, quantity_schema("m")]}
+
+    def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The lever."""
+        unit = "m" if isinstance(value, Length) else PURE
+        yield (), Number(unit, words or "lever", value, may_vanish=True, signed=True)
+
+    def put(self, value: float, keys: Sequence[str], number: float) -> float:
+        """Lever with another number, of the same type as `value`."""
+        return type(value)(number)
 
 
 @dataclass(frozen=True)
 class PortCodec(NamesCodec):
     """Names with levers: coordinates that a port is joined to, or outputs with their weights."""
 
-    item: Codec = _LEVER
+    item: Codec = LeverCodec()
     name: Callable[[Any], str] = part_name
 
     def dump(self, value: Mapping[str, float]) -> dict[str, Any]:

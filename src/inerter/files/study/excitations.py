@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, key, keyed_dataclass, keys_in
 from inerter.files.common.entries import TEXT, Amount, QuantityCodec
@@ -41,6 +41,8 @@ class SizeReference(NamedTuple):
 @dataclass(frozen=True)
 class AmountCodec(Codec):
     """Positive quantity in one of `units`, each with the name of its quantity; `what` names all of them."""
+
+    is_number: ClassVar[bool] = True
 
     units: Mapping[str, str]
     what: str

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from inerter.errors import InerterError
-from inerter.files.common.codec import Codec, KeyPath, Scalar, key, keyed_dataclass, table_of, without_none
+from inerter.files.common.codec import Codec, Entry, KeyPath, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
@@ -61,7 +61,18 @@ def _limit_text(value: Any) -> str | float:
     return quantity_text(value)
 
 
-_LIMIT = Scalar(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})
+class LimitTextCodec(Scalar):
+    """The value of a limit, whose unit is that of what is limited."""
+
+    is_number: ClassVar[bool] = True
+
+    def numbers(self, value: str | float, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The value, in the unit in which it is written."""
+        unit = PURE if isinstance(value, float) else unit_in(value)
+        yield (), Number(unit, words, value if isinstance(value, float) else parse_quantity(value, unit))
+
+
+_LIMIT = LimitTextCodec(_limit_text, lambda: {"anyOf": [{"type": "number"}, quantity_schema()]})
 
 
 @keyed_dataclass
@@ -90,6 +101,19 @@ class LimitsCodec(ByPlaceCodec):
         for limit in value:
             found.setdefault(limit.of, {})[limit.sense] = limit.entry()
         return found
+
+    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+        """Values of all limits, in tables of tables where their names are written without quotes."""
+        for name, inside in raw.items() if isinstance(raw, Mapping) else ():
+            if name in _SENSES:
+                yield Entry(_LIMIT, inside, (name,), words=name.replace("_", " "))
+            else:
+                for entry in self.raw_entries(inside):
+                    yield replace(
+                        entry,
+                        keys=(name, *entry.keys),
+                        words=f"{name}{'.' if len(entry.keys) > 1 else ' '}{entry.words}",
+                    )
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Values of all limits, by index and side."""

@@ -47,7 +47,7 @@ from inerter.files.common.vehicle_tables import vehicle_codec
 from inerter.files.common.vehicles import models
 from inerter.files.study.limits import LimitsCodec, StudyLimit
 from inerter.files.study.own_indices import indices_of, own_indices_codec
-from inerter.files.study.place import Sweep
+from inerter.files.study.place import ELEMENTS, Sweep, place_of
 from inerter.files.study.task_rows import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
@@ -90,11 +90,45 @@ class ConditionEntry:
     numbers: Mapping[str, Any]
 
 
-_CONDITION = table_of(
+def rename_places(table: Any, names: Mapping[str, str]) -> Any:
+    """A table by places, written in either way, with other names of elements in them."""
+    if not isinstance(table, Mapping):
+        return table
+    renamed = {}
+    for label, entry in table.items():
+        place = place_of(label)
+        first, *more = place.key.split(".")
+        if label == ELEMENTS and isinstance(entry, Mapping):
+            renamed[label] = {names.get(name, name): one for name, one in entry.items()}
+        elif place.section == ELEMENTS:
+            renamed[label.removesuffix(place.key) + ".".join([names.get(first, first), *more])] = entry
+        else:
+            renamed[label] = entry
+    return renamed
+
+
+class ConditionCodec(TableCodec):
+    """The table of a condition, whose other keys are places."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with other names of elements in its places."""
+        return rename_places(raw, {old: new for old, new in names.items() if old not in self.names})
+
+
+class PlacesCodec(ByPlaceCodec):
+    """A table by places, among them those of elements."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with other names of elements in its places."""
+        return rename_places(raw, names)
+
+
+_CONDITION = ConditionCodec(
+    keys_in(ConditionEntry),
     ConditionEntry,
     before=lambda table: by_place(table, entries=False),
     rest="numbers",
-    about=ConditionEntry.__doc__,
+    about=str(ConditionEntry.__doc__),
 )
 
 
@@ -102,7 +136,7 @@ _VALUES = EitherCodec(table_of(SweepRange, about=SweepRange.__doc__), SWEEP_LIST
 
 
 @dataclass(frozen=True)
-class SweepsCodec(ByPlaceCodec):
+class SweepsCodec(PlacesCodec):
     """The values that numbers of the file take, by their places."""
 
     item: Codec = _VALUES
@@ -225,7 +259,7 @@ class Settings:
     )
     points: int = key(whole(3, _MOST_OF_FRONT), "Number of designs on a Pareto front.", "points = 25", default=POINTS)
     tolerance: Mapping[str, float] = key(
-        ByPlaceCodec(_SCATTER),
+        PlacesCodec(_SCATTER),
         "Relative tolerance of each value, for the distribution of the index and its Sobol' indices.",
         'tolerance = { c = "10 %", b = "5 %" }',
         default=_NONE,

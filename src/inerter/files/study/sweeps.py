@@ -105,7 +105,7 @@ def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
 def value_of(number: Number, text: str) -> float:
     """Value [SI] of a text for the number at a place; raises `UnitError`, or `EntryError` if it is not possible."""
     value = parse_quantity(text, number.unit)
-    if value < 0.0 or (value == 0.0 and not number.may_vanish):
+    if (value < 0.0 and not number.signed) or (value == 0.0 and not number.may_vanish):
         raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {number.unit}")
     return value
 

@@ -1,0 +1,69 @@
+"""Parts of a study document, finished or not, that a page draws and edits: networks, elements and numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from inerter.app.parts import parse_network
+from inerter.app.wire import Refusal
+from inerter.files.common.problem import EntryError
+from inerter.files.study.unfinished import (
+    WrittenNumber,
+    elements_in_use,
+    free_values,
+    layout_elements,
+    rename_elements,
+    written_elements,
+    written_networks,
+    written_numbers,
+)
+
+Document = Mapping[str, Any]
+
+
+def parts_of_document(document: Document) -> dict[str, Any]:
+    """Networks as trees, elements of layouts, kinds of elements, and numbers with their keys in the document."""
+    elements, free, used = layout_elements(document), free_values(document), elements_in_use(document)
+    given = document.get("elements")
+    known = list(given) if isinstance(given, Mapping) else []
+    kinds = {name: element.key for name, element in written_elements(document).items()}
+    return {
+        "networks": [
+            {"path": list(keys), "text": text, **_network(text, known)}
+            for keys, text in written_networks(document).items()
+        ],
+        "layouts": {layout: {"elements": elements[layout], "free": free[layout]} for layout in elements},
+        "elements": {
+            name: {"kind": kinds.get(name), "layouts": [layout for layout in used if name in used[layout]]}
+            for name in known
+        },
+        "numbers": [_number(number) for number in written_numbers(document)],
+    }
+
+
+def _network(text: str, known: list[str]) -> dict[str, Any]:
+    """Tree and names of a network, with the place and sentence of what is wrong with it, if anything."""
+    return {**parse_network(text, None), **parse_network(text, known)}
+
+
+def _number(written: WrittenNumber) -> dict[str, Any]:
+    number = written.number
+    return {
+        "path": list(written.keys),
+        "place": written.place.label,
+        "words": number.words,
+        "sentence": written.sentence,
+        "unit": number.unit,
+        "value": number.value if isinstance(number.value, int | float) else None,
+        "may_be_free": number.may_be_free,
+        "name": written.name,
+    }
+
+
+def renamed_document(document: Document, names: Mapping[str, str]) -> dict[str, Any]:
+    """The document with other names of elements."""
+    try:
+        return {"study": rename_elements(document, names)}
+    except EntryError as error:
+        raise Refusal(400, str(error)) from None

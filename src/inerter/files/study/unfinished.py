@@ -1,0 +1,133 @@
+"""Numbers, networks and elements in the tables of a study file, which may be unfinished, with their keys in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from inerter.errors import NetworkError
+from inerter.files.common.codec import INVALID, Entry, KeyPath
+from inerter.files.common.codecs import with_name
+from inerter.files.common.elements import ElementCodec, with_tied_values
+from inerter.files.common.entries import LOWER, UPPER, ExpressionCodec, element_name
+from inerter.files.common.number import Number
+from inerter.files.common.problem import EntryError
+from inerter.files.study.place import Place
+from inerter.files.study.sections import study_codec
+from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.parser import names
+from inerter.units import quote_value
+
+Tables = Mapping[str, Any]
+_LAYOUTS = "layouts"
+
+
+@dataclass(frozen=True)
+class WrittenNumber:
+    """A number that a file gives: its place, its keys in the file, and a sentence; without a value if it is invalid."""
+
+    place: Place
+    keys: KeyPath
+    number: Number
+    sentence: str
+    name: str  # as a design variable; empty if it cannot be one
+
+
+def written_numbers(tables: Tables) -> list[WrittenNumber]:
+    """All numbers that a file gives, in its order; those with bounds without their bounds."""
+    return [number for entry in _entries(tables) if entry.codec.is_number for number in _numbers(entry)]
+
+
+def _entries(tables: Tables) -> list[Entry]:
+    return list(study_codec().raw_entries(tables))
+
+
+def _numbers(entry: Entry) -> Iterator[WrittenNumber]:
+    value = entry.value()
+    invalid = ((), Number(getattr(entry.codec, "unit", ""), entry.words, None))
+    for keys, number in [invalid] if value is INVALID else entry.codec.numbers(value, entry.words):
+        if keys[-1:] in ((LOWER,), (UPPER,)):
+            continue
+        words = number.words
+        for name in entry.names:
+            words = with_name(words, name)
+        section, *more = *entry.keys, *keys
+        yield WrittenNumber(
+            Place(section, ".".join(more)),
+            (*entry.keys, *entry.codec.keys_in_file(entry.raw, keys)),
+            replace(number, words=words),
+            entry.sentence,
+            entry.keys[-1] if number.may_be_free else "",
+        )
+
+
+def written_networks(tables: Tables) -> dict[KeyPath, str]:
+    """The texts of all networks, by their keys: those of layouts, and those of the vehicle."""
+    found = {entry.keys: entry.raw for entry in _entries(tables) if isinstance(entry.codec, ExpressionCodec)}
+    return {keys: text for keys, text in found.items() if isinstance(text, str)}
+
+
+def written_elements(tables: Tables) -> dict[str, Element]:
+    """The elements whose entries are valid, by name."""
+    values = {entry.keys[-1]: entry.value() for entry in _entries(tables) if isinstance(entry.codec, ElementCodec)}
+    elements, _ = with_tied_values({name: value for name, value in values.items() if value is not INVALID})
+    return elements
+
+
+def layout_elements(tables: Tables) -> dict[str, list[str]]:
+    """Elements in the networks of each layout, in order of appearance, whether the file has them or not."""
+    given = tables.get(_LAYOUTS)
+    found: dict[str, list[str]] = {name: [] for name in given} if isinstance(given, Mapping) else {}
+    for keys, text in written_networks(tables).items():
+        if keys[0] == _LAYOUTS:
+            found[keys[1]] += _names(text)
+    return {layout: list(dict.fromkeys(several)) for layout, several in found.items()}
+
+
+def elements_in_use(tables: Tables) -> dict[str, list[str]]:
+    """Elements on which each layout depends: in its networks, in those of the vehicle, and those that others follow."""
+    elements = written_elements(tables)
+    common = [name for keys, text in written_networks(tables).items() if keys[0] != _LAYOUTS for name in _names(text)]
+    found = {}
+    for layout, own in layout_elements(tables).items():
+        values = [elements[name].value for name in (*own, *common) if name in elements]
+        sources = [name for value in values if isinstance(value, Tied) for name in value.names]
+        found[layout] = list(dict.fromkeys([*own, *common, *sources]))
+    return found
+
+
+def free_values(tables: Tables) -> dict[str, list[str]]:
+    """Names of the design variables of each layout: elements on which it depends, and quantities of the vehicle."""
+    free = [(entry.codec, entry.keys[-1]) for entry in _entries(tables) if isinstance(_value(entry), Free)]
+    elements = {name for codec, name in free if isinstance(codec, ElementCodec)}
+    others = [name for codec, name in free if not isinstance(codec, ElementCodec)]
+    used = elements_in_use(tables)
+    return {layout: [*(name for name in used[layout] if name in elements), *others] for layout in used}
+
+
+def _value(entry: Entry) -> Any:
+    """Value of an entry; of an element that of its quantity."""
+    value = entry.value()
+    return value.value if isinstance(value, Element) else value
+
+
+def _names(text: str) -> tuple[str, ...]:
+    try:
+        return names(text)
+    except NetworkError:
+        return ()
+
+
+def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any]:
+    """The tables with other names of elements, wherever the file has them.
+
+    Raises `EntryError` for a name that an element cannot have, or that another one has.
+    """
+    given = tables.get("elements")
+    known = given if isinstance(given, Mapping) else {}
+    for new in renamed.values():
+        element_name(new)
+        if (new in known and new not in renamed) or list(renamed.values()).count(new) > 1:
+            raise EntryError(got=quote_value(new), fault="the name of another element", expected="a name of its own")
+    return dict(study_codec().rename(tables, renamed))

@@ -1,0 +1,70 @@
+// What the library says of the study that is edited: its networks as trees, its elements, its numbers. The newest answer
+// stands until the next one comes; of what it names, what the document has no longer is left out.
+
+import { isRange, textOf, entryAt } from "./state/document.js";
+
+/** @typedef {import("./state/store.js").State} State */
+/** @typedef {import("./network/algebra.js").Tree} Tree */
+/** A number that the document gives: the keys to its text, its place in sweeps, its SI unit, and its name where it may
+ * be free. @typedef {{path: string[], place: string, words: string, sentence: string, unit: string,
+ * value: number | null, may_be_free: boolean, name: string}} NumberRow */
+/** @typedef {{path: string[], text: string, tree?: any, names?: string[], at?: [number, number], sentence?: string}}
+ * NetworkRow */
+/** @typedef {{networks: NetworkRow[], layouts: {[layout: string]: {elements: string[], free: string[]}},
+ * elements: {[name: string]: {kind: string | null, layouts: string[]}}, numbers: NumberRow[]}} Parts */
+
+/** @type {Parts} */
+const NOTHING = { networks: [], layouts: {}, elements: {}, numbers: [] };
+
+/** @param {State} state */
+const partsOf = ({ parts }) => parts ?? NOTHING;
+
+/** @template T @param {{[key: string]: T}} table @param {string} key @returns {T | null} */
+const at = (table, key) => (Object.hasOwn(table, key) ? table[key] : null);
+
+/** The tree of a text, null where it is no network or not known yet. @param {State} state @param {string} text */
+export const treeOf = ({ trees }, text) => at(trees, text);
+
+/** What is wrong with the network that is edited. @param {State} state
+ * @returns {{at: [number, number], sentence: string} | null} */
+export function wrongIn(state) {
+  const text = textOf(state.history.present);
+  const row = partsOf(state).networks.find((each) => each.text === text && each.sentence !== undefined);
+  return row?.at && row.sentence !== undefined ? { at: row.at, sentence: row.sentence } : null;
+}
+
+/** The numbers that the document gives. @param {State} state @returns {NumberRow[]} */
+export function numbersOf(state) {
+  const { study } = state.history.present;
+  return partsOf(state).numbers.filter(({ path }) => isAmount(entryAt(study, path)));
+}
+
+/** @param {unknown} entry */
+const isAmount = (entry) => typeof entry === "string" || typeof entry === "number" || isRange(entry);
+
+/** The elements in the networks of a layout. @param {State} state @param {string} layout @returns {string[]} */
+export const elementsIn = (state, layout) => at(partsOf(state).layouts, layout)?.elements ?? [];
+
+/** The layouts that depend on an element, null where that is not known yet. @param {State} state @param {string} name */
+export const layoutsWith = (state, name) => at(partsOf(state).elements, name)?.layouts ?? null;
+
+/** What is free in a layout. @param {State} state @param {string} layout @returns {string[]} */
+export function freeIn(state, layout) {
+  const { study } = state.history.present;
+  const free = numbersOf(state).filter(({ path }) => isRange(entryAt(study, path))).map(({ name }) => name);
+  return (at(partsOf(state).layouts, layout)?.free ?? []).filter((name) => free.includes(name));
+}
+
+/** The free values of a design that nobody has chosen yet: they are in the middle of their bounds. @param {State} state
+ * @param {{layout: string, values: {[element: string]: string}}} design @returns {string[]} */
+export const unchosenIn = (state, { layout, values }) =>
+  freeIn(state, layout).filter((name) => values[name] === undefined);
+
+/** The row of an element's kind. @param {State} state @param {string} name @returns {any} */
+export function kindOf(state, name) {
+  const known = at(partsOf(state).elements, name)?.kind;
+  return known ? state.about?.elements.find((/** @type {any} */ { key }) => key === known) : null;
+}
+
+/** The unit of a free value. @param {State} state @param {string} name @returns {string} */
+export const unitOf = (state, name) => partsOf(state).numbers.find((row) => row.name === name)?.unit ?? "";

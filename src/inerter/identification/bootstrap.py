@@ -78,7 +78,7 @@ def bootstrap(problem: FitProblem, optimum: BestFit, seed: int, draws: int = DRA
 
 
 def predictive_widening(ratio: Matrix, draws: int) -> Matrix:
-    """Factor of a variance by curvature with which a 95 % interval covers, from a sample variance over it.
+    """Inflation factor of the variance by curvature for 95 % predictive coverage, given the sample variance over it.
 
     A priori the true ratio is 1, with probability one half, or above it with density r^-1.5 / 4; given the sample
     variance of `draws` normal values over that by curvature, the interval has the predictive probability of 95 %

@@ -58,7 +58,7 @@ def balance(A: Array, scale: Array, inverse: Array) -> None:
 
 @part(borrowing=True)
 def list_places(A: Array, place: Array, depends: Array, order: Array) -> None:
-    """Fill `place` with the positions of the entries of a symmetric matrix when each is listed once.
+    """Fill `place` with the position of each entry of a symmetric matrix in the vector of its distinct entries.
 
     An entry stands before those that its equation in A P + P A' has from states which A moves without being moved by
     them, as a filter is moved by what it filters: blocks of zeros under the diagonal then stay zero in the factors.

@@ -107,10 +107,21 @@ class Catalogues(Task[CatalogueAnswer]):
         return [CataloguePart(layout, index) for index in study.indices for layout in having]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """An element that there is not."""
-        element = study.tasks["catalogues"].catalogue_of
-        if element is not None and element not in study.elements:
-            yield at(("study", "catalogue_of"), got=element, expected="an element")
+        """An element that there is not, a catalogue that is empty, or a value in the unit of another kind."""
+        keys = study.tasks["catalogues"]
+        if keys.catalogue_of is None:
+            return
+        element = study.elements.get(keys.catalogue_of)
+        if element is None:
+            yield at(("study", "catalogue_of"), got=keys.catalogue_of, expected="an element")
+        elif not keys.catalogue:
+            yield at(("study", "catalogue"), fault="missing", expected='catalogue = ["1 kN s/m", "2 kN s/m"]')
+        else:
+            for text in keys.catalogue:
+                try:
+                    parse_quantity(text, element.unit)
+                except it.InerterError as error:
+                    yield at(("study", "catalogue"), got=text, expected=f"a unit of {element.unit}", hint=str(error))
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """The values that are sold."""
@@ -140,6 +151,10 @@ class Catalogues(Task[CatalogueAnswer]):
         """The best value for each index."""
         for index in results.study.indices:
             own = [one for one in results.answers if one.index == index]
-            best = min(own, key=lambda one: one.value)
-            doubt = "" if best.ok else f"Not certain ({best.status_text}). "
-            yield f"{doubt}From the catalogue, {best.element} = {best.best} in {best.layout} is best for {index}."
+            known = [one for one in own if one.value < float("inf")]  # a failed answer has none
+            failed = "".join(f"Not certain ({one.status_text}). " for one in own if not one.ok)
+            if known:
+                best = min(known, key=lambda one: one.value)
+                yield f"{failed}From the catalogue, {best.element} = {best.best} in {best.layout} is best for {index}."
+            elif own:
+                yield f"{failed}From the catalogue, no value is known for {index}."

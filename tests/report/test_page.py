@@ -132,13 +132,18 @@ def test_what_is_filled_in_is_only_text(study, tmp_path, hostile):
     assert not {"script", "img"} & set(page.tags)
 
 
-@pytest.mark.parametrize("make", sampled([designs, sweep], [designs], kept=0), ids=["designs", "sweep"])
-def test_the_page_needs_no_other_file_and_names_each_thing_once(make, study, sweep_study, tmp_path):
-    results = make(LONG)
-    draw_study(results, tmp_path)
-    source = report(results, study if "omega" in results else sweep_study, tmp_path)
+@pytest.fixture(scope="module", params=sampled([designs, sweep], [designs], kept=0), ids=["designs", "sweep"])
+def long_names(request, study, sweep_study, tmp_path_factory):
+    """The source of a page with its figures, and their folder."""
+    folder, results = tmp_path_factory.mktemp("figures"), request.param(LONG)
+    draw_study(results, folder)
+    return report(results, study if "omega" in results else sweep_study, folder), folder
+
+
+def test_the_page_needs_no_other_file_and_names_each_thing_once(long_names):
+    source, folder = long_names
     page = Page(source)
-    assert page.tags.count("svg") == len(list(tmp_path.glob("*.svg")))
+    assert page.tags.count("svg") == len(list(folder.glob("*.svg")))
     assert "<?xml" not in source
     assert not {"script", "link", "img", "iframe", "object"} & set(page.tags)
     names = Counter(value for key, value in page.attributes if key == "id")
@@ -149,11 +154,8 @@ def test_the_page_needs_no_other_file_and_names_each_thing_once(make, study, swe
     assert {reference.removeprefix("#") for reference in references} <= set(names)
 
 
-@pytest.mark.parametrize("make", sampled([designs, sweep], [designs], kept=0), ids=["designs", "sweep"])
-def test_what_may_be_wider_than_the_screen_says_so(make, study, sweep_study, tmp_path):
-    results = make(LONG)
-    draw_study(results, tmp_path)
-    source = report(results, study if "omega" in results else sweep_study, tmp_path)
+def test_what_may_be_wider_than_the_screen_says_so(long_names):
+    source, _ = long_names
     wide = sum(source.count(tag) for tag in ("<table", "<svg", "<pre>"))
     assert wide == source.count(" is wider than the screen: scroll it sideways.")
 

@@ -67,9 +67,17 @@ def test_no_kind_of_work_is_silent(work: Callable[[], object]) -> None:
 
 def test_nor_is_work_that_waits() -> None:
     with receiving_steps() as steps:
-        time.sleep(3.0)
-    assert len(steps) >= 4
-    assert largest_gap(steps) < 3.0
+        time.sleep(1.5)
+    assert len(steps) >= 3
+    assert largest_gap(steps) < 1.5
+
+
+def test_work_that_waits_is_told_of_again_and_again() -> None:
+    """With a listener that is called five times as often as usual."""
+    steps: list[it.ProgressStep] = []
+    with progress.listening(progress.Listener(steps.append, every=0.2)):
+        time.sleep(0.7)
+    assert len(steps) >= 2
 
 
 def slowly(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:

@@ -55,6 +55,16 @@ def _numbers(table: Any, *place: str) -> Iterator[str]:
         yield ".".join(place)
 
 
+def _quantities(settings: Any) -> dict[str, Any]:
+    """What has a unit in the section [study], and limits; not what is swept, nor how much scatters."""
+    others = {"sweep", "tolerance"}
+    return {
+        key: entry
+        for key, entry in settings.items()
+        if key not in others and (isinstance(entry, dict) or (isinstance(entry, str) and entry[0].isdigit()))
+    }
+
+
 _STEP = """each => {
   each.value = String(Number(each.value) + 1);
   each.dispatchEvent(new Event("input", { bubbles: true }));
@@ -73,6 +83,8 @@ def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) 
         table.evaluate("each => { each.open = true; }")
     expected = [f"elements.{element}" for element in written["elements"]]
     expected += [place for section in ("vehicle", "road") for place in _numbers(written.get(section, {}), section)]
+    asked = {"indices": written.get("indices", {}), "study": _quantities(written["study"])}
+    expected += [place for section, table in asked.items() for place in _numbers(table, section)]
     assert sorted(page.eval_on_selector_all("[data-place]", "all => all.map(each => each.dataset.place)")) == sorted(
         expected
     )
@@ -103,9 +115,14 @@ def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> No
     for place, text in {"upper.pitch": "-9 m", "lower.bogie_rear": "0.5"}.items():
         page.fill(f"[id='entry vehicle.struts.secondary_rear.{place}']", text)
         page.keyboard.press("Enter")
-    page.fill("[id='entry vehicle.struts.secondary_rear.upper.body']", "a lot")
+    body = "[id='entry vehicle.struts.secondary_rear.upper.body']"
+    page.fill(body, "a lot")
     page.keyboard.press("Enter")
-    page.wait_for_selector("text=expected a number, such as 1")
+    page.wait_for_selector(".amount .problem:has-text('Got \"a lot\"')")
+    page.fill(body, "1")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".amount .problem", state="detached")
+    visitor.settled()
     shown = visitor.values()
     path = visitor.download("This design, values fixed", tmp_path)
     strut = tomllib.loads(path.read_text())["vehicle"]["struts"]["secondary_rear"]

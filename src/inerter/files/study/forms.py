@@ -6,15 +6,16 @@ it in Python. A new form is a row of `FORMS`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from inerter.errors import RegistryError
 from inerter.field_metadata import TypedField
-from inerter.files.common.codec import REQUIRED, Codec, Declaration, Scalar
+from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, Scalar
 from inerter.files.common.codecs import NamesCodec
 from inerter.files.common.entries import TEXT
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.study.excitations import (
     EXCITATION,
@@ -27,7 +28,7 @@ from inerter.files.study.excitations import (
 from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
-from inerter.units import quote_value
+from inerter.units import PURE, quote_value
 from inerter.validation import is_number
 
 _OF_INPUTS = {"N": "force", "N m": "moment", "m": "road", "m/s": "velocity of a road"}
@@ -70,7 +71,19 @@ def _weight(value: Any) -> float:
 
 
 _WEIGHT_SCHEMA: dict[str, Any] = {"type": "number", "not": {"const": 0}}
-_OUTPUTS = NamesCodec(Scalar(_weight, lambda: _WEIGHT_SCHEMA), least=1)
+
+
+class WeightCodec(Scalar):
+    """The weight of an output."""
+
+    is_number: ClassVar[bool] = True
+
+    def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The weight."""
+        yield (), Number(PURE, words or "weight", value, signed=True)
+
+
+_OUTPUTS = NamesCodec(WeightCodec(_weight, lambda: _WEIGHT_SCHEMA), least=1)
 
 
 def _sum(weights: Mapping[str, float]) -> str:

@@ -1,5 +1,5 @@
-// What the library says of the study that is edited: its networks as trees, its elements, its numbers. The newest answer
-// stands until the next one comes; of what it names, what the document has no longer is left out.
+// What the library says of the study that is edited: its networks as trees, its elements, its numbers. The newest
+// answer stands until the next one comes; of what it names, what the document has no longer is left out.
 
 import { isRange, textOf, entryAt } from "./state/document.js";
 
@@ -45,13 +45,16 @@ const isAmount = (entry) => typeof entry === "string" || typeof entry === "numbe
 /** The elements in the networks of a layout. @param {State} state @param {string} layout @returns {string[]} */
 export const elementsIn = (state, layout) => at(partsOf(state).layouts, layout)?.elements ?? [];
 
-/** The layouts that depend on an element, null where that is not known yet. @param {State} state @param {string} name */
+/** The layouts that depend on an element, null where that is not known yet. @param {State} state
+ * @param {string} name */
 export const layoutsWith = (state, name) => at(partsOf(state).elements, name)?.layouts ?? null;
 
 /** What is free in a layout. @param {State} state @param {string} layout @returns {string[]} */
 export function freeIn(state, layout) {
   const { study } = state.history.present;
-  const free = numbersOf(state).filter(({ path }) => isRange(entryAt(study, path))).map(({ name }) => name);
+  const free = numbersOf(state)
+    .filter(({ path }) => isRange(entryAt(study, path)))
+    .map(({ name }) => name);
   return (at(partsOf(state).layouts, layout)?.free ?? []).filter((name) => free.includes(name));
 }
 

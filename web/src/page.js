@@ -53,8 +53,10 @@ export function Page({ store, api, enter }) {
     </header>
     <${Bar} store=${store} api=${api} enter=${enter} />
     ${blank
-      ? html`<main class="blank"><h2>No study is open</h2><p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
-          <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
+      ? html`<main class="blank"><h2>No study is open</h2>
+        <p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
+          <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button>
+            </main>`
       : html`<main>
           <div class="columns">
             <${NetworkPanel} store=${store} api=${api} />
@@ -67,8 +69,9 @@ export function Page({ store, api, enter }) {
 
 const ACTS = ["keydown", "click", "change", "submit"];
 
-/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. What a key or a button does is about what is
- * drawn: a call that is due comes before it, `now`, however late the frame is. @param {() => void} told */
+/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. What a key or a button
+ * does is about what is drawn: a call that is due comes before it, `now`, however late the frame is.
+ * @param {() => void} told */
 function inFrames(told) {
   let due = false;
   const now = () => {
@@ -94,8 +97,10 @@ async function start(store, api) {
 function Title({ store }) {
   const { study } = store.get().history.present;
   if (Object.keys(study).length === 0) return null;
-  return html`<${Field} class="title" aria-label="Title of the study" placeholder="Untitled study" text=${study.title ?? ""}
-    done=${(/** @type {string} */ title) => store.change({ type: "placed", place: ["title"], value: title || undefined })} />`;
+  return html`<${Field} class="title" aria-label="Title of the study" placeholder="Untitled study"
+    text=${study.title ?? ""}
+    done=${(/** @type {string} */ title) => store.change({ type: "placed", place: ["title"], value: title
+      || undefined })} />`;
 }
 
 /** @type {{[connection: string]: string}} */
@@ -119,7 +124,8 @@ function AtWork({ api }) {
     }, LOOK);
     return () => clearInterval(looking);
   }, [api]);
-  return since !== null && html`<p class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></p>`;
+  return since !== null && html`<p class="at-work">
+    <${Moving} key=${since} what="The server is at work" since=${since} /></p>`;
 }
 
 /** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
@@ -127,13 +133,17 @@ function Bar({ store, api, enter }) {
   const { connection, messages, about } = store.get();
   const kernels = connection === "compiling" ? about?.kernels : null;
   return html`<div class="bar" aria-live="polite" data-connection=${connection}>
-    ${connection !== "ready" && html`<p class="notice">${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})` : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</p>`}
+    ${connection !== "ready" && html`<p class="notice">
+      ${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})`
+        : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</p>`}
     ${connection === "refused" &&
     html`<form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
       event.preventDefault();
       enter(String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("token")));
     }}><label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
-    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>${text} <button type="button" class="link" aria-label="Close the message" onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
+    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>
+      ${text} <button type="button" class="link" aria-label="Close the message"
+        onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
   </div><${AtWork} api=${api} />`;
 }
 
@@ -151,9 +161,12 @@ function Tabs({ store, api }) {
   }
   return html`<section class="panel tabs">
     <div role="tablist" aria-label="More answers" onKeyDown=${turn}>
-      ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key} aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1} onClick=${() => store.dispatch({ type: "viewed", view: { tab: key } })}>${title}</button>`)}
+      ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key}
+        aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1}
+          onClick=${() => store.dispatch({ type: "viewed", view: { tab: key } })}>${title}</button>`)}
     </div>
-    <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}><${shown.Panel} store=${store} api=${api} /></div>
+    <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
+      <${shown.Panel} store=${store} api=${api} /></div>
   </section>`;
 }
 
@@ -165,7 +178,10 @@ function Theme({ store }) {
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
   }, [theme]);
-  return html`<label class="theme">Colours <select value=${theme} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { theme: /** @type {any} */ (event.currentTarget).value } })}>${THEMES.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>`;
+  return html`<label class="theme">Colours <select value=${theme}
+    onChange=${(/** @type {Event} */ event) =>
+      store.dispatch({ type: "viewed", view: { theme: /** @type {any} */ (event.currentTarget).value } })}>
+        ${THEMES.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>`;
 }
 
 /** What the whole page listens to. @param {Store} store @param {Api} api */
@@ -173,7 +189,8 @@ function listen(store, api) {
   const off = new AbortController();
   const { signal } = off;
   addEventListener("keydown", (event) => {
-    const menu = event.key === "Escape" && /** @type {Element} */ (event.target).closest("details.menu[open], details.bounds[open]");
+    const menu = event.key === "Escape"
+      && /** @type {Element} */ (event.target).closest("details.menu[open], details.bounds[open]");
     if (menu) {
       menu.removeAttribute("open");
       menu.querySelector("summary")?.focus();
@@ -183,21 +200,26 @@ function listen(store, api) {
     event.preventDefault();
     store.dispatch({ type: key === "y" || event.shiftKey ? "redone" : "undone" });
   }, { signal });
-  addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault(), { signal });
+  addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault(),
+    { signal });
   addEventListener("drop", (event) => {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
     void filesOf(event.dataTransfer).then((files) => open(store, api, files));
   }, { signal });
   addEventListener("click", (event) => {
-    for (const menu of document.querySelectorAll("details.menu[open], details.bounds[open]")) if (!menu.contains(/** @type {Node} */ (event.target))) menu.removeAttribute("open");
+    for (const menu of document.querySelectorAll("details.menu[open], details.bounds[open]")) {
+      if (!menu.contains(/** @type {Node} */ (event.target))) menu.removeAttribute("open");
+    }
   }, { signal });
   return () => off.abort();
 }
 
-/** The files that were dropped, and of a folder the files in it. @param {DataTransfer} transfer @returns {Promise<File[]>} */
+/** The files that were dropped, and of a folder the files in it. @param {DataTransfer} transfer
+ * @returns {Promise<File[]>} */
 async function filesOf(transfer) {
-  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null && entry !== undefined);
+  const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null
+    && entry !== undefined);
   const found = await Promise.all(entries.map(filesIn));
   return found.length ? found.flat() : [...transfer.files];
 }
@@ -208,6 +230,9 @@ async function filesIn(entry) {
   const reader = entry.createReader();
   /** @type {any[]} */
   const inside = [];
-  for (let more = [entry]; more.length > 0; inside.push(...more)) more = await new Promise((resolve, reject) => reader.readEntries(resolve, reject)); // a hundred at a time
-  return Promise.all(inside.filter((/** @type {any} */ each) => each.isFile).map((/** @type {any} */ each) => new Promise((resolve, reject) => each.file(resolve, reject))));
+  // a hundred at a time
+  for (let more = [entry]; more.length > 0; inside.push(...more)) more = await new Promise((resolve, reject) =>
+    reader.readEntries(resolve, reject));
+  return Promise.all(inside.filter((/** @type {any} */ each) => each.isFile).map((/** @type {any} */ each) =>
+    new Promise((resolve, reject) => each.file(resolve, reject))));
 }

@@ -8,8 +8,10 @@ import { takenApart } from "./state/scale.js";
 
 /** @typedef {import("./state/store.js").State} State */
 /** @typedef {import("./state/document.js").Document} Document */
-/** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer tells.
- * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) => import("./state/store.js").Action}} Row */
+/** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
+ * tells.
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) =>
+ * import("./state/store.js").Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
@@ -21,19 +23,33 @@ export function baselineOf({ study, values }) {
   return { layout, values: values[layout] ?? {}, name: layout };
 }
 
-/** The design that is edited and the one that it is compared with; that one alone if it is edited. @param {Document} document */
+/** The design that is edited and the one that it is compared with; that one alone if it is edited.
+ * @param {Document} document */
 export function shownDesigns(document) {
   const [design, baseline] = [designOf(document), baselineOf(document)];
   return design.layout === baseline.layout ? [design] : [design, baseline];
 }
 
 /** What can stand in the comparison: the layouts of the study, and the designs that were kept.
- * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout: string, values: {[element: string]: string}, name: string}}} Choice */
+ * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout:
+ * string, values: {[element: string]: string}, name: string}}} Choice */
 
 /** @param {Document} document @returns {Choice[]} */
 export function choicesOf(document) {
-  const layouts = Object.keys(document.study.layouts ?? {}).map((layout) => ({ key: `layout ${layout}`, name: layout, kept: false, study: document.study, design: designOf({ ...document, layout }) }));
-  const designs = document.designs.map((design) => ({ key: `kept ${design.name}`, name: design.name, kept: true, study: design.study, design: { ...designOf({ ...document, ...design }), name: design.name } }));
+  const layouts = Object.keys(document.study.layouts ?? {}).map((layout) => ({
+    key: `layout ${layout}`,
+    name: layout,
+    kept: false,
+    study: document.study,
+    design: designOf({ ...document, layout }),
+  }));
+  const designs = document.designs.map((design) => ({
+    key: `kept ${design.name}`,
+    name: design.name,
+    kept: true,
+    study: design.study,
+    design: { ...designOf({ ...document, ...design }), name: design.name },
+  }));
   return [...layouts, ...designs];
 }
 
@@ -46,12 +62,34 @@ export function comparedOf({ view, history }) {
 
 /** @type {((state: State, document: Document) => Row[])[]} */
 const ROWS = [
-  (_, { study }) => [{ panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) }],
+  (_, { study }) => [
+    { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
+  ],
   (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
-  (state, document) => [{ panel: "indices", path: "panel/indices", ofDesigns: true, body: { ...about(document), methods: methodNames(state) } }],
-  (state, document) => (state.view.tab === "response" ? [{ panel: "response", path: "panel/response", ofDesigns: true, body: about(document) }] : []),
+  (state, document) => [
+    {
+      panel: "indices",
+      path: "panel/indices",
+      ofDesigns: true,
+      body: { ...about(document), methods: methodNames(state) },
+    },
+  ],
+  (state, document) =>
+    state.view.tab === "response"
+      ? [{ panel: "response", path: "panel/response", ofDesigns: true, body: about(document) }]
+      : [],
   (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
-  (state, document) => (state.view.tab === "history" ? [{ panel: "mechanism", path: "panel/mechanism", ofDesigns: true, body: { study: document.study, design: designOf(document) } }] : []),
+  (state, document) =>
+    state.view.tab === "history"
+      ? [
+          {
+            panel: "mechanism",
+            path: "panel/mechanism",
+            ofDesigns: true,
+            body: { study: document.study, design: designOf(document) },
+          },
+        ]
+      : [],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   (state, document) => unitsOf(state, document),
 ];
@@ -74,12 +112,14 @@ export function questions(state) {
 const keyed = (row) => ({ ...row, key: JSON.stringify(row.body) });
 
 /** What a panel shows: the answer to what it asks now. @param {State} state @param {string} panel */
-export const answerOf = (state, panel) => shownOf(state.answers[panel], questions(state).find((question) => question.panel === panel)?.key ?? null);
+export const answerOf = (state, panel) =>
+  shownOf(state.answers[panel], questions(state).find((question) => question.panel === panel)?.key ?? null);
 
 /** The same of a panel that asks by a button. @param {State} state @param {string} panel */
 export const soughtAnswer = (state, panel) => soughtIn(state.answers[panel], soughtOf(state, panel)?.key ?? null);
 
-/** What a panel that asks by a button has last been asked, of the design that is edited now. @param {State} state @param {string} panel @returns {Question | null} */
+/** What a panel that asks by a button has last been asked, of the design that is edited now. @param {State} state
+ * @param {string} panel @returns {Question | null} */
 export function soughtOf(state, panel) {
   const parameters = state.sought[panel];
   if (parameters === undefined) return null;
@@ -88,11 +128,25 @@ export function soughtOf(state, panel) {
 
 /** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
 const SOUGHT = {
-  budget: (state, document, { index, parameter }) => ({ study: document.study, design: designOf(document), baseline: baselineOf(document), index, parameter, ...seeing(state) }),
-  tolerance: (state, document, { index, spread }) => ({ study: document.study, design: designOf(document), index, spread, ...effortOf(state, Object.keys(spread).length) }),
+  budget: (state, document, { index, parameter }) => ({
+    study: document.study,
+    design: designOf(document),
+    baseline: baselineOf(document),
+    index,
+    parameter,
+    ...seeing(state),
+  }),
+  tolerance: (state, document, { index, spread }) => ({
+    study: document.study,
+    design: designOf(document),
+    index,
+    spread,
+    ...effortOf(state, Object.keys(spread).length),
+  }),
 };
 
-/** The method by which the page judges, where it sees what a budget is about; else that of the study. @param {State} state */
+/** The method by which the page judges, where it sees what a budget is about; else that of the study.
+ * @param {State} state */
 function seeing(state) {
   const method = judging(state);
   return !method || isQuick(method) ? {} : { method: method.name };
@@ -101,22 +155,32 @@ function seeing(state) {
 const DESIGNS = 10_000; // that are judged while one waits, by norms, and a quarter of them by what takes longer
 const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
 
-/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows. @param {State} state @param {number} scattering how many values scatter */
+/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows.
+ * @param {State} state @param {number} scattering how many values scatter */
 function effortOf(state, scattering) {
   const method = judging(state);
   const quick = !method || method.averages || isQuick(method);
   const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
-  return { ...(method && !method.averages ? { method: method.name } : {}), samples: Math.min(MOST, Math.max(FEWEST, samples)) };
+  return {
+    ...(method && !method.averages ? { method: method.name } : {}),
+    samples: Math.min(MOST, Math.max(FEWEST, samples)),
+  };
 }
 
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
-export const bodyOf = (state, panel) => questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
+export const bodyOf = (state, panel) =>
+  questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
 
-/** The method by which the page judges; none where the server has told of none, and then those of the study. @param {State} state */
+/** The method by which the page judges; none where the server has told of none, and then those of the study.
+ * @param {State} state */
 const methodNames = (state) => [judging(state)?.name ?? []].flat();
 
 /** @param {Document} document */
-const about = (document) => ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
+const about = (document) => ({
+  study: document.study,
+  designs: shownDesigns(document),
+  baseline: baselineOf(document),
+});
 
 /** @param {State} state @param {Document} document @returns {Row} */
 function historyOf({ view }, document) {
@@ -129,16 +193,27 @@ function comparison(state) {
   const compared = comparedOf(state);
   if (compared.length < 2) return [];
   const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
-  return [{ panel: "compare", path: "panel/compare", ofDesigns: true, body: { study: state.history.present.study, designs, methods: methodNames(state) } }];
+  return [
+    {
+      panel: "compare",
+      path: "panel/compare",
+      ofDesigns: true,
+      body: { study: state.history.present.study, designs, methods: methodNames(state) },
+    },
+  ];
 }
 
-/** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document @returns {Row[]} */
+/** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document
+ * @returns {Row[]} */
 function unitsOf(state, document) {
   const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
   if (asked.length === 0) return [];
   const items = asked.map(({ text, unit }) => ({ text, unit }));
   /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
-  const learnt = (value) => ({ type: "measured", quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])) });
+  const learnt = (value) => ({
+    type: "measured",
+    quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])),
+  });
   return [{ panel: "units", path: "quantities", body: { items }, learnt }];
 }
 
@@ -168,7 +243,8 @@ export function unitsIn(state, { study, values, ranges }) {
   return [...found.values()];
 }
 
-/** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document @returns {string[]} */
+/** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document
+ * @returns {string[]} */
 export function mountsOf(about, { study, layout }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
   const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);

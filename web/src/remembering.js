@@ -15,12 +15,18 @@ const LINK = "state";
 
 /** The document and what is looked at, as text for a link. @param {Document} document @param {Partial<View>} view */
 export async function packed(document, view) {
-  const bytes = new Blob([JSON.stringify({ ...document, view })]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const bytes = new Blob([JSON.stringify({ ...document, view })])
+    .stream()
+    .pipeThrough(new CompressionStream("deflate-raw"));
   const buffer = new Uint8Array(await new Response(bytes).arrayBuffer());
-  return btoa(Array.from(buffer, (byte) => String.fromCharCode(byte)).join("")).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+  return btoa(Array.from(buffer, (byte) => String.fromCharCode(byte)).join(""))
+    .replaceAll("+", "-")
+    .replaceAll("/", "_")
+    .replace(/=+$/, "");
 }
 
-/** The document that a text holds and what was looked at, or null. @param {string} text @returns {Promise<Shared | null>} */
+/** The document that a text holds and what was looked at, or null. @param {string} text
+ * @returns {Promise<Shared | null>} */
 export async function unpacked(text) {
   try {
     const bytes = Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0));
@@ -37,16 +43,27 @@ export async function unpacked(text) {
 export function documentFrom(read) {
   if (read === null || typeof read !== "object" || typeof read.study !== "object" || read.study === null) return null;
   const { study, layout, strut, values, ranges, designs } = { ...empty(), ...read };
-  return { study, layout: String(layout), strut: strut === null ? null : String(strut), values: values ?? {}, ranges: ranges ?? {}, designs: Array.isArray(designs) ? designs : [] };
+  return {
+    study,
+    layout: String(layout),
+    strut: strut === null ? null : String(strut),
+    values: values ?? {},
+    ranges: ranges ?? {},
+    designs: Array.isArray(designs) ? designs : [],
+  };
 }
 
-/** What was looked at, as far as it is that: of what is known the values of the same type. @param {any} read @returns {Partial<View>} */
+/** What was looked at, as far as it is that: of what is known the values of the same type. @param {any} read
+ * @returns {Partial<View>} */
 function viewFrom(read) {
-  const known = Object.entries(initial().view).filter(([key, value]) => typeof read?.[key] === typeof value && Array.isArray(read[key]) === Array.isArray(value));
+  const known = Object.entries(initial().view).filter(
+    ([key, value]) => typeof read?.[key] === typeof value && Array.isArray(read[key]) === Array.isArray(value),
+  );
   return Object.fromEntries(known.map(([key]) => [key, read[key]]));
 }
 
-/** A link to the document as it is and as it is looked at; never with the token. @param {Document} document @param {View} view */
+/** A link to the document as it is and as it is looked at; never with the token. @param {Document} document
+ * @param {View} view */
 export async function linkTo(document, { theme, playing, ...view }) {
   return `${location.origin}${location.pathname}#${LINK}=${await packed(document, view)}`;
 }
@@ -90,23 +107,26 @@ export function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
+const KNOWN = "study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat)";
 const RECORDS = /\.(csv|tsv|txt|tdms|mf4|mdf|mat)$/i;
 
-/** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api @param {Iterable<File>} files */
+/** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api
+ * @param {Iterable<File>} files */
 export async function open(store, api, files) {
   for (const file of await studiesFirst(files)) {
     try {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
       else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
-      else say(store, `${file.name} is no file that this page knows: it takes study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat).`);
+      else say(store, `${file.name} is no file that this page knows: it takes ${KNOWN}.`);
     } catch (error) {
       say(store, `${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
     }
   }
 }
 
-const SOURCES = ["study.resolved.toml", "simulation.toml", "fit.json"]; // what a result folder was made of, or what came of it
+// what a result folder was made of, or what came of it
+const SOURCES = ["study.resolved.toml", "simulation.toml", "fit.json"];
 
 /** Of a result folder what it was made of, else the files themselves. @param {Iterable<File>} files */
 async function studiesFirst(files) {
@@ -118,7 +138,8 @@ async function studiesFirst(files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
-/** Says something; of what is about the same thing the newest stays. @param {Store} store @param {string} text @param {string} [about] */
+/** Says something; of what is about the same thing the newest stays. @param {Store} store @param {string} text
+ * @param {string} [about] */
 const say = (store, text, about) => store.dispatch({ type: "said", text, about });
 
 /** @param {Store} store @param {Api} api @param {File} file */
@@ -126,22 +147,33 @@ async function openStudyFile(store, api, file) {
   const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
   const other = problems?.[0]?.sentence;
   if (isSimulation(study)) return openSimulation(store, api, file.name, study);
-  const isStudy = study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
+  const isStudy =
+    study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
   if (!isStudy) {
     say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
     return;
   }
   if (!(await beginWith(store, api, study))) return;
-  say(store, problems.length ? `${file.name} is open; ${problems.length === 1 ? "one entry needs" : `${problems.length} entries need`} another value.` : `${file.name} is open.`);
+  say(
+    store,
+    problems.length
+      ? `${file.name} is open; ${problems.length === 1 ? "one entry needs"
+        : `${problems.length} entries need`} another value.`
+      : `${file.name} is open.`,
+  );
 }
 
 const RIG = "displacement"; // what is moved there: an end of the device itself
 
 /** Whether tables are those of a simulation file. @param {any} tables */
-const isSimulation = (tables) => tables !== null && typeof tables === "object" && ["vehicle", "elements", "layouts", "signal"].every((key) => key in tables) && !("study" in tables);
+const isSimulation = (tables) =>
+  tables !== null &&
+  typeof tables === "object" &&
+  ["vehicle", "elements", "layouts", "signal"].every((key) => key in tables) &&
+  !("study" in tables);
 
-/** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is open.
- * @param {Store} store @param {Api} api @param {string} name @param {any} tables */
+/** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is
+ * open. @param {Store} store @param {Api} api @param {string} name @param {any} tables */
 async function openSimulation(store, api, name, { signal, simulation, ...study }) {
   const { about } = store.get();
   const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
@@ -154,7 +186,8 @@ async function openSimulation(store, api, name, { signal, simulation, ...study }
 /** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */
 async function openFit(store, api, file) {
   const fit = JSON.parse(await file.text());
-  if (typeof fit.elements !== "string") return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
+  if (typeof fit.elements !== "string")
+    return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
   const { study } = await api.post("study/read", { text: fit.elements, name: file.name });
   say(store, `${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
 }

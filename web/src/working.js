@@ -13,18 +13,28 @@ import { nextLayout, textOf } from "./state/document.js";
 const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const LOOK = 300; // [ms] between two looks at work that goes on
 
-/** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api @param {{study: any, layouts: string[], index: string, method: string}} asked */
+/** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api
+ * @param {{study: any, layouts: string[], index: string, method: string}} asked */
 export async function optimise(store, api, asked) {
   const { study, layouts, index, method } = asked;
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
-      await begin(store, api, { kind: "optimise", title: `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`, ...body });
+      await begin(store, api, {
+        kind: "optimise",
+        title: `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`,
+        ...body,
+      });
       store.dispatch({ type: "viewed", view: { tab: "work" } });
       return "Under way: see Work.";
     }
-    const { designs, at_speeds: speeds } = await api.post("panel/optimise", { ...body, client: "page.optimise", sequence: Date.now() });
-    if (store.get().history.present.study !== study) return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
+    const { designs, at_speeds: speeds } = await api.post("panel/optimise", {
+      ...body,
+      client: "page.optimise",
+      sequence: Date.now(),
+    });
+    if (store.get().history.present.study !== study)
+      return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
     return withSpeeds(takeOptima(store, designs, null, study), speeds);
   } catch (error) {
     return /** @type {Error} */ (error).message;
@@ -43,12 +53,21 @@ export function takeOptima(store, designs, gesture = null, of = null) {
     of === study ? chosen : chosen.filter(({ best, values }) => isHere(store.get(), best.layout, Object.keys(values)));
   const doubts = doubted(designs.flatMap(membersOf));
   if (chosen.length === 0) return doubts || "No value is free: nothing to choose. Make one free by its button.";
-  if (taken.length === 0) return `${doubts}These are values of a layout ${chosen[0].best.layout} that has ${Object.keys(chosen[0].values).join(", ")} free, which is not in the study that is open; nothing was changed.`;
-  store.change({ type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) }, gesture);
-  return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) => best.layout + atBounds(best)).join(", ")}.`;
+  if (taken.length === 0) {
+    const [{ best, values }] = chosen;
+    const other = `a layout ${best.layout} that has ${Object.keys(values).join(", ")} free`;
+    return `${doubts}These are values of ${other}, which is not in the study that is open; nothing was changed.`;
+  }
+  store.change(
+    { type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) },
+    gesture,
+  );
+  return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
+    best.layout + atBounds(best)).join(", ")}.`;
 }
 
-/** What is told of optima, with what they become at other speeds: doubts first. @param {string} text @param {{doubts: string[], others: string[]} | undefined} speeds */
+/** What is told of optima, with what they become at other speeds: doubts first. @param {string} text
+ * @param {{doubts: string[], others: string[]} | undefined} speeds */
 export const withSpeeds = (text, speeds) => [...(speeds?.doubts ?? []), text, ...(speeds?.others ?? [])].join(" ");
 
 /** Whether a layout has these values free.
@@ -58,7 +77,8 @@ function isHere(state, layout, values) {
   return values.every((name) => free.includes(name));
 }
 
-/** What an optimum is made of: its value by each method, or by one. @param {any} best @returns {import("./parts/doubts.js").Member[]} */
+/** What an optimum is made of: its value by each method, or by one. @param {any} best
+ * @returns {import("./parts/doubts.js").Member[]} */
 export function membersOf({ layout, index, status, message }) {
   const of = [index, layout].filter(Boolean).join(" of ");
   const several = status !== null && typeof status === "object" ? Object.values(status) : [status];
@@ -71,8 +91,8 @@ function atBounds({ active_bounds: bounds }) {
   return names.length ? ` (at a bound: ${names.map((/** @type {any} */ each) => each.name ?? each).join(", ")})` : "";
 }
 
-/** Opens a study, with free values at their best for its first index by norms: a fair beginning. Returns whether it is still open then.
- * @param {Store} store @param {Api} api @param {any} study */
+/** Opens a study, with free values at their best for its first index by norms: a fair beginning. Returns whether it
+ * is still open then. @param {Store} store @param {Api} api @param {any} study */
 export async function openStudy(store, api, study) {
   const gesture = `open ${Date.now()}`;
   store.change({ type: "opened", study }, gesture);
@@ -80,8 +100,8 @@ export async function openStudy(store, api, study) {
   return store.get().history.present.study === study;
 }
 
-/** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of which the page tells.
- * @param {Store} store @param {Api} api @param {string | null} gesture */
+/** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of
+ * which the page tells. @param {Store} store @param {Api} api @param {string | null} gesture */
 export async function beginAtBest(store, api, gesture = null) {
   const { study } = store.get().history.present;
   const index = study.study?.indices?.[0];
@@ -92,7 +112,14 @@ export async function beginAtBest(store, api, gesture = null) {
     const parts = await api.post("study/parts", { study });
     if (Object.values(parts.layouts).every((/** @type {any} */ { free }) => free.length === 0)) return;
     if (!(await isSmall(api, study, Object.keys(study.layouts ?? {})[0]))) return;
-    const { designs } = await api.post("panel/optimise", { study, indices: [index], method, methods: [method], client: "page.opening", sequence: Date.now() });
+    const { designs } = await api.post("panel/optimise", {
+      study,
+      indices: [index],
+      method,
+      methods: [method],
+      client: "page.opening",
+      sequence: Date.now(),
+    });
     const { present } = store.get().history;
     if (present.study !== study || Object.keys(present.values).length > 0) return;
     takeOptima(store, designs, gesture, study);
@@ -107,12 +134,17 @@ export async function beginAtBest(store, api, gesture = null) {
 
 /** @param {Api} api @param {any} study @param {string} layout */
 async function isSmall(api, study, layout) {
-  const { coordinates } = await api.post("panel/mechanism", { study, layout, client: "page.size", sequence: Date.now() });
+  const { coordinates } = await api.post("panel/mechanism", {
+    study,
+    layout,
+    client: "page.size",
+    sequence: Date.now(),
+  });
   return coordinates.length <= SMALL;
 }
 
-/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would have the
- * name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
+/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would
+ * have the name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
 export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const document = store.get().history.present;
@@ -148,11 +180,15 @@ export async function takeFitted(store, api, fit, device) {
   return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
 }
 
-/** What is told in the place of a device: the values of a fit that is not to be relied on are not given. @param {any} fit */
-export const withheld = ({ parameters }) => `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
+/** What is told in the place of a device: the values of a fit that is not to be relied on are not given.
+ * @param {any} fit */
+export const withheld = ({ parameters }) =>
+  `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
 
-/** Parameters in SI units as texts that read back as the same numbers. @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
-const textsOf = (state, parameters) => Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
+/** Parameters in SI units as texts that read back as the same numbers.
+ * @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
+const textsOf = (state, parameters) =>
+  Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 
 /** @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body */
 export async function begin(store, api, body) {
@@ -169,11 +205,20 @@ export async function findWork(store, api) {
 }
 
 /** @param {any} job */
-const jobOf = (job) => ({ id: job.id, kind: job.kind, title: job.title, state: job.state, begun: job.begun ?? null, share: job.total ? (job.done ?? 0) / job.total : null, sentence: job.sentence || job.told || null });
+const jobOf = (job) => ({
+  id: job.id,
+  kind: job.kind,
+  title: job.title,
+  state: job.state,
+  begun: job.begun ?? null,
+  share: job.total ? (job.done ?? 0) / job.total : null,
+  sentence: job.sentence || job.told || null,
+});
 
 let watching = false;
 
-/** Looks at the work until none goes on: one request at a time, however much there is. @param {Store} store @param {Api} api */
+/** Looks at the work until none goes on: one request at a time, however much there is. @param {Store} store
+ * @param {Api} api */
 async function watch(store, api) {
   if (watching) return;
   watching = true;
@@ -197,7 +242,8 @@ async function look(store, api) {
   for (const id of Object.keys(store.get().work)) if (!here.has(id)) store.dispatch({ type: "dropped", id });
   for (const job of work) {
     store.dispatch({ type: "worked", job: jobOf(job) });
-    if (job.state === "done" && !store.get().work[job.id].result) store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
+    if (job.state === "done" && !store.get().work[job.id].result)
+      store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
   }
 }
 

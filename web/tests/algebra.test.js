@@ -39,7 +39,10 @@ function* places(tree, path = []) {
 }
 
 const pick = (draw, list) => list[Math.floor(list.length * draw())];
-const sorted = (tree) => leaves(tree).map(({ name }) => name).sort();
+const sorted = (tree) =>
+  leaves(tree)
+    .map(({ name }) => name)
+    .sort();
 const isCanonical = (tree) =>
   tree.kind === "element" ||
   (tree.parts.length > 1 && tree.parts.every((part) => part.kind !== tree.kind && isCanonical(part)));
@@ -99,7 +102,10 @@ test("joining changes the admittance of that part as the law of its joint says",
     const path = pick(draw, [...places(tree)]);
     const [y, x] = [admittance(partAt(tree, path)), admittance(element("x"))];
     close(admittance(joinAt(tree, path, "parallel", element("x"))), admittanceWith(tree, path, y + x));
-    close(admittance(joinAt(tree, path, "series", element("x"), true)), admittanceWith(tree, path, 1 / (1 / y + 1 / x)));
+    close(
+      admittance(joinAt(tree, path, "series", element("x"), true)),
+      admittanceWith(tree, path, 1 / (1 / y + 1 / x)),
+    );
   });
 });
 

@@ -16,7 +16,12 @@ const study = (/** @type {any} */ { title, k = "120 kN/m", strut = "k | c", mode
   layouts: { S1: "k | c | b", S2: strut },
   study: { indices: ["J1"], baseline: "S1", optimise: "norm" },
 });
-const ABOUT = { vehicles: [{ key: "quarter-car", fields: [], mounts: ["strut"] }], road: [], elements: [], methods: [{ name: "norm", sees: "neither", searches: true, averages: false }] };
+const ABOUT = {
+  vehicles: [{ key: "quarter-car", fields: [], mounts: ["strut"] }],
+  road: [],
+  elements: [],
+  methods: [{ name: "norm", sees: "neither", searches: true, averages: false }],
+};
 const PANELS = ["parts", "check", "indices", "response"];
 
 /** A generator of numbers in [0, 1) from a seed (mulberry32). */
@@ -29,13 +34,21 @@ function random(seed) {
   };
 }
 
-const opened = (/** @type {any} */ which) => reduce({ ...initial(), about: ABOUT }, { type: "changed", change: { type: "opened", study: study(which) }, gesture: null });
-const keyOf = (/** @type {any} */ state, /** @type {string} */ panel) => questions(state).find((question) => question.panel === panel)?.key ?? null;
-const change = (/** @type {any} */ state, /** @type {any} */ of) => reduce(state, { type: "changed", change: of, gesture: null });
-const ask = (/** @type {any} */ state, /** @type {string} */ panel) => reduce(state, { type: "asked", panel, question: keyOf(state, panel) });
-const tell = (/** @type {any} */ state, /** @type {string} */ panel, /** @type {any} */ question) => reduce(state, { type: "answered", panel, question, value: { to: question } });
+const opened = (/** @type {any} */ which) =>
+  reduce(
+    { ...initial(), about: ABOUT },
+    { type: "changed", change: { type: "opened", study: study(which) }, gesture: null },
+  );
+const keyOf = (/** @type {any} */ state, /** @type {string} */ panel) =>
+  questions(state).find((question) => question.panel === panel)?.key ?? null;
+const change = (/** @type {any} */ state, /** @type {any} */ of) =>
+  reduce(state, { type: "changed", change: of, gesture: null });
+const ask = (/** @type {any} */ state, /** @type {string} */ panel) =>
+  reduce(state, { type: "asked", panel, question: keyOf(state, panel) });
+const tell = (/** @type {any} */ state, /** @type {string} */ panel, /** @type {any} */ question) =>
+  reduce(state, { type: "answered", panel, question, value: { to: question } });
 
-test("whatever is opened, changed, undone and answered in whatever order, no panel shows the answer to another question as its own", () => {
+test("whatever is opened, changed, undone and answered, no panel shows the answer to another question", () => {
   const titles = ["seat", "train"];
   for (let seed = 0; seed < 150; seed += 1) {
     const draw = random(seed);
@@ -44,8 +57,20 @@ test("whatever is opened, changed, undone and answered in whatever order, no pan
     let underWay = [];
     for (let step = 0; step < 40; step += 1) {
       const what = Math.floor(8 * draw());
-      if (what === 0) state = change(state, { type: "opened", study: study({ title: titles[Math.floor(2 * draw())], strut: ["k | c", "k | c - b"][Math.floor(2 * draw())] }) });
-      if (what === 1) state = change(state, { type: "placed", place: ["elements", "k"], value: `${1 + Math.floor(5 * draw())} kN/m` });
+      if (what === 0)
+        state = change(state, {
+          type: "opened",
+          study: study({
+            title: titles[Math.floor(2 * draw())],
+            strut: ["k | c", "k | c - b"][Math.floor(2 * draw())],
+          }),
+        });
+      if (what === 1)
+        state = change(state, {
+          type: "placed",
+          place: ["elements", "k"],
+          value: `${1 + Math.floor(5 * draw())} kN/m`,
+        });
       if (what === 2) state = change(state, { type: "drawn", text: ["", "k", "k | c - b"][Math.floor(3 * draw())] });
       if (what === 3) state = change(state, { type: "selected", layout: ["S1", "S2"][Math.floor(2 * draw())] });
       if (what === 4) state = reduce(state, { type: draw() < 0.7 ? "undone" : "redone" });
@@ -56,7 +81,11 @@ test("whatever is opened, changed, undone and answered in whatever order, no pan
       }
       const ready = underWay.filter(() => draw() < 0.4);
       underWay = underWay.filter((each) => !ready.includes(each));
-      for (const { panel, question } of ready) state = draw() < 0.8 ? tell(state, panel, question) : reduce(state, { type: "refused", panel, question, sentence: `no: ${question}` });
+      for (const { panel, question } of ready)
+        state =
+          draw() < 0.8
+            ? tell(state, panel, question)
+            : reduce(state, { type: "refused", panel, question, sentence: `no: ${question}` });
       for (const panel of PANELS) {
         const shown = answerOf(state, panel);
         const question = keyOf(state, panel);
@@ -65,9 +94,13 @@ test("whatever is opened, changed, undone and answered in whatever order, no pan
         if (shown.value === null || shown.is === "current") continue;
         assert.ok(shown.before && shown.is === "coming");
         const [mine, other] = [question, shown.value.to].map((each) => JSON.parse(each));
-        assert.equal(JSON.stringify(mine.study?.title), JSON.stringify(other.study?.title)); // a step of a slider of the same study and network
+        // a step of a slider of the same study and network
+        assert.equal(JSON.stringify(mine.study?.title), JSON.stringify(other.study?.title));
         assert.deepEqual(mine.study?.layouts, other.study?.layouts);
-        assert.deepEqual(mine.designs?.map((/** @type {any} */ { layout }) => layout), other.designs?.map((/** @type {any} */ { layout }) => layout));
+        assert.deepEqual(
+          mine.designs?.map((/** @type {any} */ { layout }) => layout),
+          other.designs?.map((/** @type {any} */ { layout }) => layout),
+        );
       }
     }
   }
@@ -84,9 +117,15 @@ test("an answer is current, coming, or none, and says so at once", () => {
   const cleared = change(state, { type: "drawn", text: "" });
   assert.deepEqual(answerOf(cleared, "indices"), { is: "coming", value: null, sentence: null, before: false });
   const question = keyOf(cleared, "indices");
-  const refused = reduce(reduce(cleared, { type: "asked", panel: "indices", question }), { type: "refused", panel: "indices", question, sentence: "no network" });
+  const refused = reduce(reduce(cleared, { type: "asked", panel: "indices", question }), {
+    type: "refused",
+    panel: "indices",
+    question,
+    sentence: "no network",
+  });
   assert.deepEqual(answerOf(refused, "indices"), { is: "none", value: null, sentence: "no network", before: false });
-  assert.equal(answerOf(reduce(reduce(refused, { type: "undone" }), { type: "undone" }), "indices").value.to, first); // it was asked before
+  // it was asked before
+  assert.equal(answerOf(reduce(reduce(refused, { type: "undone" }), { type: "undone" }), "indices").value.to, first);
 });
 
 test("a copy of a study with other numbers is another study", () => {
@@ -96,7 +135,8 @@ test("a copy of a study with other numbers is another study", () => {
   assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
 });
 
-test("an answer that comes when another study is open is not of that, and is there when the first is opened again", () => {
+test("an answer that comes when another study is open is not of that, and is there when the first is opened again",
+  () => {
   let state = ask(opened({ title: "seat" }), "indices");
   const late = keyOf(state, "indices");
   state = change(state, { type: "opened", study: study({ title: "train" }) });
@@ -107,7 +147,10 @@ test("an answer that comes when another study is open is not of that, and is the
 });
 
 test("what a button asked is told of the design that it was asked of, and of no other", () => {
-  for (const [panel, parameters] of Object.entries({ budget: { index: "J1", parameter: "c" }, tolerance: { index: "J1", spread: { c: 0.1 } } })) {
+  for (const [panel, parameters] of Object.entries({
+    budget: { index: "J1", parameter: "c" },
+    tolerance: { index: "J1", spread: { c: 0.1 } },
+  })) {
     let state = change(opened({ title: "seat" }), { type: "valued", layout: "S2", values: { c: "3 kN s/m" } });
     assert.equal(soughtAnswer(state, panel).is, "none");
     state = reduce(state, { type: "sought", panel, parameters });
@@ -123,11 +166,24 @@ test("what a button asked is told of the design that it was asked of, and of no 
   }
 });
 
-test("messages stand below each other; one about the same replaces the one before, and another study has none of them", () => {
+test("messages stand below each other; one about the same replaces the one before, and another study has none of them",
+  () => {
   let state = opened({ title: "seat" });
-  for (const [text, about] of [["press Optimise", undefined], ["Reading a.csv", "a.csv"], ["a.csv was read", "a.csv"], ["press Optimise", undefined]]) state = reduce(state, { type: "said", text: String(text), about });
-  assert.deepEqual(state.messages.map(({ text }) => text), ["a.csv was read", "press Optimise"]);
-  assert.deepEqual(reduce(state, { type: "closed", about: "a.csv" }).messages.map(({ text }) => text), ["press Optimise"]);
+  for (const [text, about] of [
+    ["press Optimise", undefined],
+    ["Reading a.csv", "a.csv"],
+    ["a.csv was read", "a.csv"],
+    ["press Optimise", undefined],
+  ])
+    state = reduce(state, { type: "said", text: String(text), about });
+  assert.deepEqual(
+    state.messages.map(({ text }) => text),
+    ["a.csv was read", "press Optimise"],
+  );
+  assert.deepEqual(
+    reduce(state, { type: "closed", about: "a.csv" }).messages.map(({ text }) => text),
+    ["press Optimise"],
+  );
   assert.deepEqual(change(state, { type: "placed", place: ["title"], value: "x" }).messages, state.messages);
   assert.deepEqual(change(state, { type: "opened", study: study({ title: "train" }) }).messages, []);
   assert.deepEqual(reduce(state, { type: "undone" }).messages, []);
@@ -147,11 +203,25 @@ test("what is free is unchosen until it has a value, in each layout by itself", 
 });
 
 test("a doubt is told once for all that it is about, and before anything else", () => {
-  const members = [{ of: "J1 of S1", status: "inaccurate", message: "friction is large" }, { of: "J3 of S1", status: "ok" }, { of: "J3 of S2", status: "inaccurate: friction is large" }];
+  const members = [
+    { of: "J1 of S1", status: "inaccurate", message: "friction is large" },
+    { of: "J3 of S1", status: "ok" },
+    { of: "J3 of S2", status: "inaccurate: friction is large" },
+  ];
   assert.deepEqual(doubtsIn(members), ["J1 of S1, J3 of S2: inaccurate: friction is large"]);
-  assert.equal(doubted([{ of: "the budget", status: "failed", message: "" }]), "Not to be relied on: the budget: failed. ");
+  assert.equal(
+    doubted([{ of: "the budget", status: "failed", message: "" }]),
+    "Not to be relied on: the budget: failed. ",
+  );
   assert.equal(doubted([members[1]]), "");
-  const budget = { parameter: "f", value: 12, unit: "N", standard_error: null, status: "inaccurate", message: "friction is large" };
+  const budget = {
+    parameter: "f",
+    value: 12,
+    unit: "N",
+    standard_error: null,
+    status: "inaccurate",
+    message: "friction is large",
+  };
   assert.match(budgetTold(budget, "S3", "S1"), /^Not to be relied on: .*friction is large\. At f = 12 N/);
   assert.match(budgetTold({ ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
 });
@@ -161,9 +231,13 @@ test("only what is given is handed on: no withheld device, no values of another 
   store.change({ type: "opened", study: study({ title: "seat" }) });
   store.dispatch({ type: "parted", parts: partsOf(store.get().history.present.study) });
   const before = store.get().history.present;
-  const fit = { status: "inaccurate: the model leaves 13 times", parameters: { b: { value: null, interval: [null, null] } } };
+  const fit = {
+    status: "inaccurate: the model leaves 13 times",
+    parameters: { b: { value: null, interval: [null, null] } },
+  };
   const device = { elements: { b2: "123 kg" }, layouts: { device: "b2" } };
-  const known = { ...fit, parameters: { b: { value: null, interval: [113, 122] } } }; // what explains the misfit says of it
+  // what explains the misfit says of it
+  const known = { ...fit, parameters: { b: { value: null, interval: [113, 122] } } };
   /** @type {any} */
   const api = {
     post: async (/** @type {string} */ path, /** @type {any} */ body) =>
@@ -172,8 +246,14 @@ test("only what is given is handed on: no withheld device, no values of another 
   const refused = /^Not to be relied on: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
   for (const each of [fit, known]) assert.match(await takeFitted(store, api, each, device), refused);
   assert.equal(store.get().history.present, before);
-  assert.match(takeOptima(store, [{ layout: "S9", index: "J1", texts: { c: "1 N s/m" }, status: "ok" }]), /nothing was changed/);
-  assert.match(takeOptima(store, [{ layout: "S2", index: "J1", texts: { f: "1 N" }, status: "ok" }]), /nothing was changed/);
+  assert.match(
+    takeOptima(store, [{ layout: "S9", index: "J1", texts: { c: "1 N s/m" }, status: "ok" }]),
+    /nothing was changed/,
+  );
+  assert.match(
+    takeOptima(store, [{ layout: "S2", index: "J1", texts: { f: "1 N" }, status: "ok" }]),
+    /nothing was changed/,
+  );
   assert.equal(store.get().history.present, before);
   const optimum = { layout: "S2", index: "J1", texts: { c: "1 N s/m" } };
   const broken = { ...optimum, status: { norm: "infeasible" }, message: "a limit is broken" };
@@ -185,6 +265,9 @@ test("only what is given is handed on: no withheld device, no values of another 
 });
 
 test("what optima become at other speeds stands before them where it is doubtful", () => {
-  assert.equal(withSpeeds("The best J1 of S2.", { doubts: ["Not certain away from 90 km/h: x."], others: ["Also y."] }), "Not certain away from 90 km/h: x. The best J1 of S2. Also y.");
+  assert.equal(
+    withSpeeds("The best J1 of S2.", { doubts: ["Not certain away from 90 km/h: x."], others: ["Also y."] }),
+    "Not certain away from 90 km/h: x. The best J1 of S2. Also y.",
+  );
   assert.equal(withSpeeds("The best J1 of S2.", undefined), "The best J1 of S2.");
 });

@@ -1,7 +1,18 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { after, empty, textOf } from "../src/state/document.js";
-import { positionOf, quantity, shown, takenApart, valueAt, STEPS, brief, estimated, placed, withUnit } from "../src/state/scale.js";
+import {
+  positionOf,
+  quantity,
+  shown,
+  takenApart,
+  valueAt,
+  STEPS,
+  brief,
+  estimated,
+  placed,
+  withUnit,
+} from "../src/state/scale.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
@@ -15,9 +26,18 @@ const STUDY = {
   road: { speed: "25 m/s" },
   elements: { k: "120 kN/m", c: { from: "100 N s/m", to: "100 kN s/m" }, b: "300 kg" },
   layouts: { S1: "k | c", S2: "k | c - b" },
-  study: { indices: ["J1"], baseline: "S1", budgets: ["b"], sweep: { k: { from: "10 kN/m", to: "20 kN/m", points: 3 } } },
+  study: {
+    indices: ["J1"],
+    baseline: "S1",
+    budgets: ["b"],
+    sweep: { k: { from: "10 kN/m", to: "20 kN/m", points: 3 } },
+  },
 };
-const ABOUT = { vehicles: [{ key: "quarter-car", fields: [{ key: "sprung_mass", unit: "kg" }], mounts: ["strut"] }], road: [{ key: "speed", unit: "m/s" }], elements: [] };
+const ABOUT = {
+  vehicles: [{ key: "quarter-car", fields: [{ key: "sprung_mass", unit: "kg" }], mounts: ["strut"] }],
+  road: [{ key: "speed", unit: "m/s" }],
+  elements: [],
+};
 
 /** Changes of every kind, to be drawn from. */
 const CHANGES = [
@@ -91,7 +111,10 @@ test("whatever was done, the layout that is edited is there, and a document outl
     const layouts = Object.keys(document.study.layouts ?? {});
     assert.ok(layouts.length === 0 ? document.layout === "" : layouts.includes(document.layout));
     assert.equal(typeof textOf(document), "string");
-    assert.deepEqual(JSON.parse(JSON.stringify(document)), JSON.parse(JSON.stringify(after(document, { type: "restored", document }))));
+    assert.deepEqual(
+      JSON.parse(JSON.stringify(document)),
+      JSON.parse(JSON.stringify(after(document, { type: "restored", document }))),
+    );
   }
 });
 
@@ -99,7 +122,8 @@ test("the drag of a slider is one step, two drags are two", () => {
   const store = createStore();
   store.change({ type: "opened", study: STUDY });
   for (let drag = 0; drag < 2; drag += 1) {
-    for (let i = 1; i <= 60; i += 1) store.change({ type: "placed", place: ["elements", "k"], value: `${100 * drag + i} kN/m` }, "slide elements.k");
+    for (let i = 1; i <= 60; i += 1)
+      store.change({ type: "placed", place: ["elements", "k"], value: `${100 * drag + i} kN/m` }, "slide elements.k");
     store.dispatch({ type: "rested" });
   }
   assert.equal(store.get().history.past.length, 3);
@@ -108,7 +132,8 @@ test("the drag of a slider is one step, two drags are two", () => {
 });
 
 test("a name is another one beside the study too: in values, and in the ranges of sliders", () => {
-  const ranged = (/** @type {any} */ document, /** @type {string} */ place) => after(document, { type: "ranged", place, from: "1", to: "2" });
+  const ranged = (/** @type {any} */ document, /** @type {string} */ place) =>
+    after(document, { type: "ranged", place, from: "1", to: "2" });
   const valued = after(open(), { type: "valued", layout: "S2", values: { c: "1 N s/m" } });
   const before = ["elements.c", "elements.c.gap", "elements.c2"].reduce(ranged, valued);
   const study = { ...STUDY, title: "renamed" };
@@ -133,13 +158,21 @@ test("questions follow from the state alone, and nothing of the page's own goes 
   store.change({ type: "opened", study: STUDY });
   store.change({ type: "ranged", place: "elements.k", from: "1 kN/m", to: "1 MN/m" });
   const asked = questions(store.get());
-  assert.deepEqual(asked.map(({ panel }) => panel), ["parts", "check", "indices", "response"]);
+  assert.deepEqual(
+    asked.map(({ panel }) => panel),
+    ["parts", "check", "indices", "response"],
+  );
   for (const { body } of asked.slice(1, 4)) assert.deepEqual(body.study, STUDY);
 });
 
 test("a slider's places and values undo each other, and cover the range", () => {
-  for (const [lower, upper] of [[1, 10], [1e-7, 5], [100, 1e5]]) {
-    for (let position = 0; position <= STEPS; position += 1) assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
+  for (const [lower, upper] of [
+    [1, 10],
+    [1e-7, 5],
+    [100, 1e5],
+  ]) {
+    for (let position = 0; position <= STEPS; position += 1)
+      assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
     assert.ok(Math.abs(valueAt(STEPS, lower, upper) / upper - 1) < 1e-12);
   }
   assert.equal(positionOf(1e9, 1, 10), STEPS);
@@ -184,7 +217,8 @@ test("a tree is known by its text: from the library, or since it was drawn here"
   assert.deepEqual(treeOf(store.get(), "k"), { kind: "element", name: "k" });
 });
 
-test("the units are asked in which numbers, bounds and values are written, if they are not those of the library", () => {
+test("the units are asked in which numbers, bounds and values are written, if they are not those of the library",
+  () => {
   const store = createStore();
   const elements = { ...STUDY.elements, k: "120 N s/mm", b: "3 N s/m", f: "parrots" };
   store.change({ type: "opened", study: { ...STUDY, elements } });
@@ -207,7 +241,12 @@ test("what is made free gets a method that chooses it, and keeps one that is the
 
 test("limits are put and taken away one by one, and no empty table is left", () => {
   const draw = random(5);
-  const places = [["a", "at_most"], ["a", "at_least"], ["b", "strut", "equal"], ["b", "other", "at_most"]];
+  const places = [
+    ["a", "at_most"],
+    ["a", "at_least"],
+    ["b", "strut", "equal"],
+    ["b", "other", "at_most"],
+  ];
   /** @type {any} */
   let table;
   const expected = new Map();
@@ -230,25 +269,61 @@ const textsIn = (/** @type {any} */ table, /** @type {string[]} */ path = []) =>
   );
 
 test("a slider of what is negative keeps the sign, and the ends of its scale", () => {
-  for (const [lower, upper] of [[-1, -100], [2, 50]]) {
+  for (const [lower, upper] of [
+    [-1, -100],
+    [2, 50],
+  ]) {
     assert.equal(positionOf(lower, lower, upper), 0);
     assert.equal(positionOf(upper, lower, upper), STEPS);
-    for (let position = 0; position <= STEPS; position += 40) assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
+    for (let position = 0; position <= STEPS; position += 40)
+      assert.equal(positionOf(valueAt(position, lower, upper), lower, upper), position);
   }
 });
 
 test("a value has as many places as its error tells", () => {
-  const written = [[2.50911, 0.00047], [503.88, 0.0883], [16.0237, 0.0137], [-0.29, 0.0071], [6.6506e-5, 2.1e-9], [1.2e7, 3e5], [0, 0.02], [4, 30]];
-  const expected = ["2.5091 ± 0.0005", "503.88 ± 0.09", "16.024 ± 0.014", "−0.290 ± 0.007", "6.6506·10⁻⁵ ± 0.0002·10⁻⁵", "1.20·10⁷ ± 0.03·10⁷", "0.00 ± 0.02", "4 ± 30"];
-  assert.deepEqual(written.map(([value, error]) => estimated(value, error).join(" ± ")), expected);
+  const written = [
+    [2.50911, 0.00047],
+    [503.88, 0.0883],
+    [16.0237, 0.0137],
+    [-0.29, 0.0071],
+    [6.6506e-5, 2.1e-9],
+    [1.2e7, 3e5],
+    [0, 0.02],
+    [4, 30],
+  ];
+  const expected = [
+    "2.5091 ± 0.0005",
+    "503.88 ± 0.09",
+    "16.024 ± 0.014",
+    "−0.290 ± 0.007",
+    "6.6506·10⁻⁵ ± 0.0002·10⁻⁵",
+    "1.20·10⁷ ± 0.03·10⁷",
+    "0.00 ± 0.02",
+    "4 ± 30",
+  ];
+  assert.deepEqual(
+    written.map(([value, error]) => estimated(value, error).join(" ± ")),
+    expected,
+  );
 });
 
 test("a value has no more places than its error bound leaves", () => {
   assert.equal(estimated(2.50911, 0.00047, 3).join(" ± "), "2.5091 ± 0.0005");
   assert.equal(estimated(16.0237, 0.0137, 2).join(" ± "), "16.02 ± 0.01");
   assert.equal(estimated(1.2e7, 1.3e5, -6).join(" ± "), "1.20·10⁷ ± 0.01·10⁷");
-  const written = [[2.50911, 2], [503.88, -1], [6.6506e-5, 7], [-0.29, 6], [0, 2], [4.5, null], [null, 2]];
-  assert.deepEqual(written.map(([value, places]) => placed(value, places)), ["2.51", "500", "6.65·10⁻⁵", "−0.29", "0", "4.5", "–"]);
+  const written = [
+    [2.50911, 2],
+    [503.88, -1],
+    [6.6506e-5, 7],
+    [-0.29, 6],
+    [0, 2],
+    [4.5, null],
+    [null, 2],
+  ];
+  assert.deepEqual(
+    written.map(([value, places]) => placed(value, places)),
+    ["2.51", "500", "6.65·10⁻⁵", "−0.29", "0", "4.5", "–"],
+  );
 });
 
 test("what is compared stands first beside what it is compared with, and goes with its layout", () => {
@@ -262,16 +337,30 @@ test("what is compared stands first beside what it is compared with, and goes wi
   store.dispatch({ type: "viewed", view: { against: "kept mine" } });
   assert.deepEqual(keys(), ["kept mine", "layout S1", "layout S2"]);
   const { designs } = questions(store.get()).find(({ panel }) => panel === "compare")?.body;
-  assert.deepEqual(designs.map((/** @type {any} */ { study }) => study !== undefined), [true, false, false]);
+  assert.deepEqual(
+    designs.map((/** @type {any} */ { study }) => study !== undefined),
+    [true, false, false],
+  );
   store.change({ type: "designRemoved", name: "mine" });
   assert.deepEqual(keys(), ["layout S1", "layout S2"]);
 });
 
 test("methods are told apart by their rows, whatever they are called", () => {
-  const row = (/** @type {string} */ name, /** @type {any} */ sees, searches = true) => ({ name, sees, searches, averages: false });
-  const state = { ...initial(), about: { ...ABOUT, methods: [row("first", "both"), row("looks on", "neither", false), row("quick", "neither")] } };
+  const row = (/** @type {string} */ name, /** @type {any} */ sees, searches = true) => ({
+    name,
+    sees,
+    searches,
+    averages: false,
+  });
+  const state = {
+    ...initial(),
+    about: { ...ABOUT, methods: [row("first", "both"), row("looks on", "neither", false), row("quick", "neither")] },
+  };
   const judged = (/** @type {string} */ method) => judging({ ...state, view: { ...state.view, method } })?.name;
-  assert.deepEqual([quickMethod(state)?.name, judged(""), judged("first"), judged("of another version")], ["quick", "quick", "first", "quick"]);
+  assert.deepEqual(
+    [quickMethod(state)?.name, judged(""), judged("first"), judged("of another version")],
+    ["quick", "quick", "first", "quick"],
+  );
   assert.equal(quickMethod(initial()), undefined);
 });
 

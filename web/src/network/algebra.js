@@ -7,13 +7,15 @@
 /** @typedef {{kind: "element", name: string}} Leaf */
 /** @typedef {{kind: "series" | "parallel", parts: Tree[]}} Group */
 /** @typedef {Leaf | Group} Tree */
-/** @typedef {number[]} Path  where a part is: the place among the parts of the whole, then among the parts of that... */
+/** @typedef {number[]} Path  where a part is: the place among the parts of the whole, then among the parts of
+ * that... */
 /** @typedef {"series" | "parallel"} Joint */
 
 /** @param {string} name @returns {Leaf} */
 export const element = (name) => ({ kind: "element", name });
 
-/** Some trees joined, with what is of the same kind taken in. @param {Joint} kind @param {Tree[]} parts @returns {Tree} */
+/** Some trees joined, with what is of the same kind taken in. @param {Joint} kind @param {Tree[]} parts
+ * @returns {Tree} */
 export function join(kind, parts) {
   const flat = parts.flatMap((part) => (part.kind === kind ? part.parts : [part]));
   return flat.length === 1 ? flat[0] : { kind, parts: flat };
@@ -23,7 +25,8 @@ export function join(kind, parts) {
 export const canonical = (tree) =>
   tree.kind === "element" ? element(tree.name) : join(tree.kind, tree.parts.map(canonical));
 
-/** A tree as text, with the brackets that it needs. @param {Tree} tree @param {"" | "|" | "-"} inside @returns {string} */
+/** A tree as text, with the brackets that it needs. @param {Tree} tree @param {"" | "|" | "-"} inside
+ * @returns {string} */
 export function written(tree, inside = "") {
   if (tree.kind === "element") return tree.name;
   const sign = tree.kind === "parallel" ? "|" : "-";
@@ -61,7 +64,8 @@ export function replaceAt(tree, path, part) {
   return join(tree.kind, changedAt(tree.parts, i, replaceAt(tree.parts[i], rest, part)));
 }
 
-/** The tree without the part at a place; null where nothing is left. @param {Tree} tree @param {Path} path @returns {Tree | null} */
+/** The tree without the part at a place; null where nothing is left. @param {Tree} tree @param {Path} path
+ * @returns {Tree | null} */
 export function removeAt(tree, path) {
   if (path.length === 0 || tree.kind === "element") return null;
   const [i, ...rest] = path;
@@ -69,10 +73,9 @@ export function removeAt(tree, path) {
   return join(tree.kind, left === null ? tree.parts.filter((_, j) => j !== i) : changedAt(tree.parts, i, left));
 }
 
-/**
- * The tree with `added` joined to the part at a place, after it (below it in series, right of it in parallel) or before it.
- * @param {Tree} tree @param {Path} path @param {Joint} kind @param {Tree} added @param {boolean} before @returns {Tree}
- */
+/** The tree with `added` joined to the part at a place, after it (below it in series, right of it in parallel) or
+ * before it. @param {Tree} tree @param {Path} path @param {Joint} kind @param {Tree} added @param {boolean} before
+ * @returns {Tree} */
 export function joinAt(tree, path, kind, added, before = false) {
   const part = partAt(tree, path);
   if (part === null) return tree;
@@ -103,7 +106,8 @@ const markIn = (tree) => leaves(tree).find(({ name }) => name === MARK)?.path ??
 /** Whether a place is inside another, or the same. @param {Path} path @param {Path} whole */
 const within = (path, whole) => whole.every((i, level) => path[level] === i);
 
-/** The tree with the part at a place changed for its neighbour before (-1) or after (+1) it. @param {Tree} tree @param {Path} path @param {-1 | 1} step @returns {Tree} */
+/** The tree with the part at a place changed for its neighbour before (-1) or after (+1) it. @param {Tree} tree
+ * @param {Path} path @param {-1 | 1} step @returns {Tree} */
 export function shiftAt(tree, path, step) {
   const above = path.slice(0, -1);
   const group = partAt(tree, above);

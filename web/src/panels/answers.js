@@ -28,12 +28,17 @@ export function AnswersPanel({ store, api }) {
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${shown.is === "coming"}>
     <div class="head"><h2 id="answers-title">Answers</h2><${Being} shown=${shown} /></div>
     <div class="row">
-      <label>Judged <select value=${judging(state)?.name} onChange=${(/** @type {Event} */ event) => store.dispatch({ type: "viewed", view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
-        ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}</option>`)}
+      <label>Judged <select value=${judging(state)?.name}
+        onChange=${(/** @type {Event} */ event) =>
+          store.dispatch({ type: "viewed",
+            view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
+        ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}
+          </option>`)}
       </select></label>
     </div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
-    <${Unchosen} designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
+    <${Unchosen}
+      designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
     <${Doubts} members=${membersOf(value)} />
     <${Indices} state=${state} shown=${shown} layout=${document.layout} baseline=${baseline} />
     <${Limits} value=${value} />
@@ -46,7 +51,8 @@ export function AnswersPanel({ store, api }) {
 
 /** @param {import("../methods.js").Method} method */
 export function methodTitle({ name, sees }) {
-  const words = { neither: "without friction and gaps", friction: "with friction", both: "with friction and gaps" }[sees] ?? "";
+  const words = { neither: "without friction and gaps", friction: "with friction",
+    both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;
 }
 
@@ -54,17 +60,20 @@ export function methodTitle({ name, sees }) {
 export function indicesOf(state) {
   const asked = state.history.present.study.study?.indices ?? [];
   const known = state.about?.indices ?? [];
-  return asked.map((/** @type {string} */ symbol) => known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
+  return asked.map((/** @type {string} */ symbol) => known.find((/** @type {any} */ each) => each.symbol === symbol)
+    ?? { symbol, title: symbol });
 }
 
-/** What the answers of designs are made of: each value, and each limit. @param {any} value @returns {import("../parts/doubts.js").Member[]} */
+/** What the answers of designs are made of: each value, and each limit. @param {any} value
+ * @returns {import("../parts/doubts.js").Member[]} */
 export const membersOf = (value) =>
   (value?.designs ?? []).flatMap((/** @type {any} */ { name, results, limits = [] }) => [
     ...results.map((/** @type {any} */ { index, status, message }) => ({ of: `${index} of ${name}`, status, message })),
     ...limits.map((/** @type {any} */ { title, status, message }) => ({ of: `${title}, of ${name}`, status, message })),
   ]);
 
-/** The indices of the study: each with its value, or with a mark in its place. @param {{state: State, shown: import("../state/answers.js").Shown, layout: string, baseline: string}} props */
+/** The indices of the study: each with its value, or with a mark in its place.
+ * @param {{state: State, shown: import("../state/answers.js").Shown, layout: string, baseline: string}} props */
 function Indices({ state, shown: { is, value, before }, layout, baseline }) {
   const design = value?.designs?.find((/** @type {any} */ each) => each.layout === layout);
   const other = value?.designs?.find((/** @type {any} */ each) => each.layout === baseline);
@@ -75,19 +84,27 @@ function Indices({ state, shown: { is, value, before }, layout, baseline }) {
   /** @param {any} result */
   const measured = (result) => (result ? html`<${Measured} result=${result} />` : missing);
   return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${before ? "stale" : ""}>
-    <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th><th scope="col">better by</th>`}</tr></thead>
+    <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>
+      ${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th>
+        <th scope="col">better by</th>`}</tr></thead>
     <tbody>${rows.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span> ${design && html`<${Notes} result=${result} />`}</th>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}
+          </span> ${design && html`<${Notes} result=${result} />`}</th>
         <td class="number" data-index=${result.index} data-value=${result.value}>${measured(design && result)}</td>
-        ${!alone && html`<td class="number">${measured(reference)}</td><td class=${`number ${better(result)}`} data-better=${result.improvement_percent}>${design && other ? html`<${Improvement} result=${result} unchosen=${[design, other].some(({ unchosen }) => unchosen.length > 0)} />` : missing}${result.tie ? html`<div class="scatter">as good</div>` : null}</td>`}
+        ${!alone && html`<td class="number">${measured(reference)}</td>
+          <td class=${`number ${better(result)}`} data-better=${result.improvement_percent}>
+            ${design && other ? html`<${Improvement} result=${result}
+              unchosen=${[design, other].some(({ unchosen }) => unchosen.length > 0)} />` : missing}${result.tie
+                ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
     })}</tbody>
   </table></div>`;
 }
 
-/** A value, above it its status where that is not ok, and below it its standard error where that is more than its other errors.
+/** A value, above it its status where that is not ok, and below it its standard error where that is more than its
+ * other errors.
  * @param {{result: {value: any, status?: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
 export function Measured({ result }) {
   return html`${!isOk(result.status) && html`<div class="doubt">${result.status}</div>`}<${Amount} result=${result} />`;
@@ -101,8 +118,10 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
-/** By how much it is better, and below that the standard error; first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */
-function Improvement({ result: { improvement_percent: value, improvement_error_percent: error, improvement_status: status }, unchosen }) {
+/** By how much it is better, and below that the standard error; first what makes that doubtful.
+ * @param {{result: any, unchosen: boolean}} props */
+function Improvement({ result: { improvement_percent: value, improvement_error_percent: error,
+  improvement_status: status }, unchosen }) {
   if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
   const doubt = isOk(status) ? null : html`<div class="doubt">${status}</div>`;
   if (typeof value !== "number" || !error) return html`${typeof value === "number" && doubt}${percent(value)}`;
@@ -119,12 +138,14 @@ export function percent(value, error) {
 }
 
 /** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */
-const better = ({ improvement_percent: value, improvement_status: status, tie }) => (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
+  (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
 /** @param {{result: any}} props */
 function Notes({ result }) {
   const texts = [result.status !== "ok" && result.message, ...(result.notes ?? [])].filter(Boolean);
-  return texts.length === 0 ? null : html`<details class="notes"><summary>note</summary><ul>${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
+  return texts.length === 0 ? null : html`<details class="notes"><summary>note</summary><ul>
+    ${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
 }
 
 /** Which limits are kept. @param {{value: any}} props */
@@ -132,7 +153,11 @@ function Limits({ value }) {
   const limits = value?.designs?.[0]?.limits ?? [];
   return limits.length === 0
     ? null
-    : html`<h3>Limits</h3><ul class="limits">${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title} class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept] : "quiet"}>${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
+    : html`<h3>Limits</h3><ul class="limits">
+      ${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title}
+        class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept] : "quiet"}>
+          ${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text
+            && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
 }
 
 /** @type {{[kept: string]: string}} */
@@ -145,7 +170,8 @@ function Optimise({ store, api, indices }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const [index, setIndex] = useState("");
-  const [told, setTold] = useState(/** @type {{text: any, of: import("../state/document.js").Document | null}} */ ({ text: "", of: null }));
+  const [told, setTold] = useState(/** @type {{text: any, of: import("../state/document.js").Document | null}} */ ({
+    text: "", of: null }));
   const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
@@ -155,11 +181,14 @@ function Optimise({ store, api, indices }) {
     const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
     const of = state.history.present;
     setTold({ text: html`<${Moving} what="Searching" />`, of });
-    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout], index: chosen, method: method.name });
+    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
+      index: chosen, method: method.name });
     const { present } = store.get().history;
     setTold(present.study === study ? { text, of: present } : { text: "", of: null });
   }}>
-    <label>Best values for <select name="index" value=${chosen} onChange=${(/** @type {Event} */ event) => setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
+    <label>Best values for <select name="index" value=${chosen}
+      onChange=${(/** @type {Event} */ event) =>
+        setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
     </select></label>
     <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
@@ -167,7 +196,8 @@ function Optimise({ store, api, indices }) {
   </form>`;
 }
 
-/** How much of an element the design bears before the baseline is as good. @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+/** How much of an element the design bears before the baseline is as good.
+ * @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
 function Budget({ store, api, indices }) {
   const state = store.get();
   const document = state.history.present;
@@ -176,31 +206,40 @@ function Budget({ store, api, indices }) {
   if (names.length === 0 || indices.length === 0 || document.layout === baseline) return null;
   const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
   const { is, value, sentence } = soughtAnswer(state, "budget");
-  return html`<details class="budget"><summary>What it bears</summary><form class="row" aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
+  return html`<details class="budget"><summary>What it bears</summary>
+    <form class="row" aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
     void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") });
   }}>
-    <label>How much of <select name="parameter" key=${document.layout} defaultValue=${switching}>${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
-    <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}</select></label>
+    <label>How much of <select name="parameter" key=${document.layout} defaultValue=${switching}>
+      ${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
+    <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}
+      </select></label>
     <button>Find out</button>
-    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value ? budgetTold(value, document.layout, baseline) : sentence}</p>
+    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
+      ? budgetTold(value, document.layout, baseline) : sentence}</p>
   </form></details>`;
 }
 
-/** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout @param {string} baseline */
+/** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout
+ * @param {string} baseline */
 export function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
   if (typeof value !== "number") return message || "There is no such value.";
   const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
-  return `${doubted([{ of: "the budget", status, message }])}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;
+  const doubts = doubted([{ of: "the budget", status, message }]);
+  return `${doubts}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;
 }
 
 /** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */
 function OtherProblems({ state }) {
   const problems = otherProblems(state);
   /** A sentence that begins with its place needs no other. @param {{place: string[], sentence: string}} problem */
-  const placed = ({ place, sentence }) => (sentence.startsWith(place.join(".")) ? "" : html`<code>${place.join(".")}</code> `);
+  const placed = ({ place, sentence }) => (sentence.startsWith(place.join(".")) ? "" : html`<code>${place.join(".")}
+    </code> `);
   return problems.length === 0
     ? null
-    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>${problems.map((/** @type {any} */ problem) => html`<li class="problem">${placed(problem)}${problem.sentence}</li>`)}</ul></div>`;
+    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>
+      ${problems.map((/** @type {any} */ problem) => html`<li class="problem">${placed(problem)}${problem.sentence}
+        </li>`)}</ul></div>`;
 }

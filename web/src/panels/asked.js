@@ -8,7 +8,8 @@ import { Entry } from "./values.js";
 
 /** @typedef {import("../state/store.js").Store} Store */
 /** @typedef {import("../state/store.js").State} State */
-/** @typedef {{path: string[], sense: string, value: string | number}} Limit  of what, as the keys of its table say it */
+/** @typedef {{path: string[], sense: string, value: string | number}} Limit  of what, as the keys of its table say
+ * it */
 
 const SENSES = ["at_most", "at_least", "equal"];
 const PLACE = ["study", "subject_to"];
@@ -21,38 +22,51 @@ export function AskedPanel({ store }) {
   const asked = study.study?.indices ?? [];
   const limits = limitsOf(state);
   /** @param {string} symbol */
-  const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol) ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
+  const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
+    ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
   /** @param {Limit} limit @param {string | undefined} value */
-  const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE, value: limited(study.study?.subject_to, [...path, sense], value) });
+  const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE,
+    value: limited(study.study?.subject_to, [...path, sense], value) });
   return html`<details class="asked"><summary>Indices and limits</summary>
     <div class="row" role="group" aria-label="Indices of the study">
-      ${indexNames(state).map(({ symbol, title }) => html`<button type="button" class="chip" key=${symbol} title=${title} aria-pressed=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol} onClick=${() => toggle(symbol)}>${symbol}</button>`)}
+      ${indexNames(state).map(({ symbol, title }) => html`<button type="button" class="chip" key=${symbol}
+        title=${title} aria-pressed=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
+          onClick=${() => toggle(symbol)}>${symbol}</button>`)}
     </div>
     ${limits.map((limit) => {
       const label = [...limit.path, limit.sense.replace("_", " ")].join(" ");
-      return html`<p class="row" key=${label}>${label} <${Entry} id=${`limit ${label}`} label=${label} text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
-        <button type="button" aria-label=${`Delete the limit: ${label}`} onClick=${() => place(limit, undefined)}>Delete</button></p>`;
+      return html`<p class="row" key=${label}>${label} <${Entry} id=${`limit ${label}`} label=${label}
+        text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
+        <button type="button" aria-label=${`Delete the limit: ${label}`}
+          onClick=${() => place(limit, undefined)}>Delete</button></p>`;
     })}
     <form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
       event.preventDefault();
       const form = /** @type {HTMLFormElement} */ (event.currentTarget);
-      const [of, sense, value] = ["of", "sense", "value"].map((name) => String(new FormData(form).get(name) ?? "").trim());
+      const [of, sense, value] = ["of", "sense", "value"].map((name) => String(new FormData(form).get(name)
+        ?? "").trim());
       if (!value) return;
       place({ path: of.split("."), sense, value }, value);
       form.reset();
     }}>
-      <label>Limit <select name="of">${limitable(state).map((of) => html`<option key=${of}>${of}</option>`)}</select></label>
-      <select name="sense" aria-label="Which side">${SENSES.map((sense) => html`<option key=${sense} value=${sense}>${sense.replace("_", " ")}</option>`)}</select>
-      <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm" autocomplete="off" /> <button>Add</button>
+      <label>Limit <select name="of">${limitable(state).map((of) => html`<option key=${of}>${of}</option>`)}</select>
+        </label>
+      <select name="sense" aria-label="Which side">
+        ${SENSES.map((sense) => html`<option key=${sense} value=${sense}>${sense.replace("_", " ")}</option>`)}</select>
+      <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
+        autocomplete="off" /> <button>Add</button>
     </form>
   </details>`;
 }
 
-/** The indices that there are, with those that the file has of its own. @param {State} state @returns {{symbol: string, title: string}[]} */
+/** The indices that there are, with those that the file has of its own. @param {State} state
+ * @returns {{symbol: string, title: string}[]} */
 function indexNames(state) {
   const { study } = state.history.present;
   const known = state.about?.indices ?? [];
-  const own = [...Object.keys(study.indices ?? {}), ...(study.study?.indices ?? [])].filter((symbol) => !known.some((/** @type {any} */ each) => each.symbol === symbol));
+  const own = [...Object.keys(study.indices ?? {}),
+    ...(study.study?.indices ?? [])].filter((symbol) =>
+      !known.some((/** @type {any} */ each) => each.symbol === symbol));
   return [...known, ...[...new Set(own)].map((symbol) => ({ symbol, title: symbol }))];
 }
 
@@ -74,8 +88,8 @@ function limitsOf(state) {
   }));
 }
 
-/** The table of limits with another value at a place; without one, the limit and the tables that are then empty are taken away.
- * @param {any} table @param {string[]} path @param {string | undefined} value @returns {any} */
+/** The table of limits with another value at a place; without one, the limit and the tables that are then empty are
+ * taken away. @param {any} table @param {string[]} path @param {string | undefined} value @returns {any} */
 export function limited(table, [key, ...rest], value) {
   const inside = rest.length === 0 ? value : limited(table?.[key], rest, value);
   const next = Object.fromEntries(Object.entries({ ...table, [key]: inside }).filter(([, each]) => each !== undefined));

@@ -37,7 +37,8 @@ export function Motion({ store, motion, mechanism }) {
       const { view: present } = store.get();
       const shown = /** @type {Scene} */ (scene.current);
       const end = shown.motion.time[shown.motion.time.length - 1];
-      if (present.playing) clock.current.at = (clock.current.at + (Math.min(now - last, 100) / 1000) * present.speed) % end;
+      if (present.playing) clock.current.at = (clock.current.at + (Math.min(now - last,
+        100) / 1000) * present.speed) % end;
       last = now;
       if (canvas.current) {
         paint(canvas.current, shown, Math.min(clock.current.at, end));
@@ -54,13 +55,19 @@ export function Motion({ store, motion, mechanism }) {
   /** @param {any} more */
   const set = (more) => store.dispatch({ type: "viewed", view: more });
   return html`<figure class="motion">
-    <canvas ref=${canvas} role="img" aria-label="The car on its road, drawn" style=${{ width: "100%", height: `${HEIGHT}px` }}></canvas>
+    <canvas ref=${canvas} role="img" aria-label="The car on its road, drawn"
+      style=${{ width: "100%", height: `${HEIGHT}px` }}></canvas>
     <figcaption class="row">
-      <button type="button" aria-pressed=${view.playing} onClick=${() => set({ playing: !view.playing })}>${view.playing ? "Pause" : "Play"}</button>
-      <label>at <select value=${String(view.speed)} onChange=${(/** @type {Event} */ event) => set({ speed: Number(/** @type {HTMLSelectElement} */ (event.currentTarget).value) })}>
-        ${SPEEDS.map((each) => html`<option key=${each} value=${String(each)}>${each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`}</option>`)}
+      <button type="button" aria-pressed=${view.playing} onClick=${() => set({ playing: !view.playing })}>
+        ${view.playing ? "Pause" : "Play"}</button>
+      <label>at <select value=${String(view.speed)}
+        onChange=${(/** @type {Event} */ event) =>
+          set({ speed: Number(/** @type {HTMLSelectElement} */ (event.currentTarget).value) })}>
+        ${SPEEDS.map((each) => html`<option key=${each} value=${String(each)}>
+          ${each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`}</option>`)}
       </select></label>
-      <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / metreOf(endsOf(scene.current), width))} times as large.</span>
+      <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / metreOf(endsOf(scene.current),
+        width))} times as large.</span>
     </figcaption>
   </figure>`;
 }
@@ -84,7 +91,8 @@ function poseAt({ time, coordinates, roads }, at) {
 }
 
 /** The height of a port. @param {{[name: string]: number}} port @param {Pose} pose */
-const heightOf = (port, pose) => Object.entries(port).reduce((sum, [name, lever]) => sum + lever * (pose[name] ?? 0), 0);
+const heightOf = (port, pose) => Object.entries(port).reduce((sum, [name, lever]) => sum + lever * (pose[name] ?? 0),
+  0);
 
 /** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {number} at */
 function paint(canvas, scene, at) {
@@ -113,11 +121,13 @@ function paint(canvas, scene, at) {
   /** @param {number} x */
   const across = (x) => middle + (x - mean) * metre;
   drawRoad(pen, scene, at, width, across, ends, metre);
-  for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]), WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
+  for (const [i, tyre] of scene.mechanism.tyres.entries()) drawWheel(pen, across(ends[i]),
+    WHEEL - scene.stretch * heightOf(tyre.port, pose), GROUND - scene.stretch * (pose[tyre.road] ?? 0));
   for (const strut of standing(scene)) {
     const x = across(strutPlace(scene, strut));
     drawBogie(pen, scene, strut, pose, across);
-    drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose), levelOf(scene, strut.lower.port, pose));
+    drawStrut(pen, scene.store, strut.network, x, levelOf(scene, strut.upper.port, pose),
+      levelOf(scene, strut.lower.port, pose));
   }
   drawBody(pen, scene, pose, across);
 }
@@ -132,9 +142,11 @@ function metreOf(ends, width) {
   return long > 0 && width > 0 ? Math.min(METRE, room / long) : METRE;
 }
 
-/** Where a tyre is along the car: by its lever where the strut above it is, else by the distance of its road. @param {Scene} scene @param {any} tyre */
+/** Where a tyre is along the car: by its lever where the strut above it is, else by the distance of its road.
+ * @param {Scene} scene @param {any} tyre */
 function placeOf({ mechanism }, tyre) {
-  const above = mechanism.struts.find((/** @type {any} */ strut) => Object.keys(strut.lower.port).some((name) => name in tyre.port));
+  const above = mechanism.struts.find((/** @type {any} */ strut) =>
+    Object.keys(strut.lower.port).some((name) => name in tyre.port));
   const road = mechanism.roads.find((/** @type {any} */ each) => each.name === tyre.road);
   const levers = above ? above.upper.x : 0;
   return levers !== 0 ? levers + tyre.x : -(road?.distance ?? 0);
@@ -142,18 +154,22 @@ function placeOf({ mechanism }, tyre) {
 
 /** @param {Scene} scene @param {any} strut */
 function strutPlace(scene, strut) {
-  const below = scene.mechanism.tyres.find((/** @type {any} */ tyre) => Object.keys(tyre.port).some((name) => name in strut.lower.port));
+  const below = scene.mechanism.tyres.find((/** @type {any} */ tyre) =>
+    Object.keys(tyre.port).some((name) => name in strut.lower.port));
   return below && strut.upper.x === 0 ? placeOf(scene, below) : strut.upper.x;
 }
 
-/** Where a port is drawn: on a wheel, on the ground, or on a body. @param {Scene} scene @param {{[name: string]: number}} port @param {Pose} pose */
+/** Where a port is drawn: on a wheel, on the ground, or on a body. @param {Scene} scene
+ * @param {{[name: string]: number}} port @param {Pose} pose */
 function levelOf(scene, port, pose) {
-  const wheel = scene.mechanism.tyres.some((/** @type {any} */ tyre) => Object.keys(tyre.port).some((name) => name in port));
+  const wheel = scene.mechanism.tyres.some((/** @type {any} */ tyre) =>
+    Object.keys(tyre.port).some((name) => name in port));
   const rest = Object.keys(port).length === 0 ? GROUND : wheel ? WHEEL - RADIUS : BODY + 26;
   return rest - scene.stretch * heightOf(port, pose);
 }
 
-/** @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {number} at @param {number} width @param {(x: number) => number} across @param {number[]} ends @param {number} metre */
+/** @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {number} at @param {number} width
+ * @param {(x: number) => number} across @param {number[]} ends @param {number} metre */
 function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across, ends, metre) {
   const first = mechanism.roads[0];
   if (!first) return;
@@ -188,7 +204,8 @@ function drawWheel(pen, x, y, ground) {
   pen.stroke();
 }
 
-/** What joins a strut to wheels that are not below it. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {any} strut @param {Pose} pose @param {(x: number) => number} across */
+/** What joins a strut to wheels that are not below it. @param {CanvasRenderingContext2D} pen @param {Scene} scene
+ * @param {any} strut @param {Pose} pose @param {(x: number) => number} across */
 function drawBogie(pen, scene, strut, pose, across) {
   const [x, y] = [across(strutPlace(scene, strut)), levelOf(scene, strut.lower.port, pose)];
   for (const tyre of scene.mechanism.tyres) {
@@ -201,14 +218,17 @@ function drawBogie(pen, scene, strut, pose, across) {
   }
 }
 
-/** A strut as its network, stretched between its ends. @param {CanvasRenderingContext2D} pen @param {Store} store @param {any} tree @param {number} x @param {number} top @param {number} bottom */
+/** A strut as its network, stretched between its ends. @param {CanvasRenderingContext2D} pen @param {Store} store
+ * @param {any} tree @param {number} x @param {number} top @param {number} bottom */
 function drawStrut(pen, store, tree, x, top, bottom) {
   const state = store.get();
   const plan = drawing(tree);
   const tall = (bottom - top) / plan.height;
   const wide = Math.min(1, 150 / (plan.left + plan.right));
   /** @param {readonly (readonly [number, number])[]} line @param {number} dx @param {number} dy @param {number} sign */
-  const trace = (line, dx, dy, sign) => line.forEach(([a, b], i) => (i ? pen.lineTo(x + wide * (a + dx), top + tall * (sign * b + dy)) : pen.moveTo(x + wide * (a + dx), top + tall * (sign * b + dy))));
+  const trace = (line, dx, dy, sign) => line.forEach(([a, b], i) =>
+    (i ? pen.lineTo(x + wide * (a + dx), top + tall * (sign * b + dy))
+      : pen.moveTo(x + wide * (a + dx), top + tall * (sign * b + dy))));
   pen.beginPath();
   for (const line of plan.lines) trace(line, 0, 0, 1);
   for (const one of plan.placed) {
@@ -218,14 +238,17 @@ function drawStrut(pen, store, tree, x, top, bottom) {
   pen.stroke();
 }
 
-/** The struts that stand between two places. Between others, such as an anti-roll bar, something is only as far as two places part.
- * @param {Scene} scene @returns {any[]} */
+/** The struts that stand between two places. Between others, such as an anti-roll bar, something is only as far as
+ * two places part. @param {Scene} scene @returns {any[]} */
 function standing({ mechanism }) {
-  const angles = new Set(mechanism.coordinates.filter((/** @type {any} */ { angle }) => angle).map((/** @type {any} */ { name }) => name));
-  return mechanism.struts.filter((/** @type {any} */ { upper }) => Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : Number(lever)), 0) > 0.5);
+  const angles = new Set(mechanism.coordinates.filter((/** @type {any} */ { angle }) =>
+    angle).map((/** @type {any} */ { name }) => name));
+  return mechanism.struts.filter((/** @type {any} */ { upper }) =>
+    Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : Number(lever)), 0) > 0.5);
 }
 
-/** The end of a body beyond the first or the last of its mounts, in line with the one next to it. @param {number[][]} mounts @param {number} end */
+/** The end of a body beyond the first or the last of its mounts, in line with the one next to it.
+ * @param {number[][]} mounts @param {number} end */
 function beyond(mounts, end) {
   const [x, y] = mounts[end];
   const [nextX, nextY] = mounts[end === 0 ? 1 : end - 1] ?? [x, y];
@@ -234,9 +257,12 @@ function beyond(mounts, end) {
   return [x + reach, y + reach * slope];
 }
 
-/** What is carried: a body that joins the places where the upper ends of struts are. @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose @param {(x: number) => number} across */
+/** What is carried: a body that joins the places where the upper ends of struts are.
+ * @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose
+ * @param {(x: number) => number} across */
 function drawBody(pen, scene, pose, across) {
-  const mounts = standing(scene).map((/** @type {any} */ strut) => [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
+  const mounts = standing(scene).map((/** @type {any} */ strut) =>
+    [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
   if (mounts.length === 0) return;
   mounts.sort((/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] - b[0]);
   const [front, back] = [0, mounts.length - 1].map((end) => beyond(mounts, end));

@@ -44,11 +44,14 @@ export function NetworkPanel({ store, api }) {
     ${mounts.length > 0 &&
     html`<div class="row struts" role="group" aria-label="Struts">
       ${parted.map(
-        (strut) => html`<button type="button" class="chip" aria-pressed=${strut === document.strut} onClick=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}</button>`,
+        (strut) => html`<button type="button" class="chip" aria-pressed=${strut === document.strut}
+          onClick=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}</button>`,
       )}
       ${parted.length === 0
-        ? html`<span class="quiet">The same strut everywhere.</span> <button type="button" onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
-        : html`<button type="button" onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
+        ? html`<span class="quiet">The same strut everywhere.</span> <button type="button"
+          onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
+        : html`<button type="button"
+          onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
     </div>`}
     <${Editor} store=${store} api=${api} />
   </section>`;
@@ -62,9 +65,14 @@ function Layouts({ store }) {
   const [renaming, setRenaming] = useState(false);
   return html`<div class="row layouts" role="group" aria-label="Layouts">
     ${Object.keys(document.study.layouts ?? {}).map(
-      (layout) => html`<button type="button" key=${layout} class="chip" aria-pressed=${layout === document.layout} title=${layout === baseline ? `${layout}, the baseline` : layout} onClick=${() => store.change({ type: "selected", layout })}>${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}</button>`,
+      (layout) => html`<button type="button" key=${layout} class="chip" aria-pressed=${layout === document.layout}
+        title=${layout === baseline ? `${layout}, the baseline` : layout}
+          onClick=${() => store.change({ type: "selected", layout })}>
+            ${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}
+        </button>`,
     )}
-    <button type="button" title="A new layout like this one" onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>+ layout</button>
+    <button type="button" title="A new layout like this one"
+      onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>+ layout</button>
     ${document.layout &&
     html`<details class="menu">
       <summary>${"This layout"}</summary>
@@ -77,10 +85,14 @@ function Layouts({ store }) {
           if (name && !(name in (document.study.layouts ?? {}))) store.change({ type: "layoutRenamed", name });
           setRenaming(false);
         }}>
-          <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout} autocomplete="off" /></label> <button>Rename</button>
+          <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}
+            autocomplete="off" /></label> <button>Rename</button>
         </form>`}
-        <button type="button" disabled=${document.layout === baseline} onClick=${() => store.change({ type: "placed", place: ["study", "baseline"], value: document.layout })}>Make it the baseline</button>
-        <button type="button" disabled=${Object.keys(document.study.layouts ?? {}).length < 2} onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
+        <button type="button" disabled=${document.layout === baseline}
+          onClick=${() => store.change({ type: "placed", place: ["study", "baseline"],
+            value: document.layout })}>Make it the baseline</button>
+        <button type="button" disabled=${Object.keys(document.study.layouts ?? {}).length < 2}
+          onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
       </div>
     </details>`}
   </div>`;
@@ -98,47 +110,60 @@ function Editor({ store, api }) {
   useEffect(() => {
     if (tree !== null || text.trim() === "") setLast({ tree, of });
   }, [tree, of]);
-  const shownTree = tree ?? (text.trim() !== "" && last.of === of ? last.tree : null); // what is being typed keeps the drawing of before
+  // what is being typed keeps the drawing of before
+  const shownTree = tree ?? (text.trim() !== "" && last.of === of ? last.tree : null);
   const path = pathIn(shownTree, state);
   const selected = shownTree && partAt(shownTree, path);
   const editing = { store, api, how };
-  return html`<${Toolbar} editing=${editing} off=${tree === null && text.trim() !== ""} selected=${selected} setHow=${setHow} />
+  return html`<${Toolbar} editing=${editing} off=${tree === null && text.trim() !== ""} selected=${selected}
+    setHow=${setHow} />
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
-      : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path} stale=${wrongIn(state) !== null && tree === null} />`}
-    ${shownTree && (state.view.across || leaves(shownTree).length > MANY) && html`<button type="button" class="chip" aria-pressed=${state.view.across} onClick=${() => store.dispatch({ type: "viewed", view: { across: !state.view.across } })}>Across the page</button>`}
+      : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path}
+        stale=${wrongIn(state) !== null && tree === null} />`}
+    ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
+      && html`<button type="button" class="chip" aria-pressed=${state.view.across}
+        onClick=${() =>
+          store.dispatch({ type: "viewed", view: { across: !state.view.across } })}>Across the page</button>`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
 }
 
-/** What is selected, and the groups that it is in: each can be selected. @param {{store: Store, tree: Tree, path: Path}} props */
+/** What is selected, and the groups that it is in: each can be selected.
+ * @param {{store: Store, tree: Tree, path: Path}} props */
 function Trail({ store, tree, path }) {
   return html`<div class="row trail" role="group" aria-label="Selected part">
     <span class="quiet">Selected:</span>
     ${[...path.keys(), path.length].map((depth) => {
       const part = partAt(tree, path.slice(0, depth));
       const text = depth === 0 ? "the whole" : part ? written(part) : "";
-      return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length} onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
+      return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length}
+        onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>
+          ${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
     })}
   </div>`;
 }
 
 /** @param {Tree} part */
-const described = (part) => (part.kind === "element" ? `${part.name} is selected` : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
+const described = (part) => (part.kind === "element" ? `${part.name} is selected`
+  : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
 
 /** @typedef {{store: Store, api: Api, how: Joint}} Editing */
 
-/** What is selected in a tree: the whole of it where there is no such part. @param {Tree | null} tree @param {State} state @returns {Path} */
+/** What is selected in a tree: the whole of it where there is no such part. @param {Tree | null} tree
+ * @param {State} state @returns {Path} */
 const pathIn = (tree, { view }) => (tree !== null && partAt(tree, view.path) !== null ? view.path : []);
 
-/** The tree and what is selected in it, as of now: what is drawn may be a frame older. @param {Store} store @returns {{tree: Tree | null, path: Path}} */
+/** The tree and what is selected in it, as of now: what is drawn may be a frame older. @param {Store} store
+ * @returns {{tree: Tree | null, path: Path}} */
 function present(store) {
   const tree = treeOf(store.get(), textOf(store.get().history.present));
   return { tree, path: pathIn(tree, store.get()) };
 }
 
-/** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
+/** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store
+ * @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
 function draw(store, tree, path, added) {
   const text = written(tree);
   store.dispatch({ type: "planted", text, tree });
@@ -146,10 +171,12 @@ function draw(store, tree, path, added) {
   store.dispatch({ type: "viewed", view: { path } });
 }
 
-/** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name @returns {Path} */
+/** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name
+ * @returns {Path} */
 const placeOf = (tree, name) => leaves(tree).findLast((one) => one.name === name)?.path ?? [];
 
-/** A part of this name joined to what is selected. @param {Editing} editing @param {string} name @param {{[name: string]: string}} [added] @param {"join" | "replace"} [by] */
+/** A part of this name joined to what is selected. @param {Editing} editing @param {string} name
+ * @param {{[name: string]: string}} [added] @param {"join" | "replace"} [by] */
 function add({ store, how }, name, added, by = "join") {
   const { tree, path } = present(store);
   if (tree === null) {
@@ -160,7 +187,8 @@ function add({ store, how }, name, added, by = "join") {
   draw(store, next, placeOf(next, name), added);
 }
 
-/** A new element of a kind, with the value of its example. @param {Editing} editing @param {{symbol: string, example: string, key: string, quantity: string}} kind @param {"join" | "replace"} [by] */
+/** A new element of a kind, with the value of its example. @param {Editing} editing
+ * @param {{symbol: string, example: string, key: string, quantity: string}} kind @param {"join" | "replace"} [by] */
 function addKind(editing, kind, by) {
   const { study } = editing.store.get().history.present;
   const name = freshName(kind.symbol, Object.keys(study.elements ?? {}));
@@ -190,16 +218,21 @@ function Toolbar({ editing, off, selected, setHow }) {
   const state = store.get();
   const kinds = state.about?.elements ?? [];
   const known = Object.keys(state.history.present.study.elements ?? {});
+  const where = how === "series" ? "in series with" : "in parallel to";
   return html`<div class="toolbar" role="toolbar" aria-label="Edit the network">
     <div class="row" role="group" aria-label="How a part is joined to what is selected">
       ${/** @type {Joint[]} */ (["series", "parallel"]).map(
-        (kind) => html`<button type="button" class="chip" aria-pressed=${how === kind} onClick=${() => setHow(kind)}>in ${kind}</button>`,
+        (kind) => html`<button type="button" class="chip" aria-pressed=${how === kind}
+          onClick=${() => setHow(kind)}>in ${kind}</button>`,
       )}
     </div>
     <div class="row palette" role="group" aria-label="Add a part">
       ${kinds.map(
-        (/** @type {any} */ kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off} title=${`Add a ${kind.key} ${how === "series" ? "in series with" : "in parallel to"} what is selected; drag it to a place`} aria-label=${`Add a ${kind.key}`} draggable=${!off}
-          onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)} onClick=${() => addKind(editing, kind)}>
+        (/** @type {any} */ kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off}
+          title=${`Add a ${kind.key} ${where} what is selected; drag it to a place`}
+          aria-label=${`Add a ${kind.key}`} draggable=${!off}
+          onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)}
+          onClick=${() => addKind(editing, kind)}>
           <svg viewBox="-12 -22 24 44" width="18" height="33" aria-hidden="true"><path d=${symbolPath(kind)} /></svg>
           <span>${kind.key}</span>
         </button>`,
@@ -214,7 +247,8 @@ function Toolbar({ editing, off, selected, setHow }) {
         <option value="">again…</option>
         ${known.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}
       </select></label>
-      <label>Replace by <select value="" disabled=${off || selected === null} onChange=${(/** @type {Event} */ event) => {
+      <label>Replace by <select value="" disabled=${off || selected === null}
+        onChange=${(/** @type {Event} */ event) => {
         const target = /** @type {HTMLSelectElement} */ (event.currentTarget);
         const kind = kinds.find((/** @type {any} */ each) => `new ${each.key}` === target.value);
         if (kind) addKind(editing, kind, "replace");
@@ -222,7 +256,8 @@ function Toolbar({ editing, off, selected, setHow }) {
         target.value = "";
       }}>
         <option value="">…</option>
-        ${kinds.map((/** @type {any} */ kind) => html`<option key=${kind.key} value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
+        ${kinds.map((/** @type {any} */ kind) => html`<option key=${kind.key}
+          value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
         ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
       </select></label>
       <button type="button" disabled=${off || selected === null} onClick=${() => remove(store)}>Delete</button>
@@ -234,13 +269,15 @@ function Toolbar({ editing, off, selected, setHow }) {
 /** @param {{store: Store, api: Api, selected: Tree | null}} props */
 function Rename({ store, api, selected }) {
   const [told, setTold] = useState("");
-  const old = selected?.kind === "element" ? selected.name : ""; // the form stays: a drawing that moves cannot be dragged in
+  // the form stays: a drawing that moves cannot be dragged in
+  const old = selected?.kind === "element" ? selected.name : "";
   return html`<form class="row" key=${old} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
     void renameElement(store, api, old, name).then(setTold);
   }}>
-    <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old} autocomplete="off" spellcheck=${false} /></label>
+    <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old}
+      autocomplete="off" spellcheck=${false} /></label>
     <button disabled=${old === ""}>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
   </form>`;
 }
@@ -279,7 +316,10 @@ function Schematic({ editing, tree, path, stale }) {
   const target = over && plan.boxes.find((each) => same(each.path, over.path));
   const group = box && partAt(tree, path)?.kind !== "element" ? box : null;
   return html`<div class=${`drawing ${stale ? "stale" : ""}`}>
-    <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`} style=${{ width: state.view.across ? `min(100%, ${LARGEST * width}rem)` : `${Math.min(LARGEST, Math.max(SMALLEST, 20 / width)) * width}rem` }} role="group" aria-label=${`Network ${written(tree)}`}
+    <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`}
+      style=${{ width: state.view.across ? `min(100%, ${LARGEST * width}rem)`
+        : `${Math.min(LARGEST, Math.max(SMALLEST, 20 / width)) * width}rem` }} role="group"
+          aria-label=${`Network ${written(tree)}`}
       onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing)}
       onDragOver=${(/** @type {DragEvent} */ event) => {
         event.preventDefault();
@@ -287,24 +327,31 @@ function Schematic({ editing, tree, path, stale }) {
       }}
       onDragLeave=${() => setOver(null)}
       onDrop=${(/** @type {DragEvent} */ event) => dropKind(event, store, setOver)}>
-      ${group && html`<rect class="chosen" x=${group.left - 3} y=${group.top - 3} width=${group.right - group.left + 6} height=${group.bottom - group.top + 6} rx="4" />`}
+      ${group && html`<rect class="chosen" x=${group.left - 3} y=${group.top - 3} width=${group.right - group.left + 6}
+        height=${group.bottom - group.top + 6} rx="4" />`}
       <path class="wire" d=${pathOf(plan.lines)} />
-      <circle class="terminal" cx="0" cy=${-TERMINAL} r=${TERMINAL} /><circle class="terminal" cx="0" cy=${plan.height + TERMINAL} r=${TERMINAL} />
-      ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state} chosen=${same(one.path, path)} entrance=${isEntrance(one.path, path)} store=${store} drag=${drag} />`)}
+      <circle class="terminal" cx="0" cy=${-TERMINAL} r=${TERMINAL} />
+        <circle class="terminal" cx="0" cy=${plan.height + TERMINAL} r=${TERMINAL} />
+      ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state}
+        chosen=${same(one.path, path)} entrance=${isEntrance(one.path, path)} store=${store} drag=${drag} />`)}
       ${target && over && html`<path class="landing" d=${landing(target, over)} />`}
     </svg>
   </div>`;
 }
 
-/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, entrance: boolean, store: Store, drag: (event: PointerEvent, path: Path) => void}} props */
+/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, entrance: boolean, store:
+ * Store, drag: (event: PointerEvent, path: Path) => void}} props */
 function Symbol({ one, state, chosen, entrance, store, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
   const { elements = {} } = state.history.present.study;
   const unknown = !kind && (!(one.name in elements) || layoutsWith(state, one.name) !== null);
   const label = [one.name, kind?.key ?? (unknown ? "unknown element" : ""), value].filter(Boolean).join(", ");
-  const select = () => same(store.get().view.path, one.path) || store.dispatch({ type: "viewed", view: { path: one.path } });
-  return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""}`} transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen} tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
+  const select = () => same(store.get().view.path, one.path)
+    || store.dispatch({ type: "viewed", view: { path: one.path } });
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""}`}
+    transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen}
+      tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
     onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
@@ -314,7 +361,8 @@ function Symbol({ one, state, chosen, entrance, store, drag }) {
   </g>`;
 }
 
-/** Whether the keyboard enters the drawing at this element: what is selected, or the first of it. @param {Path} leafPath @param {Path} path */
+/** Whether the keyboard enters the drawing at this element: what is selected, or the first of it.
+ * @param {Path} leafPath @param {Path} path */
 const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[level] ?? 0));
 
 /** @param {{drawing: any[]}} kind */
@@ -360,7 +408,8 @@ function onKey(event, editing) {
   };
   if (event.ctrlKey || event.metaKey) return;
   const joint = event.key === event.key.toUpperCase() ? "parallel" : "series";
-  const kind = store.get().about?.elements.find((/** @type {any} */ { symbol }) => symbol[0] === event.key.toLowerCase());
+  const kind = store.get().about?.elements.find((/** @type {any} */ { symbol }) =>
+    symbol[0] === event.key.toLowerCase());
   if (keys[event.key]) keys[event.key]();
   else if (kind) addKind({ ...editing, how: joint }, kind);
   else return;
@@ -378,7 +427,8 @@ function targetAt(x, y) {
   return { path, kind, before: kind === "series" ? dy < 0 : dx < 0 };
 }
 
-/** A line where a part would come to lie. @param {import("../network/drawing.js").Box} box @param {{kind: Joint, before: boolean}} over */
+/** A line where a part would come to lie. @param {import("../network/drawing.js").Box} box
+ * @param {{kind: Joint, before: boolean}} over */
 function landing(box, { kind, before }) {
   const y = before ? box.top : box.bottom;
   const x = before ? box.left - 4 : box.right + 2;
@@ -401,7 +451,8 @@ function dropKind(event, store, setOver) {
   draw(store, next, placeOf(next, name), { [name]: kind.example });
 }
 
-/** Dragging a symbol to another place of the network. @param {Store} store @param {PointerEvent} down @param {Path} from @param {(over: any) => void} setOver */
+/** Dragging a symbol to another place of the network. @param {Store} store @param {PointerEvent} down
+ * @param {Path} from @param {(over: any) => void} setOver */
 function beginDrag(store, down, from, setOver) {
   if (down.button !== 0) return;
   const ended = new AbortController();
@@ -439,16 +490,24 @@ function Text({ store, text }) {
   return html`<div class="text">
     <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>
     <div class="underlined">
-      <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off" aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
-        onInput=${(/** @type {Event} */ event) => store.dispatch({ type: "changed", change: { type: "drawn", text: /** @type {HTMLTextAreaElement} */ (event.currentTarget).value.replace(/[\r\n]+/g, " ") }, gesture: "text" })}
+      <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off"
+        aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
+        onInput=${(/** @type {Event} */ event) =>
+          store.dispatch({ type: "changed", change: { type: "drawn",
+            text: /** @type {HTMLTextAreaElement} */ (event.currentTarget).value.replace(/[\r\n]+/g, " ") },
+              gesture: "text" })}
         onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && event.preventDefault()}
         onBlur=${() => store.dispatch({ type: "rested" })} />
-      <div class="marks" aria-hidden="true">${wrong ? html`${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u>${text.slice(wrong.at[1])}` : text}${" "}</div>
+      <div class="marks" aria-hidden="true">
+        ${wrong ? html`${text.slice(0, wrong.at[0])}<u>${text.slice(...wrong.at) || " "}</u>${text.slice(wrong.at[1])}`
+          : text}${" "}</div>
     </div>
     ${wrong && html`<p id="network-problem" class="problem" role="alert">${wrong.sentence}</p>`}
     ${missing.map(
       (name) => html`<p class="row" key=${name}>Add ${name} as
-        ${kinds.map((/** @type {any} */ kind) => html` <button type="button" key=${kind.key} onClick=${() => store.change({ type: "placed", place: ["elements", name], value: kind.example })}>${kind.key}</button>`)}</p>`,
+        ${kinds.map((/** @type {any} */ kind) => html` <button type="button" key=${kind.key}
+          onClick=${() => store.change({ type: "placed", place: ["elements", name], value: kind.example })}>${kind.key}
+            </button>`)}</p>`,
     )}
   </div>`;
 }

@@ -24,21 +24,31 @@ export function TolerancePanel({ store, api }) {
   const names = elementsIn(state, document.layout);
   const answer = soughtAnswer(state, "tolerance");
   const { is, value, sentence } = answer;
-  if (names.length === 0 || indices.length === 0) return html`<p class="quiet">There is no element, or no index, to be asked about.</p>`;
+  if (names.length === 0 || indices.length === 0) return html`<p
+    class="quiet">There is no element, or no index, to be asked about.</p>`;
   return html`<form aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
     void seek(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) });
   }}>
-    <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally likely. What is empty does not scatter.</p>
-    <div class="row spreads">${names.map((name) => html`<label key=${name}><span>${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any" defaultValue=${USUAL} /> %</label>`)}</div>
-    <div class="row"><label>Index <select name="index">${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}</select></label> <button>Find out</button></div>
+    <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally
+      likely. What is empty does not scatter.</p>
+    <div class="row spreads">
+      ${names.map((name) => html`<label key=${name}><span>
+        ${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any"
+          defaultValue=${USUAL} /> %</label>`)}</div>
+    <div class="row"><label>Index <select name="index">
+      ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
+        </select></label> <button>Find out</button></div>
     <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
   <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />
   ${value &&
     html`<${Scattered} value=${value} />
-    <p class="row"><button type="button" onClick=${async () => download(await api.blob("export/csv", { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }), `tolerance-${value.index}.csv`)}>Save (CSV)</button></p>`}`;
+    <p class="row"><button type="button"
+      onClick=${async () => download(await api.blob("export/csv",
+        { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }),
+          `tolerance-${value.index}.csv`)}>Save (CSV)</button></p>`}`;
 }
 
 /** By what part of themselves values scatter. @param {string[]} names @param {FormData} form */
@@ -57,16 +67,25 @@ function Scattered({ value }) {
     ["worst that was found", value.worst],
   ];
   const names = Object.keys(value.total ?? {}).toSorted((a, b) => (value.total[b] ?? 0) - (value.total[a] ?? 0));
-  return html`<${Doubts} members=${[{ of: `the scatter of ${value.index}`, status: value.status, message: value.message }]} />
+  return html`<${Doubts}
+    members=${[{ of: `the scatter of ${value.index}`, status: value.status, message: value.message }]} />
     <div class="scattered">
       <div class="scroll" tabindex="0" role="region" aria-label="Distribution"><table data-scatter=${value.index}>
-        <thead><tr><th scope="col">${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}</th><th scope="col">value</th></tr></thead>
-        <tbody>${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th><td class="number" data-value=${number}>${shown(number)}</td></tr>`)}</tbody>
+        <thead><tr><th scope="col">${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}</th>
+          <th scope="col">value</th></tr></thead>
+        <tbody>${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
+          <td class="number" data-value=${number}>${shown(number)}</td></tr>`)}</tbody>
       </table></div>
       <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />
       <div class="scroll" tabindex="0" role="region" aria-label="Which value matters"><table>
-        <thead><tr><th scope="col">variance from</th><th scope="col" title="what the value makes by itself">by itself</th><th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr></thead>
-        <tbody>${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td><td class="measure"><span class="measured" style=${{ width: `${100 * Math.min(1, Math.max(0, value.total[name] ?? 0))}%` }}></span></td></tr>`)}</tbody>
+        <thead><tr><th scope="col">variance from</th>
+          <th scope="col" title="what the value makes by itself">by itself</th>
+            <th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr>
+              </thead>
+        <tbody>${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">
+          ${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td><td class="measure">
+            <span class="measured" style=${{ width: `${100 * Math.min(1, Math.max(0, value.total[name] ?? 0))}%` }}>
+              </span></td></tr>`)}</tbody>
       </table></div>
     </div>`;
 }
@@ -82,7 +101,9 @@ function Histogram({ histogram: { edges, counts }, title }) {
   if (!(most > 0)) return null;
   const step = WIDTH / counts.length;
   return html`<svg class="histogram" viewBox=${`0 0 ${WIDTH} ${HEIGHT + 20}`} role="img" aria-label=${title}>
-    ${counts.map((count, i) => html`<rect key=${i} x=${i * step} width=${step * 0.9} y=${HEIGHT * (1 - count / most)} height=${(HEIGHT * count) / most} />`)}
-    <text x="0" y=${HEIGHT + 15}>${shown(edges[0], 4)}</text><text x=${WIDTH} y=${HEIGHT + 15} text-anchor="end">${shown(edges.at(-1), 4)}</text>
+    ${counts.map((count, i) => html`<rect key=${i} x=${i * step} width=${step * 0.9} y=${HEIGHT * (1 - count / most)}
+      height=${(HEIGHT * count) / most} />`)}
+    <text x="0" y=${HEIGHT + 15}>${shown(edges[0], 4)}</text><text x=${WIDTH} y=${HEIGHT + 15} text-anchor="end">
+      ${shown(edges.at(-1), 4)}</text>
   </svg>`;
 }

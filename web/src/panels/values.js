@@ -1,4 +1,5 @@
-// Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed or free.
+// Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed
+// or free.
 
 import { layoutsWith, numbersOf } from "../library.js";
 import { quickMethod } from "../methods.js";
@@ -94,8 +95,8 @@ function amountOf(state, row) {
   return { row, label, text, range: ranges[idOf(row)] ?? decade(text), free: false, set };
 }
 
-/** What a number is called below the title of its section, or of its table. An element has its own name, and its further
- * numbers theirs beside it. @param {NumberRow} row */
+/** What a number is called below the title of its section, or of its table. An element has its own name, and its
+ * further numbers theirs beside it. @param {NumberRow} row */
 function labelOf({ path, place }) {
   if (path[0] === ELEMENTS) return place.replace(`${ELEMENTS}.`, "").replaceAll(".", ", ");
   return path.slice(path.length > 2 ? 2 : 1).join(", ").replaceAll("_", " ");
@@ -150,21 +151,27 @@ function AmountRow({ store, amount }) {
   const { unit, sentence } = row;
   const id = idOf(row);
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
-  const usable = size !== null && lower !== null && upper !== null && lower * upper > 0 && Math.abs(upper) > Math.abs(lower);
+  const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
+    && Math.abs(upper) > Math.abs(lower);
   const problems = problemsAt(state, row.path);
   const gesture = `slide ${id}`;
   /** @param {Event} event */
   function slide(event) {
     if (!usable) return;
     const position = Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
-    if (!free && !(id in state.history.present.ranges)) store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
-    store.change(set(inUnitOf(state, text, unit, valueAt(position, /** @type {number} */ (lower), /** @type {number} */ (upper)))), gesture);
+    if (!free && !(id in state.history.present.ranges)) {
+      store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
+    }
+    store.change(set(inUnitOf(state, text, unit, valueAt(position, lower, upper))), gesture);
   }
   const enter = (/** @type {string} */ value) => store.change(set(value));
   return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence || row.words}>
     <label for=${`slider ${id}`}>${label}</label>
-    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} value=${usable ? positionOf(/** @type {number} */ (size), /** @type {number} */ (lower), /** @type {number} */ (upper)) : 0} disabled=${!usable} aria-valuetext=${text} onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
-    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0} done=${enter} />
+    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS}
+      value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
+      onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
+    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
+      done=${enter} />
     <${Bounds} store=${store} amount=${amount} />
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
   </div>`;
@@ -178,23 +185,31 @@ function Bounds({ store, amount }) {
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
   /** @param {{from: string, to: string}} next */
-  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next }) : store.change({ type: "ranged", place: place.join("."), ...next }));
+  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next })
+    : store.change({ type: "ranged", place: place.join("."), ...next }));
   return html`<details class="bounds">
     <summary aria-label=${`${label}: ${free ? "free" : "fixed"}, bounds`}>${free ? "free" : "fixed"}</summary>
     <div class="menu-body">
       ${row.may_be_free &&
       html`<div class="row" role="group" aria-label=${`${label} is`}>
-        <button type="button" class="chip" aria-pressed=${!free} onClick=${() => free && store.change({ type: "fixed", place, name, text })}>fixed</button>
-        <button type="button" class="chip" aria-pressed=${free} onClick=${() => !free && store.change({ type: "freed", place, name, ...range, method: judging })}>free</button>
+        <button type="button" class="chip" aria-pressed=${!free}
+          onClick=${() => free && store.change({ type: "fixed", place, name, text })}>fixed</button>
+        <button type="button" class="chip" aria-pressed=${free}
+          onClick=${() => !free && store.change({ type: "freed", place, name, ...range,
+            method: judging })}>free</button>
       </div>`}
-      <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from} done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
-      <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to} done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
-      ${removable && html`<button type="button" onClick=${() => store.change({ type: "elementRemoved", name: element })}>Delete ${element}</button>`}
+      <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
+        done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
+      <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to}
+        done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
+      ${removable && html`<button type="button"
+        onClick=${() => store.change({ type: "elementRemoved", name: element })}>Delete ${element}</button>`}
     </div>
   </details>`;
 }
 
-/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
+/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit.
+ * @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
 export function Entry({ id, label, text, wrong = false, done }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
   const [inside, setInside] = useState(false);
@@ -202,29 +217,37 @@ export function Entry({ id, label, text, wrong = false, done }) {
     if (typed !== null && typed.trim() !== text) done(typed.trim());
     setTyped(null);
   };
-  /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost. @param {Event} event */
+  /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost.
+   * @param {Event} event */
   const enter = (event) => {
     const input = /** @type {HTMLInputElement} */ (event.currentTarget);
     input.value = text;
     input.select();
     setInside(true);
   };
-  return html`<input class="entry" id=${id} aria-label=${label} title=${text} value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
-    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onFocus=${enter}
+  return html`<input class="entry" id=${id} aria-label=${label} title=${text}
+    value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
+    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)}
+      onFocus=${enter}
     onBlur=${() => {
       finish();
       setInside(false);
     }}
-    onKeyDown=${(/** @type {KeyboardEvent} */ event) => (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
+    onKeyDown=${(/** @type {KeyboardEvent} */ event) =>
+      (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
 }
 
-/** The problems of the study that no field of the page tells. @param {State} state @returns {import("../api.js").Problem[]} */
+/** The problems of the study that no field of the page tells. @param {State} state
+ * @returns {import("../api.js").Problem[]} */
 export function otherProblems(state) {
   const fields = numbersOf(state).map(({ path }) => path);
-  return (answerOf(state, "check").value?.problems ?? []).filter((/** @type {any} */ problem) => !fields.some((place) => place.every((key, level) => problem.place[level] === key)));
+  return (answerOf(state, "check").value?.problems
+    ?? []).filter((/** @type {any} */ problem) => !fields.some((place) =>
+      place.every((key, level) => problem.place[level] === key)));
 }
 
-/** The problems of the study at a place, or below it. @param {State} state @param {string[]} place @returns {import("../api.js").Problem[]} */
+/** The problems of the study at a place, or below it. @param {State} state @param {string[]} place
+ * @returns {import("../api.js").Problem[]} */
 export function problemsAt(state, place) {
   const problems = answerOf(state, "check").value?.problems ?? [];
   return problems.filter((/** @type {any} */ problem) => place.every((key, level) => problem.place[level] === key));

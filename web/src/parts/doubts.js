@@ -1,7 +1,8 @@
 // What makes an answer doubtful stands before it: an answer is no better than the worst of what it is made of.
 import { html } from "./html.js";
 
-/** Something an answer is made of, with its status: a word, or a word, a colon and a message. @typedef {{of: string, status: string | null | undefined, message?: string}} Member */
+/** Something an answer is made of, with its status: a word, or a word, a colon and a message.
+ * @typedef {{of: string, status: string | null | undefined, message?: string}} Member */
 
 /** Whether a status tells of a number that can be relied on. @param {string | null | undefined} status */
 export const isOk = (status) => status === null || status === undefined || status === "" || kindOf(status) === "ok";
@@ -22,19 +23,24 @@ export function doubtsIn(members) {
   return [...about].map(([why, several]) => `${several.join(", ")}: ${why}`);
 }
 
-/** The sentence that a text about doubtful numbers begins with; empty where there is no doubt. @param {Member[]} members */
-export const doubted = (members) => doubtsIn(members).map((doubt) => `Not to be relied on: ${doubt}. `.replace(/\.\. $/, ". ")).join("");
+/** The sentence that a text about doubtful numbers begins with; empty where there is no doubt.
+ * @param {Member[]} members */
+export const doubted = (members) => doubtsIn(members).map((doubt) => `Not to be relied on: ${doubt}. `.replace(/\.\. $/,
+  ". ")).join("");
 
 /** @param {{members: Member[]}} props */
 export function Doubts({ members }) {
   const doubts = doubtsIn(members);
-  return doubts.length === 0 ? null : html`<div class="doubts problem" role="alert">${doubts.map((doubt) => html`<p key=${doubt}><b>Not to be relied on.</b> ${doubt}</p>`)}</div>`;
+  return doubts.length === 0 ? null : html`<div class="doubts problem" role="alert">
+    ${doubts.map((doubt) => html`<p key=${doubt}><b>Not to be relied on.</b> ${doubt}</p>`)}</div>`;
 }
 
 /** What is no answer, since nobody has chosen it. @param {{designs: {name: string, unchosen: string[]}[]}} props */
 export function Unchosen({ designs }) {
   const found = designs.filter(({ unchosen }) => unchosen.length > 0);
+  const listed = found.map(({ name, unchosen }) => `${unchosen.join(", ")} of ${name}`).join("; ");
   return found.length === 0
     ? null
-    : html`<p class="unchosen" role="status">Not chosen yet: ${found.map(({ name, unchosen }) => `${unchosen.join(", ")} of ${name}`).join("; ")}. The free values are in the middle of their bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
+    : html`<p class="unchosen" role="status">Not chosen yet: ${listed}. The free values are in the middle of their
+        bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
 }

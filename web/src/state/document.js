@@ -1,6 +1,8 @@
-// What a person works on, and all that can be done to it. A document is never changed in place: each action gives the next.
+// What a person works on, and all that can be done to it. A document is never changed in place: each action gives the
+// next.
 //
-// `study` is the file, as JSON of its TOML tables, with quantities as they were written. What a file does not hold stands
+// `study` is the file, as JSON of its TOML tables, with quantities as they were written. What a file does not hold
+// stands
 // beside it: the present values of free elements (by layout), the ranges of sliders, designs by name.
 
 import { freshName } from "../network/algebra.js";
@@ -8,10 +10,13 @@ import { freshName } from "../network/algebra.js";
 /** @typedef {{from: string, to: string, [more: string]: unknown}} Range */
 /** @typedef {string | Range | {[key: string]: unknown}} ElementEntry */
 /** @typedef {string | {[strut: string]: string}} LayoutEntry */
-/** @typedef {{[key: string]: any, title?: string, vehicle?: {[key: string]: any}, road?: {[key: string]: any}, elements?: {[name: string]: ElementEntry}, layouts?: {[name: string]: LayoutEntry}, study?: {[key: string]: any}}} Study */
+/** @typedef {{[key: string]: any, title?: string, vehicle?: {[key: string]: any}, road?: {[key: string]: any},
+ * elements?: {[name: string]: ElementEntry}, layouts?: {[name: string]: LayoutEntry}, study?: {[key: string]: any}}}
+ * Study */
 /** @typedef {{[layout: string]: {[element: string]: string}}} Values */
 /** @typedef {{name: string, study: Study, layout: string, values: Values}} Design */
-/** @typedef {{study: Study, layout: string, strut: string | null, values: Values, ranges: {[place: string]: {from: string, to: string}}, designs: Design[]}} Document */
+/** @typedef {{study: Study, layout: string, strut: string | null, values: Values, ranges: {[place: string]: {from:
+ * string, to: string}}, designs: Design[]}} Document */
 
 /** @typedef {{type: "opened", study: Study}
  *  | {type: "restored", document: Document}
@@ -80,14 +85,23 @@ const CHANGES = {
     const layouts = document.study.layouts ?? {};
     const values = { ...document.values, [name]: document.values[document.layout] ?? {} };
     const like = layouts[document.layout] ?? Object.keys(document.study.elements ?? {})[0] ?? "";
-    return standing({ ...document, values, layout: name, study: { ...document.study, layouts: { ...layouts, [name]: like } } });
+    return standing({
+      ...document,
+      values,
+      layout: name,
+      study: { ...document.study, layouts: { ...layouts, [name]: like } },
+    });
   },
   layoutRenamed: (document, { name }) => {
     const old = document.layout;
     const { study, values } = document;
     if (!(old in (study.layouts ?? {})) || name in (study.layouts ?? {})) return document;
     const settings = study.study?.baseline === old ? { ...study.study, baseline: name } : study.study;
-    const renamedStudy = { ...study, layouts: keyRenamed(study.layouts ?? {}, old, name), ...(settings && { study: settings }) };
+    const renamedStudy = {
+      ...study,
+      layouts: keyRenamed(study.layouts ?? {}, old, name),
+      ...(settings && { study: settings }),
+    };
     return { ...document, layout: name, values: keyRenamed(values, old, name), study: renamedStudy };
   },
   layoutRemoved: (document) => {
@@ -100,9 +114,17 @@ const CHANGES = {
   strutsParted: (document, { struts }) => {
     const text = textOf(document);
     const each = Object.fromEntries(struts.map((/** @type {string} */ strut) => [strut, text]));
-    return standing({ ...document, strut: struts[0], study: placed(document.study, ["layouts", document.layout], each) });
+    return standing({
+      ...document,
+      strut: struts[0],
+      study: placed(document.study, ["layouts", document.layout], each),
+    });
   },
-  strutsJoined: (document) => ({ ...document, strut: null, study: placed(document.study, ["layouts", document.layout], textOf(document)) }),
+  strutsJoined: (document) => ({
+    ...document,
+    strut: null,
+    study: placed(document.study, ["layouts", document.layout], textOf(document)),
+  }),
   elementRenamed: (document, { old, name, study }) => elementRenamed(document, old, name, study),
   elementRemoved: (document, { name }) => ({
     ...document,
@@ -115,15 +137,21 @@ const CHANGES = {
   },
   designTaken: (document, { name }) => {
     const design = document.designs.find((each) => each.name === name);
-    return design ? standing({ ...document, study: design.study, layout: design.layout, values: design.values }) : document;
+    return design
+      ? standing({ ...document, study: design.study, layout: design.layout, values: design.values })
+      : document;
   },
-  designRemoved: (document, { name }) => ({ ...document, designs: document.designs.filter((design) => design.name !== name) }),
+  designRemoved: (document, { name }) => ({
+    ...document,
+    designs: document.designs.filter((design) => design.name !== name),
+  }),
 };
 
 /** The document after a change. @param {Document} document @param {Change} change @returns {Document} */
 export const after = (document, change) => CHANGES[change.type](document, change);
 
-/** Whether something that is dispatched changes the document. @param {{type: string}} action @returns {action is Change} */
+/** Whether something that is dispatched changes the document. @param {{type: string}} action
+ * @returns {action is Change} */
 export const isChange = (action) => Object.hasOwn(CHANGES, action.type);
 
 /** The document with a layout and a strut that are there. @param {Document} document @returns {Document} */
@@ -136,7 +164,8 @@ function standing(document) {
   return layout === document.layout && strut === document.strut ? document : { ...document, layout, strut };
 }
 
-/** The struts that a layout names, none where one text is for all. @param {LayoutEntry | undefined} entry @returns {string[]} */
+/** The struts that a layout names, none where one text is for all. @param {LayoutEntry | undefined} entry
+ * @returns {string[]} */
 export const strutsOf = (entry) => (entry !== null && typeof entry === "object" ? Object.keys(entry) : []);
 
 /** The text of the network that is edited. @param {Document} document @returns {string} */
@@ -181,7 +210,8 @@ function elementRenamed(document, old, name, study) {
 /** What stands in a table at a place. @param {any} table @param {string[]} place @returns {any} */
 export const entryAt = (table, place) => place.reduce((inside, key) => inside?.[key], table);
 
-/** A table with something at a place; `undefined` takes the key away. @param {any} table @param {string[]} place @param {unknown} value @returns {any} */
+/** A table with something at a place; `undefined` takes the key away. @param {any} table @param {string[]} place
+ * @param {unknown} value @returns {any} */
 function placed(table, place, value) {
   const [key, ...rest] = place;
   if (rest.length > 0) return { ...table, [key]: placed(table?.[key] ?? {}, rest, value) };
@@ -191,5 +221,7 @@ function placed(table, place, value) {
 /** @template T @param {{[key: string]: T}} table @param {string} key @returns {{[key: string]: T}} */
 const without = (table, key) => Object.fromEntries(Object.entries(table).filter(([each]) => each !== key));
 
-/** A table in which a key is another one, at its place. @template T @param {{[key: string]: T}} table @param {string} old @param {string} name @returns {{[key: string]: T}} */
-const keyRenamed = (table, old, name) => Object.fromEntries(Object.entries(table).map(([key, value]) => [key === old ? name : key, value]));
+/** A table in which a key is another one, at its place. @template T @param {{[key: string]: T}} table
+ * @param {string} old @param {string} name @returns {{[key: string]: T}} */
+const keyRenamed = (table, old, name) =>
+  Object.fromEntries(Object.entries(table).map(([key, value]) => [key === old ? name : key, value]));

@@ -1,5 +1,5 @@
-// All state in one place. What happens is dispatched, `reduce` gives the next state, and who subscribed is told; nothing else
-// changes anything.
+// All state in one place. What happens is dispatched, `reduce` gives the next state, and who subscribed is told;
+// nothing else changes anything.
 
 import { answered, asked, turned } from "./answers.js";
 import { after, empty, isChange } from "./document.js";
@@ -13,13 +13,23 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {import("../network/algebra.js").Tree} Tree */
 /** @typedef {import("../library.js").Parts} Parts */
 /** @typedef {import("./answers.js").Answers} Answers */
-/** What the page has to say: `about` tells which message a newer one replaces. @typedef {{about: string, text: string}} Message */
-/** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null, sentence: string | null, result: any}} Job  `begun`: in seconds since 1970, by the clock of the server */
-/** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number, playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View  `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with; `across`: the drawing over the width of the page */
+/** What the page has to say: `about` tells which message a newer one replaces.
+ * @typedef {{about: string, text: string}} Message */
+/** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
+ * begun: number | null, share: number | null, sentence: string | null, result: any}} Job  `begun`: in seconds since
+ * 1970, by the clock of the server */
+/** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
+ * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View 
+ * `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with;
+ * `across`: the drawing over the width of the page */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
-/** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values are being chosen just now.
- * `parts`: what the library last said that a study is made of; `trees`: networks that are known, by their texts.
- * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any}, choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?: number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View, about: any, connection: Connection, messages: Message[]}} State */
+/** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
+ * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
+ * known, by their texts.
+ * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
+ * choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
+ * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View,
+ * about: any, connection: Connection, messages: Message[]}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
@@ -43,7 +53,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "said", text: string, about?: string}
  *  | {type: "closed", about: string}} Action */
 
-/** @typedef {{get: () => State, dispatch: (action: Action) => void, change: (change: Change, gesture?: string | null) => void, subscribe: (told: () => void) => () => void}} Store */
+/** @typedef {{get: () => State, dispatch: (action: Action) => void, change: (change: Change, gesture?: string |
+ * null) => void, subscribe: (told: () => void) => () => void}} Store */
 
 /** @returns {State} */
 export const initial = () => ({
@@ -56,7 +67,20 @@ export const initial = () => ({
   parts: null,
   trees: {},
   records: [],
-  view: { path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false, compared: [], against: "", seconds: 10, seed: 0, across: false },
+  view: {
+    path: [],
+    tab: "response",
+    theme: "auto",
+    method: "",
+    index: "",
+    speed: 1,
+    playing: false,
+    compared: [],
+    against: "",
+    seconds: 10,
+    seed: 0,
+    across: false,
+  },
   about: null,
   connection: "connecting",
   messages: [],
@@ -65,7 +89,8 @@ export const initial = () => ({
 const MOST = 5; // messages that stand below each other
 const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another study
 
-/** The state with another document in it: nothing that was said or answered of the one before is about it. @param {State} state @param {DocumentHistory} history @returns {State} */
+/** The state with another document in it: nothing that was said or answered of the one before is about it.
+ * @param {State} state @param {DocumentHistory} history @returns {State} */
 const elsewhere = (state, history) => ({ ...state, history, answers: turned(state.answers), messages: [] });
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
@@ -79,8 +104,10 @@ const STEPS = {
   undone: (state) => elsewhere(state, undone(state.history)),
   redone: (state) => elsewhere(state, redone(state.history)),
   asked: (state, { panel, question }) => answers(state, panel, asked(state.answers[panel], question)),
-  answered: (state, { panel, question, value }) => answers(state, panel, answered(state.answers[panel], { question, value, sentence: null })),
-  refused: (state, { panel, question, sentence }) => answers(state, panel, answered(state.answers[panel], { question, value: null, sentence })),
+  answered: (state, { panel, question, value }) =>
+    answers(state, panel, answered(state.answers[panel], { question, value, sentence: null })),
+  refused: (state, { panel, question, sentence }) =>
+    answers(state, panel, answered(state.answers[panel], { question, value: null, sentence })),
   forgotten: (state) => ({ ...state, answers: {} }),
   sought: (state, { panel, parameters }) => ({ ...state, sought: { ...state.sought, [panel]: parameters } }),
   choosing: (state, { study }) => ({ ...state, choosing: study }),
@@ -89,13 +116,22 @@ const STEPS = {
   parted: (state, { parts }) => ({ ...state, parts, trees: { ...treesIn(parts), ...state.trees } }),
   planted: (state, { text, tree }) => ({ ...state, trees: { ...state.trees, [text]: tree } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),
-  dropped: (state, { id }) => ({ ...state, work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)) }),
-  recorded: (state, { record }) => ({ ...state, records: [...state.records.filter(({ id }) => id !== record.id), record] }),
+  dropped: (state, { id }) => ({
+    ...state,
+    work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)),
+  }),
+  recorded: (state, { record }) => ({
+    ...state,
+    records: [...state.records.filter(({ id }) => id !== record.id), record],
+  }),
   unrecorded: (state, { id }) => ({ ...state, records: state.records.filter((each) => each.id !== id) }),
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text }) => ({ ...state, messages: [...without(state.messages, about), { about, text }].slice(-MOST) }),
+  said: (state, { text, about = text }) => ({
+    ...state,
+    messages: [...without(state.messages, about), { about, text }].slice(-MOST),
+  }),
   closed: (state, { about }) => ({ ...state, messages: without(state.messages, about) }),
 };
 

@@ -105,7 +105,7 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
     page.click("#tab-tolerance")
     page.locator("#tab-panel").get_by_role("button", name="Find out").click()
     page.wait_for_selector("table[data-scatter]")
-    page.get_by_text("What it bears").click()
+    page.get_by_text("Break-even values").click()
     page.locator(".budget").get_by_role("button", name="Find out").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
     assert len(page.evaluate(SHOWN)["texts"]) > 0
@@ -162,7 +162,7 @@ def _save(name: str) -> Callable[[Any], None]:
 def _find_out(tab: str) -> Callable[[Any], None]:
     def ask(page: Any) -> None:
         if tab == "budget":
-            page.get_by_text("What it bears").click()
+            page.get_by_text("Break-even values").click()
         else:
             page.click(f"#tab-{tab}")
         page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Find out").click()
@@ -270,7 +270,7 @@ def test_a_fit_that_is_withheld_says_so_first_and_hands_nothing_on(visitor: Visi
     assert result["parameters"]["b"]["value"] is None
     assert result["device"] is None
     told = page.inner_text(".fit")
-    first = told.index("Not to be relied on")
+    first = told.index("Unreliable")
     assert result["status"].partition(": ")[2] in told
     assert first < told.index("95 % interval")
     assert page.locator(".fit tr:has(th:text-is('b')) td").first.inner_text() == "withheld"
@@ -281,7 +281,7 @@ def test_a_fit_that_is_withheld_says_so_first_and_hands_nothing_on(visitor: Visi
     folder.mkdir()
     (folder / "fit.json").write_bytes(visitor.served.get(f"work/{job['id']}/files/fit.json"))
     drop(visitor, folder)
-    page.wait_for_selector(".notice:has-text('fit.json: Not to be relied on')")
+    page.wait_for_selector(".notice:has-text('fit.json: Unreliable')")
     assert "There is no device to take" in page.inner_text(".notice:has-text('fit.json')")
     assert visitor.text == before
     page.locator(".fit").get_by_role("button", name="Forget").click()
@@ -307,7 +307,7 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
     visitor.settled()
     answers = page.inner_text(".answers")
-    assert answers.index("Not to be relied on") < answers.index("better by")
+    assert answers.index("Unreliable") < answers.index("better by")
     cell = page.locator(".answers td:has(.doubt)").last.inner_text()
     assert cell.startswith("inaccurate")
     assert page.locator(".answers td.good, .answers td.bad").count() == 0
@@ -317,14 +317,14 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
         page.get_by_role("group", name="Designs to compare").get_by_role("button", name=layout).click()
     page.wait_for_selector("[aria-label=Comparison] td[data-value]")
     told = page.inner_text("#tab-panel")
-    assert told.index("Not to be relied on") < told.index("network")
+    assert told.index("Unreliable") < told.index("network")
     assert page.locator("td.best, .difference.good, .difference.bad").count() == 0
 
-    page.get_by_text("What it bears").click()
+    page.get_by_text("Break-even values").click()
     page.locator(".budget [name=parameter]").select_option("f")
     page.locator(".budget").get_by_role("button", name="Find out").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
-    assert page.inner_text(".budget [role=status]").startswith("Not to be relied on: the budget: inaccurate")
+    assert page.inner_text(".budget [role=status]").startswith("Unreliable: the budget: inaccurate")
 
     page.select_option(".answers select >> nth=0", "norm")
     page.click("#tab-tolerance")

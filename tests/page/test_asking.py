@@ -378,7 +378,7 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     text = _two_struts(inerter="k | d - (b | f)", **{name: f'"{value}"' for name, value in values.items()})
     _open(visitor, text, tmp_path)
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
-    page.get_by_text("What it bears").click()
+    page.get_by_text("Break-even values").click()
     asked: list[Any] = []
     page.on("request", lambda request: asked.append(request.post_data_json) if "panel/budget" in request.url else None)
     page.locator(".budget").get_by_role("button", name="Find out").click()

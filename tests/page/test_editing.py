@@ -108,7 +108,7 @@ def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tm
     other.write_text('[tool.other]\nname = "no study"\n')
     visitor.open(other)
     page.wait_for_selector(".notice")
-    assert "no study file, and nothing was changed" in page.inner_text(".notice")
+    assert "not a study file; nothing was changed" in page.inner_text(".notice")
     assert visitor.text == before
 
 

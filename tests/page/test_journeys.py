@@ -173,7 +173,7 @@ def test_every_example_opens(visitor: Visitor) -> None:
             study = load_study(path)
         except it.InerterError:
             tables = tomllib.loads(path.read_text())
-            said = "no study file"
+            said = "not a study file"
             if "simulation" in tables:
                 rig = tables["vehicle"]["model"] == "rig"
                 said = "The device is in the new layout" if rig else f"{path.name} is open as a study of its vehicle"

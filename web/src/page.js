@@ -107,7 +107,7 @@ function Title({ store }) {
 const SAID = {
   connecting: "Connecting…",
   compiling: "The numerical kernels are compiled, once for this machine; answers come then.",
-  lost: "The server does not answer. Your work is here; the page goes on when the server is back.",
+  lost: "The server does not answer. Your work is here; the page continues when the server is back.",
   refused: "The server does not know this page. Paste the link that it printed, or its token:",
 };
 

@@ -118,7 +118,7 @@ export async function open(store, api, files) {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
       else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
-      else say(store, `${file.name} is no file that this page knows: it takes ${KNOWN}.`);
+      else say(store, `${file.name} is not a supported file; supported: ${KNOWN}.`);
     } catch (error) {
       say(store, `${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
     }
@@ -150,7 +150,7 @@ async function openStudyFile(store, api, file) {
   const isStudy =
     study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
   if (!isStudy) {
-    say(store, `${file.name} is no study file, and nothing was changed. ${other ?? ""}`.trim());
+    say(store, `${file.name} is not a study file; nothing was changed. ${other ?? ""}`.trim());
     return;
   }
   if (!(await beginWith(store, api, study))) return;
@@ -180,7 +180,7 @@ async function openSimulation(store, api, name, { signal, simulation, ...study }
   if (model?.moved === RIG) return say(store, `${name}: ${await takeDevice(store, api, study)}`);
   if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
-  say(store, `${name} is open as a study of its vehicle; what drove the simulation is left out.`);
+  say(store, `${name} is open as a study of its vehicle; the excitation of the simulation is omitted.`);
 }
 
 /** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */

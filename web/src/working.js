@@ -169,7 +169,7 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
   store.dispatch({ type: "rested" });
-  return `The device is in the new layout ${name}, beside the strut that was there.`;
+  return `The device is in the new layout ${name}, next to the existing strut.`;
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.

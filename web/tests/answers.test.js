@@ -211,7 +211,7 @@ test("a doubt is told once for all that it is about, and before anything else", 
   assert.deepEqual(doubtsIn(members), ["J1 of S1, J3 of S2: inaccurate: friction is large"]);
   assert.equal(
     doubted([{ of: "the budget", status: "failed", message: "" }]),
-    "Not to be relied on: the budget: failed. ",
+    "Unreliable: the budget: failed. ",
   );
   assert.equal(doubted([members[1]]), "");
   const budget = {
@@ -222,7 +222,7 @@ test("a doubt is told once for all that it is about, and before anything else", 
     status: "inaccurate",
     message: "friction is large",
   };
-  assert.match(budgetTold(budget, "S3", "S1"), /^Not to be relied on: .*friction is large\. At f = 12 N/);
+  assert.match(budgetTold(budget, "S3", "S1"), /^Unreliable: .*friction is large\. At f = 12 N/);
   assert.match(budgetTold({ ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
 });
 
@@ -243,7 +243,7 @@ test("only what is given is handed on: no withheld device, no values of another 
     post: async (/** @type {string} */ path, /** @type {any} */ body) =>
       path === "study/parts" ? partsOf(body.study) : { study: body.study },
   };
-  const refused = /^Not to be relied on: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
+  const refused = /^Unreliable: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
   for (const each of [fit, known]) assert.match(await takeFitted(store, api, each, device), refused);
   assert.equal(store.get().history.present, before);
   assert.match(
@@ -257,7 +257,7 @@ test("only what is given is handed on: no withheld device, no values of another 
   assert.equal(store.get().history.present, before);
   const optimum = { layout: "S2", index: "J1", texts: { c: "1 N s/m" } };
   const broken = { ...optimum, status: { norm: "infeasible" }, message: "a limit is broken" };
-  const said = /^Not to be relied on: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/;
+  const said = /^Unreliable: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/;
   assert.match(takeOptima(store, [broken]), said);
   const given = { status: "ok", parameters: { b: { value: 123, interval: [120, 125] } } };
   assert.match(await takeFitted(store, api, given, device), /^The device is in the new layout/);

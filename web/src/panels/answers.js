@@ -206,7 +206,7 @@ function Budget({ store, api, indices }) {
   if (names.length === 0 || indices.length === 0 || document.layout === baseline) return null;
   const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
   const { is, value, sentence } = soughtAnswer(state, "budget");
-  return html`<details class="budget"><summary>What it bears</summary>
+  return html`<details class="budget"><summary>Break-even values</summary>
     <form class="row" aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
@@ -225,7 +225,7 @@ function Budget({ store, api, indices }) {
 /** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout
  * @param {string} baseline */
 export function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
-  if (typeof value !== "number") return message || "There is no such value.";
+  if (typeof value !== "number") return message || "There is no break-even value.";
   const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
   const doubts = doubted([{ of: "the budget", status, message }]);
   return `${doubts}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;

@@ -12,7 +12,7 @@ const [WIDTH, HEIGHT, EDGE] = [640, 300, 56];
 /** @param {{state: import("../state/store.js").State}} props */
 export function FrontForm({ state }) {
   const indices = indicesOf(state);
-  if (indices.length < 2) return html`<span class="quiet">The study asks for one index only.</span>`;
+  if (indices.length < 2) return html`<span class="quiet">The study has only one index.</span>`;
   /** @param {string} name @param {number} chosen */
   const choice = (name, chosen) => html`<select name=${name} aria-label=${`${name} index`}>${indices.map(({ symbol, title }, i) => html`<option key=${symbol} value=${symbol} selected=${i === chosen}>${symbol}: ${title}</option>`)}</select>`;
   return html`${choice("first", 0)} against ${choice("second", 1)} <label>points <input name="points" type="number" min="2" max="200" defaultValue="15" /></label>`;

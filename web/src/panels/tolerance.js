@@ -60,11 +60,11 @@ function spreadOf(names, form) {
 /** @param {{value: any}} props */
 function Scattered({ value }) {
   const rows = [
-    ["as it is", value.nominal],
+    ["nominal", value.nominal],
     ["mean", value.mean],
     ["standard deviation", value.standard_deviation],
-    ["95 % stay below", value.quantiles["0.95"]],
-    ["worst that was found", value.worst],
+    ["95th percentile", value.quantiles["0.95"]],
+    ["worst case", value.worst],
   ];
   const names = Object.keys(value.total ?? {}).toSorted((a, b) => (value.total[b] ?? 0) - (value.total[a] ?? 0));
   return html`<${Doubts}
@@ -78,9 +78,9 @@ function Scattered({ value }) {
       </table></div>
       <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />
       <div class="scroll" tabindex="0" role="region" aria-label="Which value matters"><table>
-        <thead><tr><th scope="col">variance from</th>
-          <th scope="col" title="what the value makes by itself">by itself</th>
-            <th scope="col" title="what would go if the value did not scatter">in all</th><th scope="col"></th></tr>
+        <thead><tr><th scope="col">Sobol' index of</th>
+          <th scope="col" title="first-order Sobol' index: effect of the value alone">first order</th>
+            <th scope="col" title="total-order Sobol' index: with all interactions">total order</th><th scope="col"></th></tr>
               </thead>
         <tbody>${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">
           ${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td><td class="measure">

@@ -25,14 +25,14 @@ export function doubtsIn(members) {
 
 /** The sentence that a text about doubtful numbers begins with; empty where there is no doubt.
  * @param {Member[]} members */
-export const doubted = (members) => doubtsIn(members).map((doubt) => `Not to be relied on: ${doubt}. `.replace(/\.\. $/,
+export const doubted = (members) => doubtsIn(members).map((doubt) => `Unreliable: ${doubt}. `.replace(/\.\. $/,
   ". ")).join("");
 
 /** @param {{members: Member[]}} props */
 export function Doubts({ members }) {
   const doubts = doubtsIn(members);
   return doubts.length === 0 ? null : html`<div class="doubts problem" role="alert">
-    ${doubts.map((doubt) => html`<p key=${doubt}><b>Not to be relied on.</b> ${doubt}</p>`)}</div>`;
+    ${doubts.map((doubt) => html`<p key=${doubt}><b>Unreliable.</b> ${doubt}</p>`)}</div>`;
 }
 
 /** What is no answer, since nobody has chosen it. @param {{designs: {name: string, unchosen: string[]}[]}} props */

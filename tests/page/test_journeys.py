@@ -22,7 +22,7 @@ from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 from inerter.files.rig.loading import load_rig
 from inerter.files.study.loading import load_study
-from inerter.kernels import gain
+from inerter.kernels import h2
 from inerter.kernels.cache import cache_folder
 
 ELEMENTS = 'k = "120 kN/m"\nc = { from = "100 N s/m", to = "100 kN s/m" }'
@@ -242,9 +242,9 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
 def test_the_page_is_there_while_kernels_are_compiled(
     visitors: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    there = cache_folder(Path(gain.__file__))
+    there = cache_folder(Path(h2.__file__))
     assert there is not None
-    shutil.copytree(there.parent, tmp_path / "inerter", ignore=shutil.ignore_patterns(there.name))  # all but peaks
+    shutil.copytree(there.parent, tmp_path / "inerter", ignore=shutil.ignore_patterns(there.name))  # all but norms
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     fresh = Served(EXAMPLES / "quarter-car.toml", free_port())
     fresh.begin()

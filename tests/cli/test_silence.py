@@ -62,7 +62,7 @@ def test_a_command_that_says_nothing_has_a_pulse() -> None:
     between, lines = gaps([sys.executable, "-c", SLOW, "check"])
     assert len(lines) >= 2
     assert all(line.startswith("inerter: preparing") for line in lines)
-    assert max(between) < 2.0 * SILENCE / FASTER  # the machine may be busy
+    assert max(between) < SILENCE  # of a busy machine, whose process also takes its time to end
 
 
 def wait(seconds: float) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from inerter.app.parts import parse_network
 from inerter.app.wire import Refusal
 from inerter.files.common.problem import EntryError
-from inerter.files.study.unfinished import (
+from inerter.files.study.drafts import (
     WrittenNumber,
     elements_in_use,
     free_values,

@@ -25,7 +25,7 @@ export function TolerancePanel({ store, api }) {
   const answer = soughtAnswer(state, "tolerance");
   const { is, value, sentence } = answer;
   if (names.length === 0 || indices.length === 0) return html`<p
-    class="quiet">There is no element, or no index, to be asked about.</p>`;
+    class="quiet">There is no element, or no index, to analyse.</p>`;
   return html`<form aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));

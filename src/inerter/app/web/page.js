@@ -447,7 +447,7 @@ var ge,pa,Mp,fn,or,js,da,Ls,ma,lr,sr,Ep,ts=Symbol.for("pv"),Fs={},Is=[],Ap=/^m(i
           onClick=${()=>{my(e,t,s)}}>Take the device into the editor</button>`:b`<p>${Cr(s)}</p>`}
       <${Zn} api=${t} job=${n} />`}
   </section>`}var gy=10;function Bf({store:e,api:t}){let n=e.get(),o=n.history.present,s=en(n),l=Us(n,o.layout),r=Xs(n,"tolerance"),{is:i,value:c,sentence:u}=r;return l.length===0||s.length===0?b`<p
-    class="quiet">There is no element, or no index, to be asked about.</p>`:b`<form aria-busy=${i==="coming"} onSubmit=${p=>{p.preventDefault();let f=new FormData(p.currentTarget);el(e,t,"tolerance",{index:f.get("index"),spread:yy(l,f)})}}>
+    class="quiet">There is no element, or no index, to analyse.</p>`:b`<form aria-busy=${i==="coming"} onSubmit=${p=>{p.preventDefault();let f=new FormData(p.currentTarget);el(e,t,"tolerance",{index:f.get("index"),spread:yy(l,f)})}}>
     <p class="quiet">How far each value of ${o.layout} may lie above or below its own; all between is equally
       likely. What is empty does not scatter.</p>
     <div class="row spreads">

@@ -57,15 +57,15 @@ class TaggedCodec(Codec):
 
     def raw_entries(self, raw: Any) -> Iterator[Entry]:
         """The entries of the table that the word at `tag` selects; empty where it selects none."""
-        table = self._selected(raw)
+        table = self._table_of(raw)
         yield from () if table is None else table.raw_entries(raw)
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
         """The table with other names of elements."""
-        table = self._selected(raw)
+        table = self._table_of(raw)
         return raw if table is None else table.rename(raw, names)
 
-    def _selected(self, raw: Any) -> TableCodec | None:
+    def _table_of(self, raw: Any) -> TableCodec | None:
         word = raw.get(self.tag) if isinstance(raw, Mapping) else None
         return self.of().get(word) if isinstance(word, str) else None
 

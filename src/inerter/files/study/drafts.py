@@ -1,4 +1,4 @@
-"""Numbers, networks and elements in the tables of a study file, which may be unfinished, with their keys in it."""
+"""Numbers, networks and elements in the tables of a study file, which may be incomplete, with their keys in it."""
 
 from __future__ import annotations
 
@@ -129,5 +129,5 @@ def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any
     for new in renamed.values():
         element_name(new)
         if (new in known and new not in renamed) or list(renamed.values()).count(new) > 1:
-            raise EntryError(got=quote_value(new), fault="the name of another element", expected="a name of its own")
+            raise EntryError(got=quote_value(new), fault="the name of another element", expected="an unused name")
     return dict(study_codec().rename(tables, renamed))

@@ -98,7 +98,7 @@ def test_what_there_is_is_written_when_the_status_is_not_ok(
     folder = tmp_path / "out"
     assert call(["simulate", str(rattle), "-o", str(folder)]) == 1
     out, err = capsys.readouterr()
-    assert "rattle.toml: inaccurate: after 300 periods" in err
+    assert "rattle.toml: inaccurate: periodic steady state not reached after 300 periods" in err
     assert "Status: inaccurate" in out
     assert {path.name for path in folder.iterdir()} - {".inerter"} == FILES
 

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 from campaigns import sampled
 
-from inerter.kernels import declare
+from inerter.kernels import decorators
 
 BEFORE = """
 import json
@@ -43,7 +43,7 @@ print(json.dumps([norms.tolist(), "numba" in sys.modules]))
 
 def result(program: str, way: str) -> list[Any]:
     """What a program prints: by the usual way here, by another one in a process of its own."""
-    if way == declare.way() == "tuned":
+    if way == decorators.compiler_mode() == "tuned":
         with redirect_stdout(io.StringIO()) as printed:
             exec(BEFORE + program, {"__name__": "__main__"})
         return list(json.loads(printed.getvalue()))

@@ -27,7 +27,7 @@ from inerter.cli.pace import Pace
 from inerter.cli.progress import progress
 from inerter.figures.curves import thinned_band
 from inerter.figures.labels import one_method
-from inerter.files.study import checking, running, summary
+from inerter.files.study import checking, summary
 from inerter.files.study.cases import Case, Cases, Outcome, cases, portable
 from inerter.files.study.journal import journal_of, results_of
 from inerter.files.study.loading import load_study
@@ -102,7 +102,7 @@ def swift(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Outcome]],
     monkeypatch.setattr("inerter.cli.commands.draw_study", lambda *arguments: None)
 
     def use(work: Callable[..., Outcome]) -> None:
-        monkeypatch.setattr(running, "run_case", work)
+        monkeypatch.setattr(Case, "answer", lambda case, study, designs, threads: work(study, case, threads))
 
     use(drawn)
     return use

@@ -32,7 +32,7 @@ def parts_of(note: str) -> Parts:
 def with_prefix(prefix: str, note: str) -> Parts:
     """The parts of a note with a word before it.
 
-    >>> after("norm: ", "friction left out"), after("c = ", Note(2.0, " N s/m"))
+    >>> with_prefix("norm: ", "friction left out"), with_prefix("c = ", Note(2.0, " N s/m"))
     (('norm: friction left out',), ('c = ', 2.0, ' N s/m'))
     """
     first, *rest = parts_of(note)

@@ -65,7 +65,7 @@ class LoadContext:
 
 
 @dataclass(frozen=True)
-class Entry:
+class RawEntry:
     """An entry without keys of its own as a file has it, valid or not, and the codec that reads it."""
 
     codec: Codec
@@ -75,9 +75,9 @@ class Entry:
     words: str = ""  # of its number, as the nearest key declares them
     names: tuple[str, ...] = ()  # of the author's own, in the keys that lead to it; the nearest first
 
-    def below(self, key: str, *, name: str = "", sentence: str = "", words: str = "") -> Entry:
+    def below(self, key: str, *, name: str = "", sentence: str = "", words: str = "") -> RawEntry:
         """The entry in a table, at a key that declares words and a sentence, or that is a name of the author's own."""
-        return Entry(
+        return RawEntry(
             self.codec,
             self.raw,
             (key, *self.keys),
@@ -101,7 +101,7 @@ class Codec:
         raise NotImplementedError
 
     def dump(self, value: Any) -> Any:
-        """Entry of a value, in SI units; None or empty for a value that is left out of the file."""
+        """RawEntry of a value, in SI units; None or empty for a value that is left out of the file."""
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -116,9 +116,9 @@ class Codec:
         """The value with another number at these keys, in its SI unit."""
         return number
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries without keys of their own in an entry of a file, which may be invalid."""
-        yield Entry(self, raw)
+        yield RawEntry(self, raw)
 
     def keys_in_file(self, raw: Any, keys: KeyPath) -> KeyPath:
         """The keys in a file to the number that has these keys in the value."""
@@ -298,7 +298,7 @@ class TableCodec(Codec):
         part = one.codec.put(values.get(one.attribute), keys[1:], number)
         return self.check(self.make(**{**values, one.attribute: part}))
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries of all keys that a table gives."""
         for one in self.keys if isinstance(raw, Mapping) else ():
             if one.name in raw:
@@ -337,7 +337,7 @@ class Scalar(Codec):
         return self.check(raw)
 
     def dump(self, value: Any) -> Any:
-        """Entry of a value, as `write` returns it."""
+        """RawEntry of a value, as `write` returns it."""
         return self.write(value)
 
     def schema(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from inerter.files.common.codec import INVALID, Codec, Entry, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, RawEntry, TableCodec
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.units import quote_value
@@ -55,7 +55,7 @@ class TaggedCodec(Codec):
         """The value with another number in its table."""
         return self.table_of(value).put(value, keys, number)
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries of the table that the word at `tag` selects; empty where it selects none."""
         table = self._table_of(raw)
         yield from () if table is None else table.raw_entries(raw)
@@ -120,7 +120,7 @@ class NamesCodec(Codec):
         name = ".".join(keys[:count])
         return {**value, name: self.item.put(value[name], keys[count:], number)}
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries of all names."""
         for name, part in raw.items() if isinstance(raw, Mapping) else ():
             for entry in self.item.raw_entries(part):
@@ -156,7 +156,7 @@ class RowsCodec(Codec):
         rows = (replace(context, place=(*above, f"{name}[{i}]")) for i in range(1, len(raw) + 1))
         return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """Empty: places in a list have no names."""
         yield from ()
 
@@ -207,7 +207,7 @@ class ByPlaceCodec(NamesCodec):
         """Empty: the numbers belong to other key paths."""
         yield from ()
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """Empty for the same reason."""
         yield from ()
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from inerter.errors import UnitError
 from inerter.field_metadata import Field
-from inerter.files.common.codec import INVALID, Codec, Declaration, Entry, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, RawEntry, TableCodec
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import (
     AMOUNT,
@@ -124,14 +124,14 @@ class ElementCodec(Codec):
         more = {field.name: getattr(value, field.name) for field in value.more}
         return type(value).of(old, value.name, **{**more, part: number})
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The element, with the sentence on its kind."""
         kind = self.kind_of(raw)
-        yield Entry(self, raw, sentence="" if kind is None else f"{kind.key}: {kind.sentence}")
+        yield RawEntry(self, raw, sentence="" if kind is None else f"{kind.key}: {kind.sentence}")
 
     def kind_of(self, raw: Any) -> type[Element] | None:
         """Kind of the element that an entry states; None where it states none, or is tied."""
-        value = Entry(self, raw, ("unnamed",)).value()
+        value = RawEntry(self, raw, ("unnamed",)).value()
         return type(value) if isinstance(value, Element) else None
 
     def keys_in_file(self, raw: Any, keys: KeyPath) -> KeyPath:

@@ -8,7 +8,16 @@ from typing import Any
 
 from inerter.errors import NetworkError
 from inerter.field_metadata import mounts_of
-from inerter.files.common.codec import INVALID, REQUIRED, Codec, Entry, LoadContext, TableCodec, section, without_none
+from inerter.files.common.codec import (
+    INVALID,
+    REQUIRED,
+    Codec,
+    LoadContext,
+    RawEntry,
+    TableCodec,
+    section,
+    without_none,
+)
 from inerter.files.common.codecs import NamesCodec, any_of
 from inerter.files.common.entries import EXPRESSION, layout_name
 from inerter.files.common.problem import EntryError, Problem, at
@@ -74,7 +83,7 @@ class LayoutCodec(Codec):
         """The text, or a table for several mounts."""
         return dict(value.struts) if len(value.struts) > 1 else next(iter(value.struts.values()))
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The text for all mounts, or those of the mounts."""
         yield from (NamesCodec(EXPRESSION) if isinstance(raw, Mapping) else EXPRESSION).raw_entries(raw)
 

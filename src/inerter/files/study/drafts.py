@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from inerter.errors import NetworkError
-from inerter.files.common.codec import INVALID, Entry, KeyPath
+from inerter.files.common.codec import INVALID, KeyPath, RawEntry
 from inerter.files.common.codecs import with_name
 from inerter.files.common.elements import ElementCodec, with_tied_values
 from inerter.files.common.entries import LOWER, UPPER, ExpressionCodec, element_name
@@ -39,11 +39,11 @@ def written_numbers(tables: Tables) -> list[WrittenNumber]:
     return [number for entry in _entries(tables) if entry.codec.is_number for number in _numbers(entry)]
 
 
-def _entries(tables: Tables) -> list[Entry]:
+def _entries(tables: Tables) -> list[RawEntry]:
     return list(study_codec().raw_entries(tables))
 
 
-def _numbers(entry: Entry) -> Iterator[WrittenNumber]:
+def _numbers(entry: RawEntry) -> Iterator[WrittenNumber]:
     value = entry.value()
     invalid = ((), Number(getattr(entry.codec, "unit", ""), entry.words, None))
     for keys, number in [invalid] if value is INVALID else entry.codec.numbers(value, entry.words):
@@ -106,7 +106,7 @@ def free_values(tables: Tables) -> dict[str, list[str]]:
     return {layout: [*(name for name in used[layout] if name in elements), *others] for layout in used}
 
 
-def _value(entry: Entry) -> Any:
+def _value(entry: RawEntry) -> Any:
     """Value of an entry; of an element that of its quantity."""
     value = entry.value()
     return value.value if isinstance(value, Element) else value

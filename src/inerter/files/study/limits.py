@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from inerter.errors import InerterError
-from inerter.files.common.codec import Codec, Entry, KeyPath, Scalar, key, keyed_dataclass, table_of, without_none
+from inerter.files.common.codec import Codec, KeyPath, RawEntry, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
@@ -102,11 +102,11 @@ class LimitsCodec(ByPlaceCodec):
             found.setdefault(limit.of, {})[limit.sense] = limit.entry()
         return found
 
-    def raw_entries(self, raw: Any) -> Iterator[Entry]:
+    def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """Values of all limits, in tables of tables where their names are written without quotes."""
         for name, inside in raw.items() if isinstance(raw, Mapping) else ():
             if name in _SENSES:
-                yield Entry(_LIMIT, inside, (name,), words=name.replace("_", " "))
+                yield RawEntry(_LIMIT, inside, (name,), words=name.replace("_", " "))
             else:
                 for entry in self.raw_entries(inside):
                     yield replace(

@@ -5,8 +5,6 @@
 // stands
 // beside it: the present values of free elements (by layout), the ranges of sliders, designs by name.
 
-import { freshName } from "../network/algebra.js";
-
 /** @typedef {{from: string, to: string, [more: string]: unknown}} Range */
 /** @typedef {string | Range | {[key: string]: unknown}} ElementEntry */
 /** @typedef {string | {[strut: string]: string}} LayoutEntry */
@@ -187,9 +185,6 @@ export function nextLayout(document) {
   while (known.includes(`${stem}${number}`)) number += 1;
   return `${stem}${number}`;
 }
-
-/** @param {Study} study @param {string} symbol */
-export const nextElement = (study, symbol) => freshName(symbol, Object.keys(study.elements ?? {}));
 
 /** The document whose study has another name of an element: it is called so beside the study too.
  * @param {Document} document @param {string} old @param {string} name @param {Study} study @returns {Document} */

@@ -480,7 +480,7 @@ BROKEN = {
     "no dataclass": ("@it.INDICES.add\nclass T(it.RideComfort):\n    symbol = 'T'", "@dataclass"),
     "no key": (
         f"{FROZEN}class T(it.RideComfort):\n    symbol = ''",
-        "its symbol is '', and must be text",
+        "symbol must be non-empty text, got ''",
     ),
 }
 

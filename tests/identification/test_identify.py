@@ -121,7 +121,7 @@ def test_a_record_that_begins_in_motion():
     rig = it.VirtualRig((it.Spring(1e6) | it.Damper(3200.0)) - (it.Inerter(113.0) | it.Friction(10.0)), seed=7)
     record = rig.run(it.cosine(amplitude=1e-3, frequency=3.0), duration=5.0, start=0.1)
     fit = it.identify([record], FREE_SHAFT - (it.Inerter(113.0) | it.Friction(10.0)), seed=0, starts=8)
-    assert fit.comparisons[0].discarded >= 0.5
+    assert fit.comparisons[0].lead >= 0.5
     assert fit.parameters["ks"].value == pytest.approx(1e6, rel=0.02)
 
 

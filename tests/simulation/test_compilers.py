@@ -41,17 +41,16 @@ print(json.dumps([norms.tolist(), "numba" in sys.modules]))
 """
 
 
-def result(program: str, way: str) -> list[Any]:
+def result(program: str, way: str) -> Any:
     """What a program prints: by the usual way here, by another one in a process of its own."""
     if way == decorators.compiler_mode() == "tuned":
         with redirect_stdout(io.StringIO()) as printed:
             exec(BEFORE + program, {"__name__": "__main__"})
-        return list(json.loads(printed.getvalue()))
+        return json.loads(printed.getvalue())
     environment = {**os.environ, "INERTER_COMPILER": way}
     command = [sys.executable, "-c", BEFORE + program]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, timeout=1000)
-    found: list[Any] = json.loads(done.stdout)
-    return found
+    return json.loads(done.stdout)
 
 
 # Without what the compiler does not document it takes long.

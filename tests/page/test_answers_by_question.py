@@ -103,10 +103,10 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
     visitor.settled()
     page.click("#tab-tolerance")
-    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.locator("#tab-panel").get_by_role("button", name="Compute").click()
     page.wait_for_selector("table[data-scatter]")
     page.get_by_text("Break-even values").click()
-    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
     assert len(page.evaluate(SHOWN)["texts"]) > 0
     with held(visitor):
@@ -165,7 +165,7 @@ def _find_out(tab: str) -> Callable[[Any], None]:
             page.get_by_text("Break-even values").click()
         else:
             page.click(f"#tab-{tab}")
-        page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Find out").click()
+        page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Compute").click()
 
     return ask
 
@@ -322,13 +322,13 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
 
     page.get_by_text("Break-even values").click()
     page.locator(".budget [name=parameter]").select_option("f")
-    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
     assert page.inner_text(".budget [role=status]").startswith("Unreliable: the budget: inaccurate")
 
     page.select_option(".answers select >> nth=0", "norm")
     page.click("#tab-tolerance")
-    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.locator("#tab-panel").get_by_role("button", name="Compute").click()
     page.wait_for_selector("table[data-scatter]")
     told = page.inner_text("#tab-panel")
     assert told.index("ignores the tolerance of f") < told.index("standard deviation")

@@ -381,7 +381,7 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     page.get_by_text("Break-even values").click()
     asked: list[Any] = []
     page.on("request", lambda request: asked.append(request.post_data_json) if "panel/budget" in request.url else None)
-    page.locator(".budget").get_by_role("button", name="Find out").click()
+    page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function(
         "() => / is as good as S1/.test(document.querySelector('.budget [role=status]').textContent)"
     )

@@ -376,7 +376,7 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
     page.click("#tab-tolerance")
     for name, part in {"k": "", "ks": "0", "c": "20"}.items():
         page.locator(f"[name='spread {name}']").fill(part)
-    page.locator("#tab-panel").get_by_role("button", name="Find out").click()
+    page.locator("#tab-panel").get_by_role("button", name="Compute").click()
     page.wait_for_selector("table[data-scatter]")
     (body,) = asked
     assert body["spread"] == {"c": 0.2, "cs": 0.1, "b": 0.1}

@@ -216,7 +216,7 @@ function Budget({ store, api, indices }) {
       ${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
     <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}
       </select></label>
-    <button>Find out</button>
+    <button>Compute</button>
     <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
       ? budgetTold(value, document.layout, baseline) : sentence}</p>
   </form></details>`;

@@ -39,7 +39,7 @@ export function TolerancePanel({ store, api }) {
           defaultValue=${USUAL} /> %</label>`)}</div>
     <div class="row"><label>Index <select name="index">
       ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
-        </select></label> <button>Find out</button></div>
+        </select></label> <button>Compute</button></div>
     <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
   <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />

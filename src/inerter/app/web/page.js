@@ -110,7 +110,7 @@ var ge,pa,Mp,fn,or,js,da,Ls,ma,lr,sr,Ep,es=Symbol.for("pv"),Fs={},Is=[],Ap=/^m(i
       ${l.map(f=>b`<option key=${f} selected=${f===i}>${f}</option>`)}</select></label>
     <label>by <select name="index">${n.map(({symbol:f})=>b`<option key=${f}>${f}</option>`)}
       </select></label>
-    <button>Find out</button>
+    <button>Compute</button>
     <p role="status">${c==="coming"?b`<${hn} what="Simulating" />`:u?Gd(u,s.layout,r):p}</p>
   </form></details>`}function Gd({parameter:e,value:t,unit:n,standard_error:o,status:s,message:l},r,i){if(typeof t!="number")return l||"There is no break-even value.";let c=o?` \xB1 ${pe(o,2)}`:"";return`${So([{of:"the budget",status:s,message:l}])}At ${e} = ${pe(t)}${c} ${rs(n)}, ${r} is as good as ${i}.`}function Kd({state:e}){let t=hc(e),n=({place:o,sentence:s})=>s.startsWith(o.join("."))?"":b`<code>${o.join(".")}
     </code> `;return t.length===0?null:b`<div class="problems" role="alert"><h3>In the study</h3><ul>
@@ -456,7 +456,7 @@ var ge,pa,Mp,fn,or,js,da,Ls,ma,lr,sr,Ep,es=Symbol.for("pv"),Fs={},Is=[],Ap=/^m(i
           defaultValue=${gy} /> %</label>`)}</div>
     <div class="row"><label>Index <select name="index">
       ${s.map(({symbol:p,title:f})=>b`<option key=${p} value=${p}>${p}: ${f}</option>`)}
-        </select></label> <button>Find out</button></div>
+        </select></label> <button>Compute</button></div>
     <p role="status">${i==="coming"?b`<${hn} what="Under way" />`:u}</p>
   </form>
   <${Kt} designs=${[{name:o.layout,unchosen:Gt(n,tt(o))}]} />

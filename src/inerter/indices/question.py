@@ -1,6 +1,6 @@
 """Indices and their definition for a mechanism: outputs, filters, combination, excitation.
 
-A method reads a `IndexDefinition` and never asks which index it came from.
+A method reads an `IndexDefinition` and never asks which index it came from.
 """
 
 from __future__ import annotations

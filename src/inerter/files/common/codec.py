@@ -101,7 +101,7 @@ class Codec:
         raise NotImplementedError
 
     def dump(self, value: Any) -> Any:
-        """RawEntry of a value, in SI units; None or empty for a value that is left out of the file."""
+        """Entry of a value, in SI units; None or empty for a value that is left out of the file."""
         return value
 
     def schema(self) -> dict[str, Any]:
@@ -337,7 +337,7 @@ class Scalar(Codec):
         return self.check(raw)
 
     def dump(self, value: Any) -> Any:
-        """RawEntry of a value, as `write` returns it."""
+        """Entry of a value, as `write` returns it."""
         return self.write(value)
 
     def schema(self) -> dict[str, Any]:

@@ -176,12 +176,6 @@ def _compute_outcomes(
         _prepare(pool, study, compiling)
     total = len(found.cases) + len(parts)
 
-    def enter(result: PartResult) -> None:
-        if isinstance(result, Outcome):
-            found.enter(result)
-        elif isinstance(result, Answer):
-            done[result.part] = result
-
     def tell(last: PartResult | None) -> None:
         troubled = sum(not one.ok for one in done.values())
         progress(found.count + len(done), total, last, found.not_ok + troubled)
@@ -198,7 +192,7 @@ def _compute_outcomes(
         for ready in chain(of_designs, of_tasks):
             append(*map(journal_entry, ready))
             for result in ready:
-                enter(result)
+                _enter(result, found, done)
             tell(ready[-1])
         lost = len(found.pending()) + len(set(parts) - set(done))
         if lost:
@@ -215,11 +209,16 @@ def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
             searches.setdefault(one.name, []).append(one)
             continue
         searches.pop(one.name, None)
-        if isinstance(one, Outcome):
-            found.enter(one)
-        elif isinstance(one, Answer):
-            done[one.part] = one
+        _enter(one, found, done)
     return done, {name: join_checkpoints(several) for name, several in searches.items()}
+
+
+def _enter(result: PartResult, found: DatasetBuilder, done: _Done) -> None:
+    """Store the result of a design or of a part of a task."""
+    if isinstance(result, Outcome):
+        found.enter(result)
+    elif isinstance(result, Answer):
+        done[result.part] = result
 
 
 def _results(

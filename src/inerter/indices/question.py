@@ -94,8 +94,8 @@ class IndexDefinition:
         return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
 
 
-class Index(Protocol):
-    """Index: symbol, title, unit, and its definition for a given mechanism."""
+class DescribedIndex(Protocol):
+    """What reports say of an index: its symbol, title, unit and frequency response."""
 
     @property
     def symbol(self) -> str:
@@ -116,6 +116,10 @@ class Index(Protocol):
     def response(self) -> str:
         """Frequency response of the index, in words."""
         ...
+
+
+class Index(DescribedIndex, Protocol):
+    """Index: symbol, title, unit, and its definition for a given mechanism."""
 
     def question(self, mechanism: Mechanism) -> IndexDefinition:
         """Definition for `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import Index
+from inerter.indices.question import DescribedIndex, Index
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.networks.elements import Element, Free, Tied, middle
 from inerter.vehicle.replace_values import mounted_elements, with_elements
@@ -32,28 +32,8 @@ Array = NDArray[np.float64]
 
 
 @runtime_checkable
-class CompositeIndex(Protocol):
+class CompositeIndex(DescribedIndex, Protocol):
     """Composed index: combines several indices, or computes its value without a method."""
-
-    @property
-    def symbol(self) -> str:
-        """Short name."""
-        ...
-
-    @property
-    def title(self) -> str:
-        """Name in words."""
-        ...
-
-    @property
-    def unit(self) -> str:
-        """Unit of its value."""
-        ...
-
-    @property
-    def response(self) -> str:
-        """Frequency response of the index, in words."""
-        ...
 
     def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
         """Constituent indices, each with its vehicle; raises `InerterError` if the vehicle has no answer."""

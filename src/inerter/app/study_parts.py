@@ -8,37 +8,27 @@ from typing import Any
 from inerter.app.parts import parse_network
 from inerter.app.wire import Refusal
 from inerter.files.common.problem import EntryError
-from inerter.files.study.drafts import (
-    WrittenNumber,
-    elements_in_use,
-    free_values,
-    layout_elements,
-    rename_elements,
-    written_elements,
-    written_networks,
-    written_numbers,
-)
+from inerter.files.study.drafts import Draft, WrittenNumber, rename_elements
 
 Document = Mapping[str, Any]
 
 
 def parts_of_document(document: Document) -> dict[str, Any]:
     """Networks as trees, elements of layouts, kinds of elements, and numbers with their keys in the document."""
-    elements, free, used = layout_elements(document), free_values(document), elements_in_use(document)
+    draft = Draft(document)
     given = document.get("elements")
     known = list(given) if isinstance(given, Mapping) else []
-    kinds = {name: element.key for name, element in written_elements(document).items()}
+    kinds = {name: element.key for name, element in draft.elements.items()}
     return {
         "networks": [
-            {"path": list(keys), "text": text, **_network(text, known)}
-            for keys, text in written_networks(document).items()
+            {"path": list(keys), "text": text, **_network(text, known)} for keys, text in draft.networks.items()
         ],
-        "layouts": {layout: {"elements": elements[layout], "free": free[layout]} for layout in elements},
+        "layouts": {name: {"elements": own, "free": draft.free[name]} for name, own in draft.layouts.items()},
         "elements": {
-            name: {"kind": kinds.get(name), "layouts": [layout for layout in used if name in used[layout]]}
+            name: {"kind": kinds.get(name), "layouts": [layout for layout, used in draft.used.items() if name in used]}
             for name in known
         },
-        "numbers": [_number(number) for number in written_numbers(document)],
+        "numbers": [_number(number) for number in draft.numbers],
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 from inerter.errors import NetworkError
@@ -34,13 +35,63 @@ class WrittenNumber:
     name: str  # as a design variable; empty if it cannot be one
 
 
-def written_numbers(tables: Tables) -> list[WrittenNumber]:
-    """All numbers that a file gives, in its order; those with bounds without their bounds."""
-    return [number for entry in _entries(tables) if entry.codec.is_number for number in _numbers(entry)]
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """What the tables of a study file give, valid or not."""
 
+    tables: Tables
 
-def _entries(tables: Tables) -> list[RawEntry]:
-    return list(study_codec().raw_entries(tables))
+    @cached_property
+    def entries(self) -> list[RawEntry]:
+        """All entries without keys of their own, in the order of the file."""
+        return list(study_codec().raw_entries(self.tables))
+
+    @cached_property
+    def numbers(self) -> list[WrittenNumber]:
+        """All numbers, in the order of the file; those with bounds without their bounds."""
+        return [number for entry in self.entries if entry.codec.is_number for number in _numbers(entry)]
+
+    @cached_property
+    def networks(self) -> dict[KeyPath, str]:
+        """The texts of all networks, by their keys: those of layouts, and those of the vehicle."""
+        found = {entry.keys: entry.raw for entry in self.entries if isinstance(entry.codec, ExpressionCodec)}
+        return {keys: text for keys, text in found.items() if isinstance(text, str)}
+
+    @cached_property
+    def elements(self) -> dict[str, Element]:
+        """The elements whose entries are valid, by name."""
+        values = {entry.keys[-1]: entry.value() for entry in self.entries if isinstance(entry.codec, ElementCodec)}
+        elements, _ = with_tied_values({name: value for name, value in values.items() if value is not INVALID})
+        return elements
+
+    @cached_property
+    def layouts(self) -> dict[str, list[str]]:
+        """Elements in the networks of each layout, in order of appearance, whether the file has them or not."""
+        given = self.tables.get(_LAYOUTS)
+        found: dict[str, list[str]] = {name: [] for name in given} if isinstance(given, Mapping) else {}
+        for keys, text in self.networks.items():
+            if keys[0] == _LAYOUTS:
+                found[keys[1]] += _names(text)
+        return {layout: list(dict.fromkeys(several)) for layout, several in found.items()}
+
+    @cached_property
+    def used(self) -> dict[str, list[str]]:
+        """Elements on which each layout depends: in its networks, in those of the vehicle, and those others follow."""
+        common = [name for keys, text in self.networks.items() if keys[0] != _LAYOUTS for name in _names(text)]
+        found = {}
+        for layout, own in self.layouts.items():
+            values = [self.elements[name].value for name in (*own, *common) if name in self.elements]
+            sources = [name for value in values if isinstance(value, Tied) for name in value.names]
+            found[layout] = list(dict.fromkeys([*own, *common, *sources]))
+        return found
+
+    @cached_property
+    def free(self) -> dict[str, list[str]]:
+        """Names of the design variables of each layout: elements on which it depends, and quantities of the vehicle."""
+        free = [(entry.codec, entry.keys[-1]) for entry in self.entries if isinstance(_value(entry), Free)]
+        elements = {name for codec, name in free if isinstance(codec, ElementCodec)}
+        others = [name for codec, name in free if not isinstance(codec, ElementCodec)]
+        return {layout: [*(name for name in used if name in elements), *others] for layout, used in self.used.items()}
 
 
 def _numbers(entry: RawEntry) -> Iterator[WrittenNumber]:
@@ -60,50 +111,6 @@ def _numbers(entry: RawEntry) -> Iterator[WrittenNumber]:
             entry.sentence,
             entry.keys[-1] if number.may_be_free else "",
         )
-
-
-def written_networks(tables: Tables) -> dict[KeyPath, str]:
-    """The texts of all networks, by their keys: those of layouts, and those of the vehicle."""
-    found = {entry.keys: entry.raw for entry in _entries(tables) if isinstance(entry.codec, ExpressionCodec)}
-    return {keys: text for keys, text in found.items() if isinstance(text, str)}
-
-
-def written_elements(tables: Tables) -> dict[str, Element]:
-    """The elements whose entries are valid, by name."""
-    values = {entry.keys[-1]: entry.value() for entry in _entries(tables) if isinstance(entry.codec, ElementCodec)}
-    elements, _ = with_tied_values({name: value for name, value in values.items() if value is not INVALID})
-    return elements
-
-
-def layout_elements(tables: Tables) -> dict[str, list[str]]:
-    """Elements in the networks of each layout, in order of appearance, whether the file has them or not."""
-    given = tables.get(_LAYOUTS)
-    found: dict[str, list[str]] = {name: [] for name in given} if isinstance(given, Mapping) else {}
-    for keys, text in written_networks(tables).items():
-        if keys[0] == _LAYOUTS:
-            found[keys[1]] += _names(text)
-    return {layout: list(dict.fromkeys(several)) for layout, several in found.items()}
-
-
-def elements_in_use(tables: Tables) -> dict[str, list[str]]:
-    """Elements on which each layout depends: in its networks, in those of the vehicle, and those that others follow."""
-    elements = written_elements(tables)
-    common = [name for keys, text in written_networks(tables).items() if keys[0] != _LAYOUTS for name in _names(text)]
-    found = {}
-    for layout, own in layout_elements(tables).items():
-        values = [elements[name].value for name in (*own, *common) if name in elements]
-        sources = [name for value in values if isinstance(value, Tied) for name in value.names]
-        found[layout] = list(dict.fromkeys([*own, *common, *sources]))
-    return found
-
-
-def free_values(tables: Tables) -> dict[str, list[str]]:
-    """Names of the design variables of each layout: elements on which it depends, and quantities of the vehicle."""
-    free = [(entry.codec, entry.keys[-1]) for entry in _entries(tables) if isinstance(_value(entry), Free)]
-    elements = {name for codec, name in free if isinstance(codec, ElementCodec)}
-    others = [name for codec, name in free if not isinstance(codec, ElementCodec)]
-    used = elements_in_use(tables)
-    return {layout: [*(name for name in used[layout] if name in elements), *others] for layout in used}
 
 
 def _value(entry: RawEntry) -> Any:

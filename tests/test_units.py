@@ -1,5 +1,6 @@
 """Quantities as text: what they are worth, what is refused, and that they survive the way there and back."""
 
+import importlib
 import math
 import re
 import subprocess
@@ -341,3 +342,25 @@ def test_frequent_units_are_those_of_pint(unit: str) -> None:
     assert (registry.convert(1.0, one, other), registry.convert(1.0, other, one)) == (up, down)
     for name, (others, _, _) in FREQUENT.items():
         assert (registry.parse_units(name).dimensionality == one.dimensionality) == (others == base), name
+
+
+def test_a_library_that_is_half_imported_by_another_thread_makes_no_unit_unknown(monkeypatch):
+    """As pint while another thread imports dask: Python raises once."""
+    faults = [ImportError("cannot import name 'annotate' from partially initialized module 'dask.base'")]
+
+    def half_imported(name):
+        if faults:
+            raise faults.pop()
+        return importlib.import_module(name)
+
+    monkeypatch.setattr(units, "import_module", half_imported)
+    monkeypatch.setattr(units, "_PAUSE", 0.0)
+    units._registry.cache_clear()
+    assert units.is_unit("(m/s^2)^2/min")
+    assert not faults
+    faults += [ImportError("no pint")] * 9
+    units._registry.cache_clear()
+    with pytest.raises(ImportError):
+        units.is_unit("(m/s^2)^2/h")
+    faults.clear()
+    units._registry.cache_clear()

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import math
 import re
+import time
 from collections.abc import Iterable, Mapping
 from functools import cache
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from inerter.errors import UnitError
@@ -33,6 +35,7 @@ _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa
 _LONGEST = 100
 _FAR = 100.0  # ratio of the ends of an interval above which each has its own unit
 _MOST_DIGITS = 6  # of a value with an interval
+_IMPORTS, _PAUSE = 5, 0.2  # of pint: attempts, and seconds between them
 
 _PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size, scale, unit
     "N/m": ((1e6, 1e6, "MN/m"), (1e3, 1e3, "kN/m"), (0.0, 1.0, "N/m")),
@@ -106,8 +109,9 @@ def is_unit(unit: str) -> bool:
         return True
     if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
         return False
+    registry = _registry()  # whose failure says nothing of the unit
     try:
-        _registry().parse_units(unit)
+        registry.parse_units(unit)
     except Exception:  # pint's errors share no base: AttributeError, TypeError, AssertionError, tokenize's own
         return False
     return True
@@ -394,11 +398,23 @@ def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
 
 @cache
 def _registry() -> UnitRegistry[Any]:
-    import pint  # noqa: PLC0415 - heavy
-
+    pint = _import_pint()
     registry: UnitRegistry[Any] = pint.UnitRegistry(on_redefinition="ignore")
     # Pint has cycle = 2 pi rad and Hz = 1/s, each of which would silently put 2 pi into a road or a frequency.
     registry.define("cycle = [cycle]")
     registry.define("@alias pound = lbm")
     registry.define("hertz = 2 * pi * radian / second = Hz")
     return registry
+
+
+def _import_pint() -> Any:
+    """The module, imported again where another thread was importing what it shares, such as dask, at the same time.
+
+    Python then hands out a module that is half imported, and the import of pint fails once.
+    """
+    for _ in range(_IMPORTS - 1):
+        try:
+            return import_module("pint")
+        except ImportError:
+            time.sleep(_PAUSE)
+    return import_module("pint")

@@ -6,15 +6,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+
 from inerter.app.answers import Body, texts_of
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.atomic_io import write_text
 from inerter.errors import Status, StudyError
 from inerter.files.study.parts import run_part
-from inerter.files.study.running import csv_of, csv_text
+from inerter.files.study.running import csv_of
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import TaskResults
 from inerter.methods.registry import methods_that, searches
+from inerter.table import csv_rows, csv_text
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 
 _POINTS = 15
@@ -33,7 +37,8 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
         tell(number, len(layouts), layout)
         found.append(run_part(asked, {}, FrontPart(layout)))
     (folder / RESULTS).mkdir(exist_ok=True)
-    write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(Fronts().csv(asked, found)))
+    table = Fronts().table(TaskResults(asked, xr.Dataset(), found))
+    write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(csv_rows(table)))
     tell(len(layouts), len(layouts), "")
     told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
     return {"indices": told, "fronts": [_describe_front(asked, one) for one in found]}

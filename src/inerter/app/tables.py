@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Iterable, Mapping
 from itertools import chain
 from typing import Any
 
 from inerter.app.answers import answer_panel
 from inerter.errors import StudyError
+from inerter.table import csv_text
 from inerter.units import label_with_unit
 
 Rows = Iterable[list[Any]]
@@ -19,19 +18,7 @@ def as_csv(panel: str, request: Mapping[str, Any]) -> str:
     """The answer of a panel as a table; raises `StudyError` for a panel that is none, and what it raises."""
     if panel not in _TABLES:
         raise StudyError(f"There are tables of {', '.join(_TABLES)}, not of {panel!r}.")
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows(
-        [_cell(value) for value in row] for row in _TABLES[panel](answer_panel(panel, request))
-    )
-    return text.getvalue()
-
-
-def _cell(value: Any) -> Any:
-    """Cell of a CSV table: floats exactly, nan empty, and texts quoted that a spreadsheet would take for a formula."""
-    if isinstance(value, float):
-        return "" if value != value else repr(float(value))
-    text = "" if value is None else value
-    return f"'{text}" if isinstance(text, str) and text[:1] in tuple("=+-@\t\r") else text
+    return csv_text(_TABLES[panel](answer_panel(panel, request)))
 
 
 def _indices(answer: Mapping[str, Any]) -> Rows:

@@ -31,7 +31,8 @@ from inerter.papers.registry import PAPERS
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
-from inerter.report.text import WIDTH, summary_table, wrap_text
+from inerter.report.sections import design_sections, task_sections
+from inerter.report.text import WIDTH, section_text, wrap_text
 
 _MOST = 20  # designs that are told one by one
 
@@ -81,9 +82,8 @@ def run(
     else:
         road = roads_sentence(loaded)
         head = [*wrap_text(loaded.title), *(wrap_text(f"{road}.") if road else []), ""]
-        print("\n".join([*head, summary_table(result.data)]))
-        for task, own in by_task(result.answers).items():
-            print("\n".join(task.lines(TaskResults(loaded, result.data, own), WIDTH)))
+        sections = [*design_sections(result.data), *task_sections(loaded, result.data, result.answers)]
+        print("\n".join([*head, section_text(sections)]))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         told = conclusion_sentences(result.data, loaded, result.answers)

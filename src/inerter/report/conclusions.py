@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import nan
 
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words, with_unit
+from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.report.index_summary import Wording, headlines
+from inerter.formatting import format_quantity
+from inerter.report.index_summary import headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.problem_statement import limit_words, of_each
 from inerter.report.speeds import speed_sentences
-from inerter.table import Writer
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
@@ -26,38 +25,37 @@ def conclusion_sentences(
     results: xr.Dataset,
     study: Study,
     found: Sequence[Answer] = (),
-    write: Writer = with_unit,
 ) -> list[str]:
     """Warnings, a sentence for each index, the conclusions of the tasks, and the limits, in this order."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
-    at_speeds = speed_sentences(results, write)
+    at_speeds = speed_sentences(results)
     return [
         *at_speeds.doubts,
         *result_warnings(one_method(results), study),
         *input_warnings(study),
         *(() if study.line is None else study.line.warnings),
-        *headlines(results, Wording(write, static)),
+        *headlines(results, static),
         *at_speeds.others,
         *(
             sentence
             for task, own in by_task(found).items()
-            for sentence in task.sentences(TaskResults(study, results, own), write)
+            for sentence in task.sentences(TaskResults(study, results, own))
         ),
-        *_constraint_sentence(results, study, write),
+        *_constraint_sentence(results, study),
     ]
 
 
-def _constraint_sentence(results: xr.Dataset, study: Study, write: Writer) -> Iterator[str]:
+def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
     """Sentence on the constraints, and on layouts without a feasible design."""
     swept = {sweep.words for sweep in study.sweeps}
     limits = [
         f"{limit_words(study, one)} "
-        + ("the swept value" if one.words in swept else _format_number(one.value, one.unit, write))
+        + ("the swept value" if one.words in swept else format_quantity(one.value, one.unit))
         for one in study.limits
     ]
     missed = infeasible(results)
     if limits and bool(missed.all()):
-        yield f"No feasible design with {format_list(limits)}{_closest_design_clause(results, study, write)}."
+        yield f"No feasible design with {format_list(limits)}{_closest_design_clause(results, study)}."
     elif limits:
         none = [
             f" {name} has no feasible design{at}."
@@ -76,7 +74,7 @@ def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:
     return "" if missed.all() else f" at {int(missed.sum())} of {missed.size} values of {words}"
 
 
-def _closest_design_clause(results: xr.Dataset, study: Study, write: Writer) -> str:
+def _closest_design_clause(results: xr.Dataset, study: Study) -> str:
     """Clause on the design closest to feasibility and its values; empty over a sweep."""
     if study.sweeps:
         return ""
@@ -91,11 +89,8 @@ def _closest_design_clause(results: xr.Dataset, study: Study, write: Writer) -> 
     of = str(values["design"].values[best][0])
     parts = results["limit.part"].stack(design=("layout", "index")).transpose("design", "limit").values[best].tolist()
     told = [
-        f"{of_each(limit.of, part)} {_format_number(float(value), limit.unit, write)}"
+        f"{of_each(limit.of, part)} {format_quantity(float(value), limit.unit)}"
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
     return f"; closest: {of} with {format_list(told)}"
 
-
-def _format_number(value: float, unit: str, write: Writer) -> str:
-    return write(value, unit, nan).strip()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from math import isnan
 from pathlib import Path
 
 from inerter.atomic_io import write_text
@@ -16,10 +15,15 @@ from inerter.files.identification.running import FIT, RESIDUALS, IdentificationR
 from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
-from inerter.report.identification_text import (
-    format_loss_difference,
+from inerter.report.identification_tables import (
+    candidate_table,
+    cause_texts,
+    correlation_table,
     format_variance_share,
-    likely_causes,
+    goodness_table,
+    parameter_table,
+)
+from inerter.report.identification_text import (
     limitation_sentences,
     misfit_sentence,
     processing_notes,
@@ -27,33 +31,15 @@ from inerter.report.identification_text import (
     unreliability_reason,
     whiteness_sentence,
 )
-from inerter.report.identified_values import (
-    ResultKind,
-    elements_block,
-    result_kind,
-    value_and_interval,
-)
+from inerter.report.identified_values import ResultKind, elements_block, result_kind, value_and_interval
 from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
-from inerter.units import format_handy, format_number, handy_unit
 from inerter.work.origin import versions
 
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
 _SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
 _MOST_FIGURES = 5  # of one record, and two of all
-
-
-@dataclass(frozen=True)
-class ParameterRow:
-    """Row of the table of parameters: description, value, confidence interval, and search bounds."""
-
-    name: str
-    value: str
-    interval: str
-    error: str
-    bounds: str
-    identified: bool
 
 
 @dataclass(frozen=True)
@@ -103,26 +89,21 @@ def identification_page(
             layout=format_expression(found.model, [e.label for e in found.model.elements()]),
             status=unreliability_reason(found),
             answers=list(_answers(found)),
-            rows=list(_rows(found)),
+            parameters=parameter_table(found),
             identified=[name for name, verdict in fit.identifiable.items() if verdict.plain],
             sentences=[verdict.sentence for verdict in fit.identifiable.values() if not verdict.plain],
-            names=list(fit.parameters),
-            correlation=[[_format_correlation(value) for value in row] for row in fit.correlation.tolist()],
+            correlations=correlation_table(found) if len(fit.parameters) > 1 and found.explains else None,
             next_experiment=fit.next_experiment,
             elements=elements_block(found),
             records=list(_records(found)),
-            goodness=list(_goodness(found)),
+            goodness=goodness_table(found),
             whiteness=[(c.record.source, whiteness_sentence(c)) for c in fit.comparisons],
             misfit=misfit_sentence(found),
             remarks=list(limitation_sentences(found)),
-            explanations=list(likely_causes(found)),
+            explanations=list(cause_texts(found)),
             places=[(place.source, place.sentence) for place in fit.localisations],
-            candidates=[
-                (c.name, c.unknowns, f"{c.loss:.4g}", format_loss_difference(c), str(c.status))
-                for c in found.candidates
-            ],
+            candidates=candidate_table(found) if found.candidates else None,
             choice=[as_options(finding.text) for finding in found.choice],
-            chosen=found.name,
             drawn=drawn,
             notes=notes,
             computation=_computation(found),
@@ -143,16 +124,6 @@ def _answers(found: IdentificationResult) -> Iterator[str]:
     yield f"The model explains {' and '.join(format_variance_share(part) for part in parts)} {where}."
 
 
-def _rows(found: IdentificationResult) -> Iterator[ParameterRow]:
-    for name, p in found.fit.parameters.items():
-        value, interval = value_and_interval(found, name)
-        bounds = found.bounds(name)
-        sought = "" if bounds is None else f"{format_handy(bounds[0], p.unit)} to {format_handy(bounds[1], p.unit)}"
-        identified, (size, unit) = bool(found.fit.identifiable[name]), handy_unit(p.best, p.unit)
-        error = f"{_two_digits(p.standard_error / size)} {unit}".rstrip() if identified else ""
-        yield ParameterRow(name, value, interval, error, sought, identified)
-
-
 def _records(found: IdentificationResult) -> Iterator[RecordText]:
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
         by_severity = {
@@ -168,43 +139,16 @@ def _records(found: IdentificationResult) -> Iterator[RecordText]:
         )
 
 
-def _goodness(found: IdentificationResult) -> Iterator[tuple[str, ...]]:
-    for c in found.fit.comparisons:
-        for part, mask in (("fitted", c.fitted), ("check", c.checked)):
-            if mask.any():
-                check = part == "check"
-                left = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
-                numbers = (str(int(mask.sum())), format_variance_share(c.variance_explained(check)), *left)
-                yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
-
-
 def _computation(found: IdentificationResult) -> str:
     fit = found.fit
     settings = ", ".join(f"{name} {value}" for name, value in {**fit.settings, **found.settings}.items())
     ended = f"{len(fit.costs)} different fits" if len(fit.costs) > 1 else "one and the same fit"
     starts = f" On half of the records the best starts came to {ended}."
-    text = (
+    return (
         f"The model was moved as the displacement was, smoothed, and its force compared with the measured one; no "
         f"measured motion was differentiated twice. Least squares from many starts, with residuals weighted and "
         f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods and "
         f"from a parametric bootstrap. Settings: {settings}. Schwarz's criterion (lower is better): "
         f"{fit.criterion:.1f}."
     )
-    return text.replace(": -", ": −")
 
-
-def _format_correlation(value: float) -> str:
-    """Correlation with its sign, without one if it rounds to zero; empty if not available."""
-    if isnan(value):
-        return ""
-    text = f"{value:+.2f}"
-    return "0.00" if float(text) == 0.0 else text.replace("-", "−")
-
-
-def _two_digits(error: float) -> str:
-    """A standard error, with a zero where that is its second digit.
-
-    >>> _two_digits(0.0102), _two_digits(12.3), _two_digits(4321.0)
-    ('0.010', '12', '4300')
-    """
-    return f"{error:#.2g}".rstrip(".") if 1e-4 < error < 99.0 else format_number(error, 2)

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import floor, log10
 from textwrap import wrap
 
-from inerter.figures.labels import format_uncertain
 from inerter.files.identification.running import IdentificationResult, Reading, model_title
-from inerter.identification.choice import Candidate
 from inerter.identification.fit import RecordFit
-from inerter.report.identified_values import elements_block, value_and_interval
+from inerter.report.identification_tables import candidate_table, cause_texts, goodness_table, parameter_table
+from inerter.report.identified_values import elements_block
 from inerter.report.options import as_options
-from inerter.report.text import WIDTH
-from inerter.units import format_handy
+from inerter.report.text import WIDTH, table_lines
 
 INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
-LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
 
 
 def identification_text(found: IdentificationResult) -> str:
@@ -47,7 +43,7 @@ def _warning_lines(found: IdentificationResult) -> Iterator[str]:
     for place in found.fit.localisations:
         of = f" of {place.source}" if len(found.fit.localisations) > 1 else ""
         yield from wrap(f"Where{of}: {place.sentence}.", WIDTH)
-    said = list(likely_causes(found))
+    said = list(cause_texts(found))
     if said:
         yield ""
         yield "possible causes, most likely first"
@@ -75,19 +71,6 @@ def unreliability_reason(found: IdentificationResult) -> str:
     if not warned or doubt is None or doubt.numbers.get("likeliest") is not None:
         return status.message
     return f"{status.message}. Begin with the warning about {' and '.join(warned)} below, which may name the cause"
-
-
-def likely_causes(found: IdentificationResult) -> Iterator[tuple[str, str, str, str]]:
-    """Possible causes of the residual: sentence, share explained [%], estimates with the cause, and remedy."""
-    likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
-    for e in likely[:MOST_EXPLANATIONS]:
-        units = {name: p.unit for name, p in found.fit.parameters.items()}
-        values = ", ".join(
-            f"{name} {format_handy(value, units[name], 4)} +- {format_handy(error, units[name], 2)}"
-            for name, (value, error) in e.estimates.items()
-            if name in units and e.misfit.is_noise_limited
-        )
-        yield e.sentence, f"{100.0 * e.explained:.0f} %", values, as_options(e.name.remedy(e.details))
 
 
 def misfit_sentence(found: IdentificationResult) -> str:
@@ -131,37 +114,14 @@ def _record_lines(found: IdentificationResult) -> Iterator[str]:
 
 
 def _candidate_lines(found: IdentificationResult) -> Iterator[str]:
-    if not found.candidates:
-        return
-    width = max(len(c.name) for c in found.candidates)
-    yield f"{'models':<{width + 2}}  unknowns  loss on check  over the best"
-    for c in found.candidates:
-        mark = "*" if c.name == found.name else " "
-        state = "" if c.status.ok else f"  {c.status.kind}"
-        yield f"{mark} {c.name:<{width}}  {c.unknowns:>8}  {c.loss:>13.4g}  {format_loss_difference(c)}{state}"
-    for finding in found.choice:
+    if found.candidates:
+        yield from table_lines(candidate_table(found))
+    for finding in found.choice if found.candidates else ():
         yield from wrap(as_options(finding.text), WIDTH, initial_indent="  ", subsequent_indent="  ")
 
 
-def format_loss_difference(candidate: Candidate) -> str:
-    """Text on the validation loss of a model above that of the best one, with its standard error."""
-    if candidate.behind == 0.0:
-        return "best"
-    known = format_uncertain(candidate.behind, candidate.error)
-    return f"{known}, as good" if candidate.as_good else known
-
-
 def _estimate_lines(found: IdentificationResult) -> Iterator[str]:
-    rows = [(name, *value_and_interval(found, name)) for name in found.fit.parameters]
-    names, values = (max(len(row[i]) for row in [("estimat", "value"), *rows]) for i in (0, 1))
-    yield f"{'estimates':<{names + 2}}  {'value':<{values}}  {'95 % interval' if found.explains else ''}".rstrip()
-    for name, value, interval in rows:
-        yield f"  {name:<{names}}  {value:<{values}}  {interval}".rstrip()
-    for c in found.fit.comparisons:
-        of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
-        yield from wrap(
-            f"  Offset of the load cell{of}: {format_handy(c.offset, 'N')}", WIDTH, subsequent_indent="    "
-        )
+    yield from table_lines(parameter_table(found))
     for remark in limitation_sentences(found):
         yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
 
@@ -180,26 +140,11 @@ def _identifiability_lines(found: IdentificationResult) -> Iterator[str]:
 
 
 def _goodness_lines(found: IdentificationResult) -> Iterator[str]:
-    yield "goodness"
+    yield from table_lines(goodness_table(found))
     for c in found.fit.comparisons:
-        yield f"  {c.record.source}"
-        for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
-            residual, noise = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
-            left = f"residual {residual} r.m.s., sensor noise {noise}"
-            yield f"    {part}  {format_variance_share(c.variance_explained(check))} explained, {left}"
-        yield from wrap(whiteness_sentence(c), WIDTH, initial_indent="    ", subsequent_indent="    ")
+        of = f"{c.record.source}: " if len(found.fit.comparisons) > 1 else ""
+        yield from wrap(f"{of}{whiteness_sentence(c)}", WIDTH, initial_indent="  ", subsequent_indent="  ")
     yield from wrap(misfit_sentence(found), WIDTH, initial_indent="  ", subsequent_indent="  ")
-
-
-def format_variance_share(explained: float) -> str:
-    """Share of the variance [%] as text, with two digits of its difference from 100 %.
-
-    >>> format_variance_share(0.99998)
-    '99.9980 %'
-    """
-    missing = 100.0 * (1.0 - explained)
-    decimals = min(max(1 - floor(log10(missing)), 1), 5) if 0.0 < missing < 100.0 else 1
-    return f"{100.0 * explained:.{decimals}f} %"
 
 
 def whiteness_sentence(comparison: RecordFit) -> str:

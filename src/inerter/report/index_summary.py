@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -12,11 +12,10 @@ import scipy
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
-    bound_of,
     by_method,
     by_which,
     compared_layouts,
-    error_of,
+    design_quantity,
     format_list,
     improvement_text,
     index_title,
@@ -26,19 +25,17 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    percent,
     swept_element,
     swept_places,
     swept_text,
     swept_words,
     title_with_name,
     way,
-    with_unit,
 )
+from inerter.formatting import format_percent, format_quantity
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import decisive_method_clause
 from inerter.methods.ties import equally_least
-from inerter.table import Writer
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -49,24 +46,14 @@ _STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 
-@dataclass(frozen=True)
-class Wording:
-    """Formatting of findings: `write` turns a number, its unit and its uncertainties into text.
+def headlines(results: xr.Dataset, static: Collection[tuple[str, str]] = ()) -> list[str]:
+    """Sentences, one per index: best layout, its value, and its improvement over the baseline.
 
     `static` are indices and layouts whose largest gain is that under a steady force.
     """
-
-    write: Writer = with_unit
-    static: frozenset[tuple[str, str]] = frozenset()
-
-
-PLAIN = Wording()
-
-
-def headlines(results: xr.Dataset, wording: Wording = PLAIN) -> list[str]:
-    """Sentences, one per index: best layout, its value, and its improvement over the baseline."""
-    told = _sweep_headline if swept_places(results) else _design_headline
-    return [f"{doubt_of(results, index)}{told(results, index, wording)}" for index in indices(results)]
+    if swept_places(results):
+        return [f"{doubt_of(results, index)}{_sweep_headline(results, index)}" for index in indices(results)]
+    return [f"{doubt_of(results, index)}{_design_headline(results, index, static)}" for index in indices(results)]
 
 
 def doubt_of(results: xr.Dataset, index: str) -> str:
@@ -153,11 +140,11 @@ def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
     return extreme(finite[np.argmin(numbers[finite])]), extreme(finite[np.argmax(numbers[finite])])
 
 
-def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = with_unit, *, named: bool = False) -> str:
+def place_text(results: xr.Dataset, place: dict[str, float], *, named: bool = False) -> str:
     """Swept values with their units, and with their names if `named`, as text."""
     texts = []
     for name, value in place.items():
-        text = swept_text(results, name, value, write)
+        text = swept_text(results, name, value)
         texts.append(f"{results[name].attrs['long_name']} = {text}" if named else text)
     return ", ".join(texts) or "n/a"
 
@@ -186,9 +173,9 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
-def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+def over_the_sweep(results: xr.Dataset) -> list[tuple[str, str]]:
     """Pairs of index and sentence on where each layout outperforms the baseline: crossings, or shares of a map."""
-    return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _map_share_sentences(results)
+    return crossing_sentences(results) if len(swept_places(results)) == 1 else _map_share_sentences(results)
 
 
 def _map_share_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
@@ -208,7 +195,7 @@ def _map_share_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
     return sentences
 
 
-def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+def crossing_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
     """Pairs of index and sentence on where each layout crosses the baseline, for a study with one sweep."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     words = results[element].attrs["long_name"]
@@ -222,21 +209,21 @@ def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[t
     for index in indices(results):
         for name in compared_layouts(results):
             found = {by: crossings(one, index, name) for by, one in ways.items()}
-            texts = [_format_places(results, places, write) + by for by, places in found.items() if places]
+            texts = [_format_places(results, places) + by for by, places in found.items() if places]
             if texts:
                 said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
                 sentences.append((index, said))
     return sentences
 
 
-def _format_places(results: xr.Dataset, found: list[tuple[float, float]], write: Writer) -> str:
+def _format_places(results: xr.Dataset, found: list[tuple[float, float]]) -> str:
     """Swept values with their errors as text; of many, the first and the number of others."""
     more, element = len(found) - _MOST_PLACES, str(swept_element(results))
-    texts = [swept_text(results, element, at, write, error) for at, error in found[:_MOST_PLACES]]
+    texts = [swept_text(results, element, at, error) for at, error in found[:_MOST_PLACES]]
     return format_list([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _design_headline(results: xr.Dataset, index: str, wording: Wording) -> str:
+def _design_headline(results: xr.Dataset, index: str, static: Collection[tuple[str, str]]) -> str:
     title = f"Best {_index_label(results, index)}"
     names = best_layouts(results, index)
     if not names:
@@ -248,12 +235,12 @@ def _design_headline(results: xr.Dataset, index: str, wording: Wording) -> str:
         if not parts:
             pause = "," if words and "," in title else ""
             parts.append(
-                f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_best_layouts_clause(one, index, wording)}"
+                f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_best_layouts_clause(one, index, static)}"
             )
         elif best_layouts(one, index)[:1] == names[:1]:
             parts.append(f"{words} still {_layout_with_improvement(one, index, names[0])}")
         else:
-            parts.append(f"{words} {_best_layouts_clause(one, index, wording)}")
+            parts.append(f"{words} {_best_layouts_clause(one, index, static)}")
     return f"{'; '.join(parts)}."
 
 
@@ -263,14 +250,14 @@ def _index_label(results: xr.Dataset, index: str) -> str:
     return title if index in INDICES else title_with_name(title, index)
 
 
-def _best_layouts_clause(results: xr.Dataset, index: str, wording: Wording) -> str:
+def _best_layouts_clause(results: xr.Dataset, index: str, static: Collection[tuple[str, str]]) -> str:
     """Clause on the best layouts by one method: their value, and its comparison with the baseline."""
     names, baseline = best_layouts(results, index), results.attrs["baseline"]
     if not names:
         return _no_best_clause(results, index)
     design = results.sel(layout=names[0], index=index)
-    value = wording.write(float(design["value"]), index_unit(results, index), error_of(design), bound_of(design))
-    limit = f", {_STATIC}" if (index, names[0]) in wording.static else ""
+    value = design_quantity(design, index_unit(results, index))
+    limit = f", {_STATIC}" if (index, names[0]) in static else ""
     answer = f"{_format_equal_layouts(names)}, {value}{limit}"
     if names[0] == baseline:
         return f"{answer}; no other layout is better than this baseline"
@@ -294,8 +281,8 @@ def _format_improvement(design: xr.Dataset) -> str:
     return improvement_text(design).removeprefix("+")
 
 
-def _sweep_headline(every: xr.Dataset, index: str, wording: Wording) -> str:
-    results, write = one_method(every), wording.write
+def _sweep_headline(every: xr.Dataset, index: str) -> str:
+    results = one_method(every)
     words = next((way(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), _index_label(results, index), results.attrs["baseline"]
@@ -308,16 +295,16 @@ def _sweep_headline(every: xr.Dataset, index: str, wording: Wording) -> str:
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
-        text = write(value, index_unit(results, index), np.nan)
-        where = place_text(results, at, write, named=True)
+        text = format_quantity(value, index_unit(results, index))
+        where = place_text(results, at, named=True)
         return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
     if largest < NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
-    where = place_text(results, at, write, named=True)
-    best = f"{_format_equal_layouts(names)}, {largest:.1f} % better at {where}"
+    where = place_text(results, at, named=True)
+    best = f"{_format_equal_layouts(names)}, {format_percent(largest).removeprefix("+")} better at {where}"
     return (
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
         f"improvement over the sweep lies {_format_range(least, largest)}."
@@ -337,4 +324,4 @@ def _no_best_clause(results: xr.Dataset, index: str) -> str:
 
 
 def _format_range(least: float, largest: float) -> str:
-    return "between " + " and ".join(percent(value).removeprefix("+") for value in (least, largest))
+    return "between " + " and ".join(format_percent(value).removeprefix("+") for value in (least, largest))

@@ -1,10 +1,9 @@
-"""Constraints of a study and their sensitivities, as lines for a terminal and tables for a page."""
+"""Constraints of a study and their sensitivities, as tables."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import replace
 from itertools import groupby
-from textwrap import wrap
 
 import numpy as np
 import xarray as xr
@@ -21,30 +20,12 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
     title_with_name,
-    typeset,
-    typeset_quantity,
-    with_unit,
 )
+from inerter.formatting import format_share
 from inerter.report.problem_statement import of_each
-from inerter.table import Cell, Row, Table, Writer
+from inerter.table import Cell, Column, Quantity, Row, Table
 
 _MOST_RANGES = 3  # of swept values, in a remark
-
-
-def limit_lines(results: xr.Dataset, index: str, width: int) -> Iterator[str]:
-    """Lines, one for each limit and layout; empty without limits."""
-    if "limit" not in results.dims:
-        return
-    for limit in results["limit"].values.tolist():
-        yield from wrap(f"within {_limit_text(results, limit)}:", width, initial_indent="  ", subsequent_indent="    ")
-        for name in layouts(results):
-            told = ", ".join(filter(None, _describe_limit(_entry(results, name, index, limit), index)))
-            yield from wrap(f"{name}: {told}", width, initial_indent="    ", subsequent_indent="      ")
-    for name in layouts(results) if swept_places(results) else ():
-        none = _where(_entry(results, name, index), _is_infeasible(_entry(results, name, index)))
-        if none[0]:
-            text = f"no feasible {name} {none[0]}{f', {none[1]}' if none[1] else ''}"
-            yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
 
 
 def limit_tables(results: xr.Dataset) -> list[Table]:
@@ -59,15 +40,15 @@ def _table(results: xr.Dataset, index: str) -> Table:
     limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        told = [_describe_limit(_entry(results, name, index, limit), index, typeset_quantity) for limit in limits]
         entry = _entry(results, name, index)
-        told += [_where(entry, _is_infeasible(entry), typeset_quantity)] if swept else []
-        rows.append(Row(name, [Cell(text or "–", remark.replace(" -", " \N{MINUS SIGN}")) for text, remark in told]))
+        cells = [_limit_cell(_entry(results, name, index, limit), index) for limit in limits]
+        cells += [_where(entry, _is_infeasible(entry))] if swept else []
+        rows.append(Row([Cell(name), *cells]))
     caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
-    over = f", over {' and '.join(swept_words(results))}" if swept else ""
+    heads = [_limit_text(results, limit) for limit in limits] + (["No design keeps all"] if swept else [])
     return Table(
-        f"{caption}{over}",
-        ["Layout", *(_limit_text(results, limit) for limit in limits), *(["No design keeps all"] if swept else [])],
+        f"{caption}, over {' and '.join(swept_words(results))}" if swept else caption,
+        [Column("Layout"), *(Column(head, listed="Limited quantities") for head in heads)],
         rows,
     )
 
@@ -75,7 +56,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
 def _limit_text(results: xr.Dataset, limit: str) -> str:
     """Limit in words, with the part to which it applies if to each separately."""
     name, space, value = limit.partition(" ")
-    return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{typeset(value)}"
+    return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{value}"
 
 
 def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:
@@ -83,36 +64,37 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
     return one_method(results).sel(where)
 
 
-def _describe_limit(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
-    """Value of a limited quantity, and a text on an active limit and its sensitivity; over a sweep, where active."""
+def _limit_cell(entry: xr.Dataset, index: str) -> Cell:
+    """Value of a limited quantity, with a remark on an active limit and its sensitivity; over a sweep, where active."""
     if swept_places(entry):
-        where, which = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry), write)
-        return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
-    value, cost = float(entry["limit_value"]), float(entry["limit_cost"])
-    part = str(entry["limit.part"].item())
-    text = with_unit(value, str(entry["limit_unit"].item())).strip() + (f" ({part})" if part else "")
+        active = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry))
+        return Cell("nowhere at its limit") if active.content is None else replace(active, content=f"at its limit {active.content}")
+    value, cost, part = float(entry["limit_value"]), float(entry["limit_cost"]), str(entry["limit.part"].item())
+    quantity = Quantity(value, str(entry["limit_unit"].item()))
+    content = f"{quantity} ({part})" if part else quantity
     if bool(infeasible(entry)):
-        return text, "the nearest design"
+        return Cell(content, "the nearest design")
     if not bool(entry["limit_active"]):
-        return text, ""
-    return text, "at its limit" + ("" if np.isnan(cost) else f": 1 % more of it changes {index} by {cost:+.2g} %")
+        return Cell(content)
+    change = "" if np.isnan(cost) else f": 1 % more of it changes {index} by {format_share(cost / 100.0, 2, '+')}"
+    return Cell(content, f"at its limit{change}")
 
 
 def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(infeasible(entry).values)
 
 
-def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_unit) -> tuple[str, str]:
-    """Number of swept values, or points of a map, and the ranges of those values, as text; empty if none."""
+def _where(entry: xr.Dataset, wanted: NDArray[np.bool_]) -> Cell:
+    """Number of swept values, or points of a map, with the ranges of those values; an empty cell if none."""
     if not wanted.any():
-        return "", ""
+        return Cell()
     count, size = int(wanted.sum()), wanted.size
     places = swept_places(entry)
     if len(places) > 1:
-        return f"at {'all' if count == size else f'{count} of'} {size} points", ""
+        return Cell(f"at {'all' if count == size else f'{count} of'} {size} points")
     (words,), (place,) = swept_words(entry), places
     if count == size:
-        return f"at all {size} values", ""
+        return Cell(f"at all {size} values")
     order = np.argsort(entry[place].values)
     runs = [
         [i for _, i in run]
@@ -120,5 +102,6 @@ def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_un
         if holds
     ]
     ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
-    told = [" to ".join(swept_text(entry, place, end, write) for end in pair) for pair in ends]
-    return f"at {count} of {size} values", f"{words} = {format_list(told)}" if len(told) <= _MOST_RANGES else ""
+    ranges = [" to ".join(swept_text(entry, place, end) for end in pair) for pair in ends]
+    remark = f"{words} = {format_list(ranges)}" if len(ranges) <= _MOST_RANGES else ""
+    return Cell(f"at {count} of {size} values", remark)

@@ -21,11 +21,8 @@ from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer, TaskResults, by_task
+from inerter.files.study.tasks import Answer
 from inerter.report.conclusions import conclusion_sentences
-from inerter.report.index_summary import over_the_sweep
-from inerter.report.limits import limit_tables
-from inerter.report.method_comparison import method_tables
 from inerter.report.problem_statement import (
     computation,
     condition_rows,
@@ -35,7 +32,7 @@ from inerter.report.problem_statement import (
     layout_rows,
     vehicle_rows,
 )
-from inerter.report.tables import tables_of, trade_off_tables, where_all_are
+from inerter.report.sections import design_sections, task_sections, trade_off_section
 
 _SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text
@@ -83,7 +80,7 @@ def report(
             swept=bool(swept),
             searched=study.optimise is not None,
             headlines=[
-                *map(printed_sentence, conclusion_sentences(results, study, found, typeset_quantity)),
+                *conclusion_sentences(results, study, found),
                 *([f"{road}."] if (road := roads_sentence(study)) else []),
             ],
             vehicle=vehicle_rows(study),
@@ -93,16 +90,9 @@ def report(
             layouts=layout_rows(study),
             drawings=dict(_layout_drawings(study, figures)),
             indices=indices_asked(results),
-            tables=tables_of(results),
-            by_method=method_tables(results),
-            remarks=[printed_sentence(sentence) for sentence in _remarks(results)] if swept else [],
-            tasks=[
-                (task.title, task.introduction(), task.tables(TaskResults(study, results, own)))
-                for task, own in by_task(found).items()
-            ],
-            limits=limit_tables(results),
+            sections=list(design_sections(results)),
+            further_sections=[*task_sections(study, results, found), *trade_off_section(results)],
             conditions=condition_rows(study),
-            trade_offs=[] if swept or study.optimise is None else trade_off_tables(results),
             figures=list(_drawings(results, figures)),
             notes=results.attrs.get("notes", "").splitlines(),
             computation=list(computation(study, results)),
@@ -118,12 +108,6 @@ def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]
         if path.exists():
             name = layout_figure(layout)
             yield layout, inline(path.read_text(encoding="utf-8"), name, f"Networks of {layout}", natural=True)
-
-
-def _remarks(results: xr.Dataset) -> list[str]:
-    """Remarks below the tables of a sweep: where layouts outperform the baseline, and where to find omitted designs."""
-    told = over_the_sweep(results, typeset_quantity) if results.attrs["baseline"] else []
-    return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
 
 
 def _study_file(study: Study) -> str:

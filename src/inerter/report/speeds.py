@@ -15,14 +15,12 @@ from inerter.figures.labels import (
     index_unit,
     indices,
     one_method,
-    percent,
     swept_places,
-    with_unit,
 )
+from inerter.formatting import format_percent, format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layouts, extremes, place_text
 from inerter.report.json_data import json_data
-from inerter.table import Writer
 
 _LOST = 0.5  # of an improvement, or of a value's own size, that is much to lose
 _TUNED = 0.1  # by which a value may exceed what it would be if the speed only made the road rougher
@@ -55,7 +53,7 @@ def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, f
     ]
 
 
-def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSentences:
+def speed_sentences(results: xr.Dataset) -> SpeedSentences:
     """Sentences on the best design of each index at other speeds, separated by whether they are doubts."""
     found = SpeedSentences([], [])
     for index in indices(results) if "at_speeds.value" in results else ():
@@ -63,53 +61,53 @@ def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSent
         if where is None:
             continue
         if np.isfinite(results["at_speeds.value"].sel(where)).all():
-            lost, sentence = _speed_sentence(results, where, write)
+            lost, sentence = _speed_sentence(results, where)
             late = np.ptp(_beyond_speed(results, where)) > 1e-6
             doubts = _messages(results, where)
             if doubts:
                 begin = f"{sentence[0].upper()}{sentence[1:]}"
                 found.doubts.append(f"Not certain at other speeds: {'; '.join(doubts)}. {begin}")
             elif lost:
-                found.doubts.append(f"Not certain away from {_at(results, 1, write)}: {sentence}")
+                found.doubts.append(f"Not certain away from {_at(results, 1)}: {sentence}")
             elif late:
                 found.others.append(f"{sentence[0].upper()}{sentence[1:]}")
         elif reason := _reason(results, where):
             found.doubts.append(
-                f"Not certain away from {_at(results, 1, write)}: what the best design{_of(results, where, write)} "
+                f"Not certain away from {_at(results, 1)}: what the best design{_of(results, where)} "
                 f"for {index_title(results, index)}, {where['layout']}, has at other speeds could not be computed: "
                 f"{reason}."
             )
     return found
 
 
-def _speed_sentence(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> tuple[bool, str]:
+def _speed_sentence(results: xr.Dataset, where: Mapping[str, Any]) -> tuple[bool, str]:
     """Whether the design is doubtful at other speeds, and a sentence on its values there."""
     index, layout, baseline = where["index"], where["layout"], results.attrs["baseline"]
     values, better = results["at_speeds.value"].sel(where).values, _improvements(results, where)
     unit, beyond = index_unit(results, index), _beyond_speed(results, where)
     method = results["at_speeds.value"].attrs["methods"]
-    of = _of(results, where, write)
+    of = _of(results, where)
     by = f" by {' and '.join(brief_words_of(one) for one in method.split())}"
     ends = [
-        f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_versus(better[i], baseline, layout)}"
+        f"{format_quantity(float(values[i]), unit)} at {_at(results, i)}{_versus(better[i], baseline, layout)}"
         for i in (0, 2)
     ]
-    here = f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_versus(better[1], baseline, layout)}"
+    here = f"{format_quantity(float(values[1]), unit)} at {_at(results, 1)}{_versus(better[1], baseline, layout)}"
     tuned = bool(max(beyond[0], beyond[2]) > 1.0 + _TUNED)
     lost = np.isfinite(better[1]) and better[1] >= NOTICEABLE and min(better[0], better[2]) < _LOST * better[1]
     doubt = bool(lost or tuned)
     design = f"the best design{of} for {index_title(results, index)}, {layout}, has {here}"
     sentence = f"{design}{', but' if doubt else ';'}{by} {' and '.join(ends)}"
     if tuned:
-        sentence += f", where the speed alone would make it {_alone(results, where, write)}"
+        sentence += f", where the speed alone would make it {_alone(results, where)}"
     advice = ". Sweep road.speed, or give [[conditions]] of several speeds" if doubt else ""
     return doubt, f"{sentence}{advice}."
 
 
-def _of(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
+def _of(results: xr.Dataset, where: Mapping[str, Any]) -> str:
     """The place in a sweep of a design, in words; empty without a sweep."""
     places = {k: v for k, v in where.items() if k in swept_places(results)}
-    return f" of {place_text(results, places, write, named=True)}" if places else ""
+    return f" of {place_text(results, places, named=True)}" if places else ""
 
 
 def _reason(results: xr.Dataset, where: Mapping[str, Any]) -> str:
@@ -124,10 +122,10 @@ def _messages(results: xr.Dataset, where: Mapping[str, Any]) -> list[str]:
     return list(dict.fromkeys(message.rstrip(".") for message in found if message))
 
 
-def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
+def _alone(results: xr.Dataset, where: Mapping[str, Any]) -> str:
     value, unit = float(results["at_speeds.value"].sel(where)[1]), index_unit(results, where["index"])
     speeds = results["at_speeds.speed"].values
-    return " and ".join(write(value * float(np.sqrt(speeds[i] / speeds[1])), unit, np.nan) for i in (0, 2))
+    return " and ".join(format_quantity(value * float(np.sqrt(speeds[i] / speeds[1])), unit) for i in (0, 2))
 
 
 def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -142,12 +140,12 @@ def _versus(better: float, baseline: str, layout: str) -> str:
         return ""
     if abs(better) < NOTICEABLE:
         return f" (as good as {baseline})"
-    return f" ({percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
+    return f" ({format_percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
 
 
-def _at(results: xr.Dataset, place: int, write: Writer) -> str:
+def _at(results: xr.Dataset, place: int) -> str:
     speed = 3.6 * float(results["at_speeds.speed"].values[place])
-    return write(speed, "km/h", np.nan)
+    return format_quantity(speed, "km/h")
 
 
 def _improvements(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:

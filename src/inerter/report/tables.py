@@ -5,16 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from inerter.errors import StatusKind
 from inerter.figures.labels import (
-    Scale,
-    bound_of,
     by_method,
     by_which,
     capital,
     compared_layouts,
-    error_of,
+    design_quantity,
     flat_range,
-    format_uncertain,
     improvement_text,
     index_title,
     index_unit,
@@ -23,22 +21,17 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    plain_number,
-    scale,
-    shows_error,
     swept_element,
     swept_places,
     swept_scale,
     swept_words,
     title_with_name,
-    typeset,
-    typeset_quantity,
     way,
-    with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
-from inerter.report.index_summary import best_layout, place_text
-from inerter.table import Cell, Row, Table
+from inerter.formatting import Scale, choose_scale, format_number, format_percent, format_quantity
+from inerter.report.index_summary import best_layout, extremes, place_text
+from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
 _MOST_ACROSS = 9  # columns of a map
@@ -86,46 +79,45 @@ def _title(results: xr.Dataset, index: str) -> str:
 
 
 def _improvement(design: xr.Dataset, baseline: str) -> str:
-    return "baseline" if design["layout"].item() == baseline else _percent(design)
-
-
-def _percent(design: xr.Dataset) -> str:
-    text = improvement_text(design)
-    return typeset(text) if " +- " not in text else typeset(text).replace(" ", "\N{NO-BREAK SPACE}")
+    return "baseline" if design["layout"].item() == baseline else improvement_text(design)
 
 
 def _design_table(results: xr.Dataset, index: str) -> Table:
-    at_index, baseline = results.sel(index=index), results.attrs["baseline"]
+    at_index, versus = results.sel(index=index), bool(compared_layouts(results))
     parameters = at_index["parameter_value"].dropna("parameter", how="all")["parameter"].values.tolist()
-    searched = bool((at_index["starts"] > 0).any())
-    best = best_layout(results, index)
+    searched, best = is_searched(at_index), best_layout(results, index)
     rows = []
     for name in layouts(results):
         design = at_index.sel(layout=name)
-        unit = index_unit(results, index)
-        cells = [Cell(typeset_quantity(float(design["value"]), unit, error_of(design), bound_of(design)))]
-        cells += [Cell(_improvement(design, baseline))] if compared_layouts(results) else []
-        cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
-        cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
-        rows.append(Row(name, cells, name == best, _problem(design)))
-    header = ["Layout", index, *(["Improvement"] if compared_layouts(results) else []), *parameters]
-    return Table(
-        f"Best for {_title(results, index)}{by_which(results)}", header + (["Agreement"] if searched else []), rows
-    )
+        cells = [
+            Cell(name),
+            Cell(design_quantity(design, index_unit(results, index))),
+            *([Cell(_improvement(design, results.attrs["baseline"]))] if versus else []),
+            *(_parameter(design.sel(parameter=parameter)) for parameter in parameters),
+            *([Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []),
+        ]
+        rows.append(Row(cells, name == best, problem_of(str(design["status"].item()))))
+    heads = [
+        *columns("Layout", index, *(["Improvement"] if versus else [])),
+        *(Column(parameter, listed="Parameters") for parameter in parameters),
+        *([Column("Agreement", only_on_pages=True)] if searched else []),
+    ]
+    what = f"Best for {_title(results, index)}" if searched else capital(_title(results, index))
+    return Table(f"{what}{by_which(results)}", heads, rows)
+
+
+def is_searched(results: xr.Dataset) -> bool:
+    """Whether designs were optimised."""
+    return bool((results["starts"] > 0).any())
 
 
 def _parameter(entry: xr.Dataset) -> Cell:
     value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
     if np.isnan(value):
-        return Cell("–")
+        return Cell()
     flat = flat_range(entry)
-    remark = f"at its {bound} bound" if bound else f"{typeset(flat)} are as good" if flat else ""
-    return Cell(typeset_quantity(value, str(entry["parameter_unit"].item())), remark)
-
-
-def _problem(design: xr.Dataset) -> str:
-    status = str(design["status"].item())
-    return "" if status == "ok" else status
+    remark = f"at its {bound} bound" if bound else f"{flat} are as good" if flat else ""
+    return Cell(Quantity(value, str(entry["parameter_unit"].item())), remark)
 
 
 def _trade_off_table(results: xr.Dataset, index: str) -> Table:
@@ -133,22 +125,56 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
     rows = []
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
-        texts = [_other(results, design.sel(other=other), other) for other in others]
         missed = "infeasible" if bool(infeasible(design)) else ""
-        own = [other == index for other in others]
-        rows.append(Row(name, [Cell(t, missed * is_own, strong=is_own) for t, is_own in zip(texts, own, strict=True)]))
-    return Table(f"Designs that are best for {_title(results, index)}{by_which(results)}", ["Layout", *others], rows)
+        cells = [
+            Cell(_other(results, design.sel(other=other), other), missed * (other == index), strong=other == index)
+            for other in others
+        ]
+        rows.append(Row([Cell(name), *cells]))
+    caption = f"Designs that are best for {_title(results, index)}{by_which(results)}"
+    return Table(caption, columns("Layout", *others), rows)
 
 
-def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> str:
+def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> Quantity:
     bound = float(design["other_error_bound"]) if "other_error_bound" in design else np.nan
-    return typeset_quantity(float(design["other_value"]), index_unit(results, other), bound=bound)
+    return Quantity(float(design["other_value"]), index_unit(results, other), bound=bound)
+
+
+def extreme_tables(results: xr.Dataset) -> list[Table]:
+    """Tables of the best and the worst of every layout over the sweep, one per index: a summary of its tables."""
+    results = one_method(results)
+    return [_extreme_table(results, index) for index in indices(results)]
+
+
+def _extreme_table(results: xr.Dataset, index: str) -> Table:
+    versus = bool(compared_layouts(results))
+    values, unit = results["improvement" if versus else "value"].sel(index=index), index_unit(results, index)
+    rows = []
+    for name in compared_layouts(results) or layouts(results):
+        ends = extremes(values.sel(layout=name)) or ((np.nan, {}),) * 2
+        texts = [
+            f"{format_percent(value) if versus else format_quantity(value, unit)} at {place_text(results, at)}"
+            for value, at in ends
+        ]
+        cells = [Cell(text) for text in (texts[::-1] if versus else texts)]
+        rows.append(Row([Cell(name), *cells], status=_first_problem(results, name, index)))
+    than = f", compared with {results.attrs['baseline']}" if versus else ""
+    over = f"over {' and '.join(swept_words(results))}"
+    caption = f"{capital(_title(results, index))}{by_which(results)}{than}, {over}"
+    return Table(caption, columns("Layout", "Best", "Worst"), rows, swept=True)
+
+
+def _first_problem(results: xr.Dataset, layout: str, index: str) -> str:
+    """First status over the sweep that is not ok, with the number of such statuses; empty if there is none."""
+    every = results["status"].sel(layout=layout, index=index).values.ravel().tolist()
+    bad = [text for text in every if problem_of(text)]
+    return f"{bad[0]} ({len(bad)} of {len(every)} values are not ok)" if bad else ""
 
 
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element, (words,) = str(swept_element(results)), swept_words(results)
     data = results.sel(index=index).sortby(element)
-    swept, values = swept_scale(data, element), scale(data["value"].values, index_unit(results, index))
+    swept, values = swept_scale(data, element), choose_scale(data["value"].values.ravel().tolist(), index_unit(results, index))
     points = _some(data, element)
     rows = []
     for point in points:
@@ -157,16 +183,16 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
         for name in layouts(results):
             design = here.sel(layout=name)
             improvement = _improvement(design, results.attrs["baseline"]) if name in compared_layouts(results) else ""
-            cells.append(Cell(_number(design, values), improvement))
-        rows.append(Row(typeset(f"{float(here[element]) * swept.factor:.4g}"), cells))
+            cells.append(Cell(design_quantity(design, values.unit, values), improvement))
+        rows.append(Row([Cell(_swept_number(here, element, swept)), *cells]))
     names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
     caption = (
-        f"Best {_title(results, index)} in {typeset(values.unit)}, over {words} in {typeset(swept.unit)}{by}{some}"
+        f"Best {_title(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
     )
-    return Table(caption, [words, *names], rows, True, tuple(_failures(data)))
+    return Table(caption, columns(words, *names), rows, swept=True, failures=_failures(data))
 
 
 def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
@@ -174,24 +200,25 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
     first, second = swept_places(results)
     data = results.sel(index=index, layout=layout).sortby([first, second])
     down, across = (swept_scale(data, place) for place in (first, second))
-    values = scale(data["value"].values, index_unit(results, index))
+    values = choose_scale(data["value"].values.ravel().tolist(), index_unit(results, index))
     rows = []
     for i in _spread(data.sizes[first], _MOST_SWEPT):
         cells = []
         for j in _spread(data.sizes[second], _MOST_ACROSS):
             design = data.isel({first: i, second: j})
-            number = _number(design, values)
-            cells.append(Cell(_percent(design), number) if compared_layouts(results) else Cell(number))
-        rows.append(Row(typeset(f"{float(data[first][i]) * down.factor:.4g}"), cells))
-    columns = data[second].values[list(_spread(data.sizes[second], _MOST_ACROSS))] * across.factor
-    words = [f"{w} in {typeset(u.unit)}" for w, u in zip(swept_words(results), (down, across), strict=True)]
+            number = design_quantity(design, values.unit, values)
+            cells.append(Cell(improvement_text(design), str(number)) if compared_layouts(results) else Cell(number))
+        rows.append(Row([Cell(_swept_number(data.isel({first: i}), first, down)), *cells]))
+    over = (data.isel({second: j}) for j in _spread(data.sizes[second], _MOST_ACROSS))
+    words = [f"{w} in {u.unit}" for w, u in zip(swept_words(results), (down, across), strict=True)]
     what = f"improvement over {results.attrs['baseline']} and its value" if compared_layouts(results) else "value"
     caption = (
-        f"{layout}, best {_title(results, index)}: {what} in {typeset(values.unit)}, over {words[0]} in rows and "
+        f"{layout}, best {_title(results, index)}: {what} in {values.unit}, over {words[0]} in rows and "
         f"{words[1]} in columns{by_which(results)}"
     )
-    header = [f"{capital(swept_words(results)[0])} ↓, {swept_words(results)[1]} →", *(f"{c:.4g}" for c in columns)]
-    return Table(caption, header, rows, True, tuple(_failures(results.sel(index=index, layout=[layout]))))
+    corner = f"{capital(swept_words(results)[0])} ↓, {swept_words(results)[1]} →"
+    heads = columns(corner, *(_swept_number(here, second, across) for here in over))
+    return Table(caption, heads, rows, swept=True, failures=_failures(results.sel(index=index, layout=[layout])))
 
 
 def _spread(size: int, most: int) -> list[int]:
@@ -233,11 +260,13 @@ def _are_far(size: int) -> bool:
     return _step(size) > _MOST_BETWEEN
 
 
-def _number(design: xr.Dataset, unit: Scale) -> str:
-    value, error, bound = float(design["value"]) * unit.factor, error_of(design) * unit.factor, bound_of(design)
-    if shows_error(value, error, bound):
-        return typeset(format_uncertain(value, error, bound))
-    return typeset(plain_number(value, bound)) if np.isfinite(value) else with_unit(value, "").strip()
+def _swept_number(here: xr.Dataset, place: str, unit: Scale) -> str:
+    return format_number(float(here[place]) * unit.factor, 4)
+
+
+def problem_of(status: str) -> str:
+    """A status that is not ok; else empty."""
+    return "" if status == StatusKind.OK.value else status
 
 
 def _failures(data: xr.Dataset) -> list[str]:
@@ -250,6 +279,6 @@ def _failures(data: xr.Dataset) -> list[str]:
     for name, point in bad[:_MOST_FAILURES]:
         status = data["status"].sel(layout=name)[point]
         place = {swept: float(status[swept]) for swept in swept_places(data)}
-        lines.append(f"{name} at {place_text(data, place, typeset_quantity, named=True)}: {status.item()}")
+        lines.append(f"{name} at {place_text(data, place, named=True)}: {status.item()}")
     more = len(bad) - _MOST_FAILURES
     return lines if more <= 0 else [*lines, f"and {more} more, which are in the table of results"]

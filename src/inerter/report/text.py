@@ -1,52 +1,22 @@
-"""Tables of results as plain text for a terminal of 80 columns."""
+"""Results as plain text for a terminal of 80 columns: paragraphs, and tables in columns that fit."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 from textwrap import wrap
 
-import numpy as np
-import xarray as xr
-
-from inerter.figures.labels import (
-    bound_of,
-    by_which,
-    compared_layouts,
-    error_of,
-    flat_range,
-    improvement_text,
-    index_title,
-    index_unit,
-    indices,
-    layouts,
-    methods,
-    one_method,
-    percent,
-    swept_places,
-    swept_words,
-    with_unit,
-)
-from inerter.report.index_summary import extremes, over_the_sweep, place_text
-from inerter.report.limits import limit_lines
-from inerter.report.method_comparison import method_lines
+from inerter.report.sections import Section
+from inerter.table import Cell, Column, Row, Table
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
-_NARROWEST = 20  # of the last column, which goes beyond the width where numbers are enormous
-_LONGEST_NAME = 20  # a longer name of a layout has a separate line
-
-
-@dataclass(frozen=True)
-class _TextRow:
-    """Row of a layout: cells, items of the last column, and status."""
-
-    name: str
-    cells: list[str]
-    items: list[str]
-    status: str
+_NARROWEST = 20  # of a column that wraps, which goes beyond the width where numbers are enormous
+_LONGEST_LABEL = 20  # a longer label of a row has a separate line
+_GAP = "  "
 
 
 def wrap_text(text: str, **indents: str) -> list[str]:
@@ -55,113 +25,122 @@ def wrap_text(text: str, **indents: str) -> list[str]:
     return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
 
 
-def summary_table(results: xr.Dataset) -> str:
-    """The best designs, a block for each index: ASCII, at most 80 columns.
+def section_text(sections: Iterable[Section]) -> str:
+    """Tables and remarks of the sections of results: ASCII, at most 80 columns."""
+    blocks = ["\n".join(block) for section in sections for block in _blocks(section)]
+    return "\n\n".join(blocks).replace("\N{EN DASH}", "-").encode("ascii", "replace").decode()
 
-    With a sweep, where each layout improves most and least on the baseline, and where it is equally good. With several
-    methods, the first of them, and then all side by side.
+
+def _blocks(section: Section) -> Iterator[list[str]]:
+    for table in section.tables if section.brief is None else section.brief:
+        yield list(table_lines(table))
+    for remark in section.remarks:
+        yield wrap_text(remark, subsequent_indent=_GAP)
+
+
+def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
+    """Lines of a table: caption, header and rows; in several parts if it does not fit in `width`.
+
+    Columns that are listed become items "heading = text" of the last one. The reason for a doubt stands below its row.
     """
-    every, results = results, one_method(results)
-    block = _extremes if swept_places(results) else _designs
-    several = len(methods(every)) > 1
-    blocks = [
-        [
-            *block(results, index),
-            *_sweep_lines(every, index),
-            *limit_lines(every, index, WIDTH),
-            *(["", *method_lines(every, index, WIDTH)] if several else []),
-        ]
-        for index in indices(results)
-    ]
-    text = "\n\n".join("\n".join(lines) for lines in blocks)
-    return text.encode("ascii", "replace").decode()
+    yield from wrap(table.caption, width, subsequent_indent=_GAP * 2)
+    grid = _grid(table)
+    while len(grid.columns) > 1:
+        count = _count_fitting(grid, width)
+        yield from _lines(_Grid(grid.rows, grid.columns[:count]), width)
+        grid = _Grid(grid.rows, [grid.columns[0], *grid.columns[count:]])
+    for line in table.failures:
+        yield from wrap(line, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 
 
-def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
-    unit, versus = index_unit(results, index), bool(compared_layouts(results))
-    yield from wrap(_heading(results, index), WIDTH, subsequent_indent="    ")
-    table = []
-    for name in layouts(results):
-        design = results.sel(layout=name, index=index)
-        cells = [
-            with_unit(float(design["value"]), unit, error_of(design), bound_of(design)),
-            *([_improvement(design)] if versus else []),
-        ]
-        table.append(_TextRow(name, cells, _parameters(design), str(design["status"].item())))
-    yield from _lines(["layout", "value", *(["improvement"] if versus else [])], "parameters", table)
+@dataclass(frozen=True)
+class _TextColumn:
+    """Heading, and for each row the text and the remark below it; one that wraps has items that stay together."""
+
+    heading: str
+    cells: Sequence[tuple[str, str]]
+    items: Sequence[Sequence[str]] = ()
+    labels: bool = False  # of the rows
+
+    @property
+    def wraps(self) -> bool:
+        return bool(self.items)
+
+    def width(self, cut_heading: bool) -> int:
+        """Width of its longest text, and of its heading, which may break at spaces."""
+        heading = self.heading.split() if cut_heading else [self.heading]
+        texts = [text for cell in self.cells for text in cell if not (self.labels and _has_line(text))]
+        return max(map(len, [*heading, *texts]))
 
 
-def _improvement(design: xr.Dataset) -> str:
-    if design["layout"].item() == design.attrs["baseline"]:
-        return "baseline"
-    return improvement_text(design)
+@dataclass(frozen=True)
+class _Grid:
+    """Rows of a table and its columns as text, the labels first."""
+
+    rows: Sequence[Row]
+    columns: Sequence[_TextColumn]
 
 
-def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
-    versus = bool(compared_layouts(results))
-    rows = results["improvement" if versus else "value"].sel(index=index)
-    heading = f"{_heading(results, index)}, over {' and '.join(swept_words(results))}"
-    yield from wrap(heading, WIDTH, subsequent_indent="    ")
-    table = []
-    for name in compared_layouts(results) or layouts(results):
-        ends = extremes(rows.sel(layout=name)) or ((np.nan, {}),) * 2
-        texts = [
-            f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {place_text(results, at)}"
-            for value, at in ends
-        ]
-        texts = texts[::-1] if versus else texts
-        table.append(_TextRow(name, texts[:1], texts[1:], _first_failure(results, name, index)))
-    yield from _lines(["layout", "best"], "worst", table)
+def _grid(table: Table) -> _Grid:
+    shown = list(table.shown_rows())
+    heads = [(i, column) for i, column in enumerate(table.shown) if not column.only_on_pages]
+    made = [_text_column(c, [cells[i] for _, cells in shown], i == 0) for i, c in heads if not c.listed]
+    listed = [(i, column) for i, column in heads if column.listed]
+    if listed:
+        items = [[_item(column, cells[i]) for i, column in listed if cells[i].content is not None] for _, cells in shown]
+        made.append(_TextColumn(listed[0][1].listed, [("", "")] * len(shown), items))
+    return _Grid([row for row, _ in shown], made)
 
 
-def _sweep_lines(results: xr.Dataset, index: str) -> Iterator[str]:
-    """Lines on where layouts outperform the baseline over a sweep."""
-    if swept_places(results) and compared_layouts(results):
-        for _, sentence in over_the_sweep(results.sel(index=[index])):
-            yield from wrap_text(sentence, initial_indent="  ", subsequent_indent="    ")
+def _text_column(column: Column, cells: Sequence[Cell], labels: bool) -> _TextColumn:
+    if column.prose:
+        items = [cell.text.split(", ") for cell in cells]
+        return _TextColumn(column.heading, [("", "")] * len(cells), items)
+    return _TextColumn(column.heading, [(cell.text, cell.remark) for cell in cells], labels=labels)
 
 
-def _heading(results: xr.Dataset, index: str) -> str:
-    baseline = f", compared with {results.attrs['baseline']}" if compared_layouts(results) else ""
-    return f"{index}: {index_title(results, index)}{by_which(results)}{baseline}"
+def _item(column: Column, cell: Cell) -> str:
+    return f"{column.heading} = {cell.text}{f' ({cell.remark})' if cell.remark else ''}"
 
 
-def _parameters(design: xr.Dataset) -> list[str]:
-    """Parameters of one design as texts, each with its unit, and with its active bound or flat range."""
-    found = []
-    for parameter in design["parameter"].values.tolist():
-        entry = design.sel(parameter=parameter)
-        value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
-        if np.isfinite(value):
-            text = f"{parameter} = {with_unit(value, str(entry['parameter_unit'].item()))}"
-            flat = flat_range(entry)
-            remarks = [*([f"{bound} bound"] if bound else []), *([f"{flat} are as good"] if flat else [])]
-            found.append(f"{text} ({', '.join(remarks)})" if remarks else text)
-    return found
+def _count_fitting(grid: _Grid, width: int) -> int:
+    """Number of columns that fit into `width` side by side, two at least."""
+    counts = range(len(grid.columns), 2, -1)
+    return next((count for count in counts if _total_width(grid.columns[:count], cut_headings=True) <= width), 2)
 
 
-def _first_failure(results: xr.Dataset, layout: str, index: str) -> str:
-    """First status over the sweep that is not ok, with the number of such statuses; "ok" if there is none."""
-    every = results["status"].sel(layout=layout, index=index).values.ravel().tolist()
-    bad = [text for text in every if text != "ok"]
-    return f"{bad[0]} ({len(bad)} of {len(every)} values are not ok)" if bad else "ok"
+def _total_width(columns: Sequence[_TextColumn], *, cut_headings: bool) -> int:
+    widths = [_NARROWEST if column.wraps else column.width(cut_headings) for column in columns]
+    return sum(widths) + len(_GAP) * len(widths)
 
 
-def _lines(header: list[str], last: str, table: Sequence[_TextRow]) -> Iterator[str]:
-    """The rows below their header in columns; the items of the last column wrap."""
-    columns = [header, *([row.name if len(row.name) <= _LONGEST_NAME else "", *row.cells] for row in table)]
-    widths = [max(map(len, column)) for column in zip(*columns, strict=True)]
-    indent = 2 + sum(widths) + 2 * len(widths)
-    yield "  " + "".join(f"{text:<{width}}  " for text, width in zip(header, widths, strict=True)) + last
-    for row, cells in zip(table, columns[1:], strict=True):
-        if not cells[0]:
-            yield f"  {row.name}"
-        first = "  " + "".join(f"{text:<{width}}  " for text, width in zip(cells, widths, strict=True))
-        items = _pack_items(row.items, max(WIDTH - indent, _NARROWEST)) or [""]
-        yield (first + items[0]).rstrip()
-        yield from (" " * indent + line for line in items[1:])
-        if row.status != "ok":
-            yield from wrap(row.status, WIDTH, initial_indent="    ! ", subsequent_indent="      ")
+def _lines(grid: _Grid, width: int) -> Iterator[str]:
+    """Lines of columns side by side, below their headings, which break at spaces only if need be."""
+    cut = _total_width(grid.columns, cut_headings=True) < width < _total_width(grid.columns, cut_headings=False)
+    widths = [column.width(cut) for column in grid.columns if not column.wraps]
+    rest = max(width - len(_GAP) * (len(widths) + 1) - sum(widths), _NARROWEST)
+    headings = [wrap(c.heading, w) if cut else [c.heading] for c, w in zip_longest(grid.columns, widths, fillvalue=rest)]
+    yield from _side_by_side(headings, widths)
+    for i, row in enumerate(grid.rows):
+        cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]
+        if _has_line(cells[0][0]):
+            yield f"{_GAP}{cells[0][0]}"
+            cells[0] = []
+        yield from _side_by_side(cells, widths)
+        if row.status:
+            yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
+
+
+def _has_line(label: str) -> bool:
+    """Whether a label is so long that it stands on a line of its own."""
+    return len(label) > _LONGEST_LABEL
+
+
+def _side_by_side(cells: Sequence[Sequence[str]], widths: Sequence[int]) -> Iterator[str]:
+    """Lines of cells that have several lines each; the last one may have no width."""
+    for line in zip_longest(*cells, fillvalue=""):
+        padded = [f"{text:<{width}}" for text, width in zip_longest(line, widths[: len(line)], fillvalue=0)]
+        yield f"{_GAP}{_GAP.join(padded)}".rstrip()
 
 
 def _pack_items(items: Sequence[str], width: int) -> list[str]:

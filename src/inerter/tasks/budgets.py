@@ -4,29 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from textwrap import wrap
+from math import nan
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import capital, format_list, index_title, typeset_quantity, with_unit
+from inerter.figures.labels import capital, format_list, index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.index_summary import best_layouts
-from inerter.table import Cell, Row, Table, Writer
+from inerter.table import MISSING, Cell, Column, Row, Table
 from inerter.units import quote_value
 
 if TYPE_CHECKING:
     import xarray as xr
 
+_KEYS = ("method", "better", "value", "unit", "standard_error", "low", "high", "crossings", "status")
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
@@ -150,41 +152,29 @@ class Budgets(Task[BudgetAnswer]):
         """Names of the elements, by the heading of the report."""
         return {"Budgets of": list(study.budgets)}
 
-    def csv(self, study: Study, answers: Sequence[BudgetAnswer]) -> Iterator[Sequence[object]]:
-        """Header and one row per break-even value."""
-        yield "parameter index layout method better value unit standard_error low high crossings status".split()
-        for found in answers:
-            low, high = found.interval or (None, None)
-            better = "" if found.value is None else "below" if found.at_most else "above"
-            yield [
-                *(found.parameter, found.index, found.layout, found.method, better),
-                *(found.value, found.unit, found.standard_error, low, high),
-                *(";".join(map(repr, found.crossings)), found.status_text),
+    def table(self, results: TaskResults[BudgetAnswer]) -> Table:
+        """One row per break-even value."""
+        heads = [
+            Column("Element", "parameter"),
+            Column("Index", "index"),
+            Column("Layout", "layout"),
+            Column("Better", prose=True),
+            *(Column(key=key) for key in _KEYS),
+        ]
+        rows = []
+        for one in results.answers:
+            low, high = one.interval or (None, None)
+            better = "" if one.value is None else "below" if one.at_most else "above"
+            contents = [
+                *(one.parameter, one.index, one.layout, _verdict(one)),
+                *(one.method, better, one.value, one.unit, one.standard_error, low, high),
+                *(";".join(map(repr, one.crossings)), one.status_text),
             ]
+            rows.append(Row(list(map(Cell, contents)), status=_remark(one)))
+        by = brief_words_of(results.answers[0].method)
+        return Table(f"Break-even values: where each layout is better than {results.study.baseline}, by {by}", heads, rows)
 
-    def lines(self, results: TaskResults[BudgetAnswer], width: int) -> Iterator[str]:
-        """A block for each element."""
-        for name, found in _by_element(results.answers).items():
-            yield from ("", *wrap(_caption(name, found[0], results.study), width, subsequent_indent="  "))
-            longest = max(len(one.layout) for one in found)
-            for one in found:
-                begin = f"  {one.index}  {one.layout:<{longest}}  "
-                yield from wrap(begin + _sentence(one, with_unit), width, subsequent_indent=" " * min(len(begin), 20))
-
-    def tables(self, results: TaskResults[BudgetAnswer]) -> list[Table]:
-        """A table for each element, layouts in rows and indices in columns."""
-        tables = []
-        for name, found in _by_element(results.answers).items():
-            rows = []
-            for layout in dict.fromkeys(one.layout for one in found):
-                own = [one for one in found if one.layout == layout]
-                remarks = [f"{one.index}: {text}" for one in own if (text := _remark(one, typeset_quantity))]
-                rows.append(Row(layout, [Cell(_cell(one)) for one in own], status="; ".join(remarks)))
-            header = ["Layout", *results.study.indices]
-            tables.append(Table(_caption(name, found[0], results.study), header, rows))
-        return tables
-
-    def sentences(self, results: TaskResults[BudgetAnswer], write: Writer) -> Iterator[str]:
+    def sentences(self, results: TaskResults[BudgetAnswer]) -> Iterator[str]:
         """Ranges of each element in which the best layouts outperform the baseline, as sentences."""
         study, data, budgets = results.study, results.data, results.answers
         best = {name for index in study.indices for name in best_layouts(data, index)} if budgets else set()
@@ -193,9 +183,9 @@ class Budgets(Task[BudgetAnswer]):
             if layout in best:
                 what = capital(f"{study.elements[element].key} {element}")
                 sound = [found for found in own if not found.doubt]
-                ends = [f"{end} in {index_title(data, o.index)}" for o in sound if (end := _end_of_range(o, write))]
+                ends = [f"{end} in {index_title(data, o.index)}" for o in sound if (end := _end_of_range(o))]
                 told = [f"{what}: {layout} is better than {study.baseline} {format_list(ends)}."] if ends else []
-                others = [found for found in sound if not _end_of_range(found, write)]
+                others = [found for found in sound if not _end_of_range(found)]
                 for message, of in _alike(data, others, lambda found: found.message):
                     told.append(f"{what}, {layout}, {of}: {message}.")
                 for message, of in _alike(data, own, lambda found: found.doubt):
@@ -215,46 +205,29 @@ def design_value(study: Study, outcome: Outcome, element: str) -> float:
     return outcome.parameters[element] if isinstance(value, Free) else value
 
 
-def _cell(found: BudgetAnswer) -> str:
-    end = _end_of_range(found, typeset_quantity) or "–"
+def _verdict(found: BudgetAnswer) -> str:
+    end = _end_of_range(found) or MISSING
     return f"not certain: {end}" if found.doubt else end
 
 
-def _by_element(budgets: Sequence[BudgetAnswer]) -> dict[str, list[BudgetAnswer]]:
-    names = dict.fromkeys(one.parameter for one in budgets)
-    return {name: [one for one in budgets if one.parameter == name] for name in names}
-
-
-def _caption(name: str, found: BudgetAnswer, study: Study) -> str:
-    by = f"by {brief_words_of(found.method)}"
-    return f"Break-even value of {name}: for which {name} each layout is better than {study.baseline}, {by}"
-
-
-def _sentence(found: BudgetAnswer, write: Writer) -> str:
-    end, remark = _end_of_range(found, write), _remark(found, write)
-    if found.doubt:
-        return f"not certain ({remark})" + (f"; if accepted, {end}" if end else "")
-    return f"{end} ({remark})" if end and remark else end or remark
-
-
-def _end_of_range(found: BudgetAnswer, write: Writer) -> str:
+def _end_of_range(found: BudgetAnswer) -> str:
     """Break-even value as text, or the range if the design is worse again beyond another crossing; empty if none."""
     if found.value is None:
         return ""
-    end = write(found.value, found.unit, found.standard_error or 0.0)
+    end = format_quantity(found.value, found.unit, error=found.standard_error or nan)
     beyond = [c for c in found.crossings if (c < found.value if found.at_most else c > found.value)]
     if beyond:
-        other = write(max(beyond) if found.at_most else min(beyond), found.unit, float("nan"))
+        other = format_quantity(max(beyond) if found.at_most else min(beyond), found.unit)
         return f"from {other} to {end}" if found.at_most else f"from {end} to {other}"
     return f"up to {end}" if found.at_most else f"from {end} on"
 
 
-def _remark(found: BudgetAnswer, write: Writer) -> str:
+def _remark(found: BudgetAnswer) -> str:
     """Remark on a break-even value: further crossings, doubt, or reason why there is none."""
     remarks = []
     if len(found.crossings) > 1:
-        places = [write(value, found.unit, float("nan")) for value in found.crossings]
-        remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
+        places = [format_quantity(value, found.unit) for value in found.crossings]
+        remarks.append(f"equally good at {format_list(places)}")
     if found.doubt:
         remarks.insert(0, found.doubt)
     elif found.status == StatusKind.UNBOUNDED:

@@ -4,39 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from textwrap import TextWrapper, wrap
+from math import isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import (
-    criteria,
-    criterion_unit,
-    format_list,
-    layouts,
-    trade_off_title,
-    typeset_quantity,
-    which_front,
-    with_unit,
-)
+from inerter.figures.labels import format_list
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
+from inerter.formatting import format_quantity, label_with_unit
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
 from inerter.report.problem_statement import key_in_words
-from inerter.table import Cell, Row, Table, Writer
-from inerter.units import label_with_unit
+from inerter.table import Cell, Column, Quantity, Row, Table
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _LEAST_OF_THREE = 6  # points of a front of three indices
-_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _SAME = 1e-9  # relative; a point that is as good as another in all indices does not better it
 
 
@@ -118,20 +108,6 @@ class Fronts(Task[FrontAnswer]):
         """Indices of the trade-off, by the heading of the report."""
         return {"Trade-off": [" against ".join(map(key_in_words, study.trade_off))] if study.trade_off else []}
 
-    def csv(self, study: Study, answers: Sequence[FrontAnswer]) -> Iterator[Sequence[object]]:
-        """Header and one row per point; one row with the status for an empty front."""
-        free = study.free_units
-        names = [name for name in free if any(name in design for front in answers for design in front.parameters)]
-        indices = [label_with_unit(name, study.unit(name)) for name in study.trade_off]
-        parameters = [f"{name} [{free[name]}]" for name in names]
-        yield ["layout", "point", *indices, *parameters, "knee", "jump_after", "status"]
-        for front in answers:
-            for i, (values, design) in enumerate(zip(front.values, front.parameters, strict=True)):
-                marks = ["yes" if i == front.knee else "", "yes" if i in front.jumps else ""]
-                yield [front.layout, i + 1, *values, *map(design.get, names), *marks, front.statuses[i]]
-            if not front.values:
-                yield [front.layout, "", *([""] * (len(indices) + len(names) + 2)), front.status_text]
-
     def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[FrontAnswer]) -> xr.Dataset:
         """Dataset with the fronts: dimensions layout, front_point, criterion, and parameter."""
         points = max([len(front.values) for front in answers] + [1])
@@ -154,8 +130,7 @@ class Fronts(Task[FrontAnswer]):
             criterion_title=("criterion", [index.title for index in indices.values()]),
             criterion_unit=("criterion", [study.unit(name) for name in indices]),
         )
-        by = ways(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
-        attributes = {"long_name": "index at a point of the front", "method_words": by}
+        attributes = {"long_name": "index at a point of the front", "method_words": _method_words(study)}
         return labelled.assign(
             front_value=(("layout", "front_point", "criterion"), values, attributes),
             front_parameter=(("layout", "front_point", "parameter"), designs, {"long_name": "parameter at that point"}),
@@ -164,38 +139,20 @@ class Fronts(Task[FrontAnswer]):
             front_status=("layout", status, {"long_name": "status of the front"}),
         )
 
-    def lines(self, results: TaskResults[FrontAnswer], width: int) -> Iterator[str]:
-        """The designs at the ends and the knee of each front."""
-        data = results.data
-        title = f"trade-off of {', '.join(criteria(data))}{which_front(data)}: designs at the ends and the knee"
-        yield from ("", *wrap(title, width))
-        for layout in layouts(data):
-            status = str(data["front_status"].sel(layout=layout).item())
-            yield f"  {layout}" if status == "ok" else f"  {layout}: {status}"
-            for what, point in _told_points(data, layout):
-                items = [*_values(data, layout, point, with_unit), *_parameters(data, layout, point, with_unit)]
-                text = ", ".join(item.replace(" ", _NO_BREAK_SPACE) for item in items)
-                hanging = TextWrapper(width, "    ", "      ", break_on_hyphens=False)
-                lines = hanging.wrap(f"{what}: {text}")
-                yield from (line.replace(_NO_BREAK_SPACE, " ") for line in lines)
-
-    def tables(self, results: TaskResults[FrontAnswer]) -> list[Table]:
-        """The designs at the ends and the knee of each front."""
-        data, names = results.data, criteria(results.data)
-        parameters = [p for p in data["parameter"].values.tolist() if _has(data, p)]
-        rows = []
-        for layout in layouts(data):
-            for what, point in _told_points(data, layout):
-                cells = [Cell(text) for text in _values(data, layout, point, typeset_quantity, bare=True)]
-                told = dict(
-                    zip(
-                        _own(data, layout, point),
-                        _parameters(data, layout, point, typeset_quantity, bare=True),
-                        strict=True,
-                    )
-                )
-                rows.append(Row(f"{layout}, {what}", [*cells, *(Cell(told.get(name, "–")) for name in parameters)]))
-        return [Table(trade_off_title(data), ["Design", *names, *parameters], rows)]
+    def table(self, results: TaskResults[FrontAnswer]) -> Table:
+        """One row per point, those at the ends and the knee with their labels; one of a front without points."""
+        study, free = results.study, results.study.free_units
+        names = [name for name in free if any(name in design for one in results.answers for design in one.parameters)]
+        heads = [
+            Column("Layout", "layout"),
+            Column("Design"),
+            Column(key="point"),
+            *(Column(name, label_with_unit(name, study.unit(name))) for name in study.trade_off),
+            *(Column(name, label_with_unit(name, free[name]), listed="Parameters") for name in names),
+            *(Column(key=key) for key in ("knee", "jump_after", "status")),
+        ]
+        rows = [row for one in results.answers for row in _rows(study, one, names)]
+        return Table(f"{_title(study)}: the designs at the ends and the knee", heads, rows)
 
     def introduction(self) -> str:
         """Paragraph above the table: which designs it lists, and the file with all points."""
@@ -204,30 +161,20 @@ class Fronts(Task[FrontAnswer]):
             "fronts.csv has all points."
         )
 
-    def sentences(self, results: TaskResults[FrontAnswer], write: Writer) -> Iterator[str]:
+    def sentences(self, results: TaskResults[FrontAnswer]) -> Iterator[str]:
         """Sentence on each Pareto front: indices at its knee, and number of dominated designs of the baseline."""
-        data = results.data
-        names, baseline = criteria(data), data.attrs["baseline"]
-        found, doubts = [], []
-        for layout in layouts(data):
-            knee = np.flatnonzero(data["front_knee"].sel(layout=layout).values)
-            if not knee.size:
-                continue
-            values = data["front_value"].sel(layout=layout).values[knee[0]]
-            told = format_list(
-                [
-                    write(float(value), criterion_unit(data, name), np.nan)
-                    for name, value in zip(names, values, strict=True)
-                ]
-            )
-            better = _dominance_clause(data, layout, baseline) if baseline and layout != baseline else ""
-            status = str(data["front_status"].sel(layout=layout).item())
-            if status != StatusKind.OK:
-                doubts.append(f"{layout}, {status}")
-            found.append(f"{layout} {told}{better}")
-        doubt = f"Not certain ({'; '.join(doubts)}). " if doubts else ""
-        if found:
-            yield f"{doubt}{trade_off_title(data)}, at the knee: {'; '.join(found)}."
+        study, by_layout = results.study, {front.layout: front for front in results.answers}
+        fronts = sorted((one for one in results.answers if one.knee is not None), key=lambda one: one.layout != study.baseline)
+        clauses = []
+        for front in fronts:
+            knee = zip(study.trade_off, front.values[front.knee or 0], strict=True)
+            values = format_list([format_quantity(value, study.unit(name)) for name, value in knee])
+            better = _dominance_clause(front, by_layout[study.baseline]) if study.baseline in by_layout else ""
+            clauses.append(f"{front.layout} {values}{better}")
+        doubts = [f"{front.layout}, {front.status_text}" for front in fronts if not front.ok]
+        if clauses:
+            doubt = f"Not certain ({'; '.join(doubts)}). " if doubts else ""
+            yield f"{doubt}{_title(study)}, at the knee: {'; '.join(clauses)}."
 
 
 def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
@@ -252,46 +199,50 @@ def _without(layout: str, status: str, message: str) -> FrontAnswer:
     )
 
 
-def _told_points(data: xr.Dataset, layout: str) -> list[tuple[str, int]]:
-    """Labels and numbers of the listed points: minimum of each index, and the knee."""
-    values = data["front_value"].sel(layout=layout).values
-    if not np.isfinite(values).any():
-        return []
-    ends = [(f"least {name}", int(np.nanargmin(values[:, i]))) for i, name in enumerate(criteria(data))]
-    knee = np.flatnonzero(data["front_knee"].sel(layout=layout).values)
-    return [*ends[:1], *(("knee", int(point)) for point in knee), *ends[1:]]
+def _title(study: Study) -> str:
+    """Title of the trade-off: its indices, and the method if the study has several."""
+    by = _method_words(study)
+    return f"Trade-off between {format_list([study.index(name).title for name in study.trade_off])}{by and f', {by}'}"
 
 
-def _values(data: xr.Dataset, layout: str, point: int, write: Writer, *, bare: bool = False) -> list[str]:
-    row = data["front_value"].sel(layout=layout).values[point]
-    texts = [write(float(v), criterion_unit(data, n), np.nan) for n, v in zip(criteria(data), row, strict=True)]
-    return texts if bare else [f"{name} = {text}" for name, text in zip(criteria(data), texts, strict=True)]
+def _method_words(study: Study) -> str:
+    """Method of the fronts in words, if the study has several."""
+    return ways(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
 
 
-def _own(data: xr.Dataset, layout: str, point: int) -> list[str]:
-    row = data["front_parameter"].sel(layout=layout).values[point]
-    return [name for name, value in zip(data["parameter"].values.tolist(), row, strict=True) if np.isfinite(value)]
+def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterator[Row]:
+    """Rows on the points of a front; those at its ends and its knee are shown."""
+    shown = _labelled_points(study, front)
+    for i, (values, design) in enumerate(zip(front.values, front.parameters, strict=True)):
+        contents = [
+            *(front.layout, shown.get(i), i + 1),
+            *(Quantity(value, study.unit(name)) for name, value in zip(study.trade_off, values, strict=True)),
+            *(Quantity(design[name], study.free_units[name]) if name in design else None for name in parameters),
+            *("yes" if i == front.knee else "", "yes" if i in front.jumps else "", front.statuses[i]),
+        ]
+        doubt = front.doubt if i == max(shown, default=0) else ""
+        yield Row(list(map(Cell, contents)), status=doubt, shown=i in shown)
+    if not front.values:
+        unknown = [""] * (len(study.trade_off) + len(parameters) + 2)
+        yield Row(list(map(Cell, [front.layout, "", "", *unknown, front.status_text])), status=front.doubt)
 
 
-def _parameters(data: xr.Dataset, layout: str, point: int, write: Writer, *, bare: bool = False) -> list[str]:
-    row = data["front_parameter"].sel(layout=layout).isel(front_point=point)
-    found = []
-    for name in _own(data, layout, point):
-        entry = row.sel(parameter=name)
-        text = write(float(entry), str(entry["parameter_unit"].item()), np.nan)
-        found.append(text if bare else f"{name} = {text}")
-    return found
+def _labelled_points(study: Study, front: FrontAnswer) -> dict[int, str]:
+    """Points at the ends of a front and at its knee, with their labels."""
+    labels: dict[int, list[str]] = {}
+    for i, name in enumerate(study.trade_off):
+        known = [(point[i], place) for place, point in enumerate(front.values) if isfinite(point[i])]
+        if known:
+            labels.setdefault(min(known)[1], []).append(f"least {name}")
+    if front.knee is not None:
+        labels.setdefault(front.knee, []).append("knee")
+    return {place: ", ".join(several) for place, several in labels.items()}
 
 
-def _has(data: xr.Dataset, parameter: str) -> bool:
-    return bool(np.isfinite(data["front_parameter"].sel(parameter=parameter)).any())
-
-
-def _dominance_clause(data: xr.Dataset, layout: str, baseline: str) -> str:
-    """Clause on how many designs of the baseline's front `layout` strictly dominates; empty without points."""
-    ours, theirs = (data["front_value"].sel(layout=name).values for name in (layout, baseline))
-    ours, theirs = (values[np.isfinite(values).all(axis=1)] for values in (ours, theirs))
-    if not len(ours) or not len(theirs):
+def _dominance_clause(front: FrontAnswer, baseline: FrontAnswer) -> str:
+    """Clause on how many designs of the baseline's front this one strictly dominates; empty without points."""
+    ours, theirs = (np.array([v for v in one.values if np.isfinite(v).all()]) for one in (front, baseline))
+    if front is baseline or not len(ours) or not len(theirs):
         return ""
     beaten = sum(bool(np.any(np.all(ours < point * (1.0 - _SAME), axis=1))) for point in theirs)
-    return f", better in all than {beaten or 'none'} of the {len(theirs)} designs of {baseline}"
+    return f", better in all than {beaten or 'none'} of the {len(theirs)} designs of {baseline.layout}"

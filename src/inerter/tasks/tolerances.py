@@ -4,28 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from textwrap import wrap
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import index_title, typeset_quantity, with_unit
+from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.formatting import format_share
 from inerter.methods.registry import decisive_method_clause
-from inerter.table import Cell, Row, Table, Writer
+from inerter.table import MISSING, Cell, Column, Quantity, Row, Table
 from inerter.uncertainty.tolerance import tolerance_analysis
-
-if TYPE_CHECKING:
-    pass
 
 SHARE = 0.95  # of cases, of the quantile that is told
 _NUMBERS = ("nominal", "mean", "standard_deviation", "quantile", "worst")
-_SCATTERED = _NUMBERS[1:]
-_HEADER = ("Mean", "Standard deviation", f"{100 * SHARE:g} % of cases below", "Worst", "Due to")
+_KEYS = {"quantile": f"quantile_{SHARE:g}"}  # of the file, of numbers that have another one there
+_HEADINGS = {
+    "mean": "Mean",
+    "standard_deviation": "Standard deviation",
+    "quantile": f"{format_share(SHARE)} of cases below",
+    "worst": "Worst",
+}
 
 
 @dataclass(frozen=True)
@@ -92,6 +93,10 @@ class ToleranceAnswer(Answer):
         """Task part to which the answer belongs."""
         return TolerancePart(self.layout, self.index)
 
+    def quantity(self, name: str) -> Quantity | None:
+        """A number of the distribution with its unit; None if it is not known."""
+        return Quantity(self.numbers[name], self.unit) if name in self.numbers else None
+
 
 class Tolerances(Task[ToleranceAnswer]):
     """Task: distribution of each index at its best design within the tolerances."""
@@ -114,41 +119,29 @@ class Tolerances(Task[ToleranceAnswer]):
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Relative tolerance of each value, and the percentile that is minimised, by the headings of the report."""
-        quantile = [f"the {100.0 * study.quantile:.4g} % quantile"] if study.quantile is not None else []
-        parts = [f"{label} ± {100.0 * part:.4g} %" for label, part in study.tolerance.items()]
+        quantile = [f"the {format_share(study.quantile, 4)} quantile"] if study.quantile is not None else []
+        parts = [f"{label} ± {format_share(part, 4)}" for label, part in study.tolerance.items()]
         return {"Tolerances": parts, "Best at": quantile}
 
-    def csv(self, study: Study, answers: Sequence[ToleranceAnswer]) -> Iterator[Sequence[object]]:
-        """Header and one row per design; effects are fractions of the variance."""
-        names = list(dict.fromkeys(name for one in answers for name in one.effects))
-        effects = [f"{kind} effect of {name}" for name in names for kind in ("main", "total")]
-        header = [f"quantile_{SHARE:g}" if name == "quantile" else name for name in _NUMBERS]
-        yield ["layout", "index", "method", *header, "unit", *effects, "status"]
-        for one in answers:
-            parts = [part for name in names for part in one.effects.get(name, (None, None))]
-            numbers = map(one.numbers.get, _NUMBERS)
-            yield [one.layout, one.index, one.method, *numbers, one.unit, *parts, one.status_text]
-
-    def lines(self, results: TaskResults[ToleranceAnswer], width: int) -> Iterator[str]:
-        """A paragraph for each design."""
-        yield from ("", "tolerances:")
-        for one in results.answers:
-            mean, deviation, quantile, worst = _texts(one, with_unit)
-            sentence = (
-                f"mean {mean}, standard deviation {deviation}, {100 * SHARE:g} % of cases below {quantile}, worst "
-                f"{worst}; due to {_due(one)}"
-            )
-            doubt = "" if one.ok else f"not certain ({one.status_text}): "
-            text = f"{one.layout} {one.index}: {doubt + sentence if one.numbers else one.status_text}"
-            yield from wrap(text, width, initial_indent="  ", subsequent_indent="    ")
-
-    def tables(self, results: TaskResults[ToleranceAnswer]) -> list[Table]:
-        """Single table with one row per design."""
+    def table(self, results: TaskResults[ToleranceAnswer]) -> Table:
+        """One row per design; effects are fractions of the variance."""
+        names = list(dict.fromkeys(name for one in results.answers for name in one.effects))
+        heads = [
+            Column("Layout", "layout"),
+            Column("Index", "index"),
+            Column(key="method"),
+            *(Column(_HEADINGS.get(name, ""), _KEYS.get(name, name)) for name in _NUMBERS),
+            Column(key="unit"),
+            *(Column(key=f"{kind} effect of {name}") for name in names for kind in ("main", "total")),
+            Column("Due to", prose=True),
+            Column(key="status"),
+        ]
         rows = []
         for one in results.answers:
-            cells = [Cell(text) for text in _texts(one, typeset_quantity)]
-            rows.append(Row(f"{one.layout}, {one.index}", [*cells, Cell(_due(one), prose=True)], status=one.doubt))
-        return [Table("Best designs with tolerances", ["Design", *_HEADER], rows)]
+            effects = [part for name in names for part in one.effects.get(name, (None, None))]
+            contents = [one.layout, one.index, one.method, *map(one.quantity, _NUMBERS), one.unit, *effects]
+            rows.append(Row(list(map(Cell, [*contents, _due(one), one.status_text])), status=one.doubt))
+        return Table("Best designs with tolerances", heads, rows)
 
     def introduction(self) -> str:
         """Paragraph above the table: distribution of the values, and meaning of the last column."""
@@ -157,14 +150,14 @@ class Tolerances(Task[ToleranceAnswer]):
             "Last column: share of the variance that would vanish if the value were exact (total effect)."
         )
 
-    def sentences(self, results: TaskResults[ToleranceAnswer], write: Writer) -> Iterator[str]:
+    def sentences(self, results: TaskResults[ToleranceAnswer]) -> Iterator[str]:
         """Layout with the lowest quantile for each index, and layouts without an answer, as sentences."""
         data, answers = results.data, results.answers
         for index in dict.fromkeys(one.index for one in answers):
             own = [one for one in answers if one.index == index]
             title = index_title(data, index)
             known = [one for one in own if np.isfinite(one.numbers.get("quantile", np.nan))]
-            told = [_best_sentence(title, known, data.attrs["baseline"], write)] if known else []
+            told = [_best_sentence(title, known, data.attrs["baseline"])] if known else []
             told += [
                 f"No answer for {title} of {one.layout} tolerances: {one.message.rstrip('.')}."
                 for one in own
@@ -173,16 +166,16 @@ class Tolerances(Task[ToleranceAnswer]):
             yield " ".join(told)
 
 
-def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None, write: Writer) -> str:
+def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None) -> str:
     """Sentence on the layout with the lowest quantile, compared with the baseline and the best nominal layout."""
     by_quantile = sorted(known, key=lambda one: one.numbers["quantile"])
     best, nominal = by_quantile[0], min(known, key=lambda one: one.numbers["nominal"])
-    _, deviation, quantile, worst = _texts(best, write)
+    deviation, quantile, worst = map(best.quantity, ("standard_deviation", "quantile", "worst"))
     base = next((one for one in known if one.layout == baseline), None)
     compared = ""
     if base is not None and base is not best and base.numbers["quantile"] > 0.0:
-        part = 100.0 * (1.0 - best.numbers["quantile"] / base.numbers["quantile"])
-        compared = f", {part:.3g} % better than {base.layout}, which scatters too"
+        part = 1.0 - best.numbers["quantile"] / base.numbers["quantile"]
+        compared = f", {format_share(part)} better than {base.layout}, which scatters too"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"
     due = f", mostly due to {next(iter(_shares(best)))[1]}" if best.effects else ""
@@ -190,8 +183,8 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
     return (
-        f"{certain}Best {title} when values scatter, by what {100 * SHARE:g} % of cases are below: {best.layout}, "
-        f"{quantile.strip()}{compared}; standard deviation {deviation.strip()}{due}, worst {worst.strip()}.{order}"
+        f"{certain}Best {title} when values scatter, by what {format_share(SHARE)} of cases are below: {best.layout}, "
+        f"{quantile}{compared}; standard deviation {deviation}{due}, worst {worst}.{order}"
     )
 
 
@@ -200,11 +193,6 @@ def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
     return sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
 
 
-def _texts(one: ToleranceAnswer, write: Writer) -> list[str]:
-    nan = float("nan")
-    return [write(one.numbers.get(name, nan), one.unit, nan) for name in _SCATTERED]
-
-
 def _due(one: ToleranceAnswer) -> str:
     """Values that contribute to the variance, largest first, each with its total-order Sobol' index [%], as text."""
-    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or "–"
+    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or MISSING

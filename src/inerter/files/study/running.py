@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
@@ -29,8 +27,9 @@ from inerter.files.study.results import DatasetBuilder
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_rows import TASKS
-from inerter.files.study.tasks import Answer, Designs, by_task, journal_entry, parts_of
+from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, journal_entry, parts_of
 from inerter.kernels.prepare import ProgressCallback, prepare_on
+from inerter.table import csv_rows, csv_text
 from inerter.work.checkpoints import Checkpoint, Row, join_checkpoints, resuming, storing_checkpoints
 from inerter.work.journal import Journal
 from inerter.work.origin import versions
@@ -117,7 +116,8 @@ def run_study(
         write_text(results.draft / VERSIONS, json.dumps(_origins(study), indent=2) + "\n")
         for task, own in by_task(answers).items():
             data = task.add_to_dataset(study, data, own)
-            write_text(results.draft / csv_of(task.key), csv_text(task.csv(study, own)))
+            table = task.table(TaskResults(study, data, own))
+            write_text(results.draft / csv_of(task.key), csv_text(csv_rows(table)))
         write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
@@ -137,15 +137,6 @@ def result_names() -> tuple[str, ...]:
     """Names of files and folders that a result folder may hold."""
     tables = map(csv_of, TASKS)
     return (journals.NAME, RESOLVED, SUMMARY, DATASET, *tables, VERSIONS, f"{FIGURES}/", REPORT)
-
-
-def csv_text(rows: Iterable[Sequence[object]]) -> str:
-    """Rows as CSV: numbers with all their digits, nothing for None."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    for row in rows:
-        writer.writerow("" if one is None else repr(float(one)) if isinstance(one, float) else one for one in row)
-    return text.getvalue()
 
 
 def _origins(study: Study) -> dict[str, Any]:

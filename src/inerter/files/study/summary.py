@@ -13,6 +13,7 @@ from inerter.atomic_io import open_text
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
+from inerter.table import csv_cells
 from inerter.units import label_with_unit
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
@@ -23,7 +24,7 @@ def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
     with open_text(path) as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(_header(study, data))
-        writer.writerows(_rows(study, data))
+        writer.writerows(map(csv_cells, _rows(study, data)))
 
 
 def _header(study: Study, data: xr.Dataset) -> list[str]:
@@ -55,7 +56,7 @@ def _more(study: Study) -> list[str]:
     return list(UNCERTAIN) if is_uncertain(study) else []
 
 
-def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
+def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
     everything, more, parts = cases(study), _more(study), _on_parts(data)
     parameters = data.parameter.values.tolist()
     units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
@@ -75,22 +76,18 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[str | int]]:
                     case.layout,
                     case.index,
                     method,
-                    *map(_number, case.swept),
-                    *(_number(row["value"]), units[case.index], _number(row["improvement"])),
-                    *(_number(row["standard_error"]), _number(row["error_bound"]), row["status"]),
-                    *(_number(row[name]) if name in PERCENT else row[name] for name in more),
-                    *map(_number, row["parameter_value"]),
+                    *case.swept,
+                    *(row["value"], units[case.index], row["improvement"]),
+                    *(row["standard_error"], row["error_bound"], row["status"]),
+                    *(row[name] for name in more),
+                    *row["parameter_value"],
                     *(at_bound, row["starts"], row["agreed"]),
-                    *map(_number, row["other_value"]),
+                    *row["other_value"],
                     *(
-                        _number(row[name][i])
+                        row[name][i]
                         for i in range(len(study.limits))
                         for name in ("limit_value", "limit_cost")
                     ),
                     *(row["limit.part"][i] for i in parts),
                 ]
 
-
-def _number(value: Any) -> str:
-    """Shortest text that is read back as the same number; empty for a missing number."""
-    return "" if value != value else repr(value)

@@ -1,7 +1,7 @@
 """Tasks: analyses of the best designs of a study, in parts that are computed one by one.
 
-All of a task is in one file: its parts, how one is answered, what is known of one that failed, and how answers are
-written as CSV, on a terminal, on a page. The keys that ask for it are with its row, or with those of [study]. The
+All of a task is in one file: its parts, how one is answered, what is known of one that failed, the table of its answers
+and its conclusions. The keys that ask for it are with its row, or with those of [study]. The
 journal, processes, executors, progress, `--json` and exit codes are the same for all.
 """
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from inerter.files.common.problem import Problem
     from inerter.files.study.study import Study
-    from inerter.table import Table, Writer
+    from inerter.table import Table
 
 Designs = Mapping[Case, Outcome]
 
@@ -73,28 +73,20 @@ class Task(ABC, Generic[AnswerT]):
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Items of the report's problem statement, by heading."""
 
-    @abstractmethod
-    def csv(self, study: Study, answers: Sequence[AnswerT]) -> Iterator[Sequence[object]]:
-        """Rows of the CSV file of the task, the header first."""
-
     def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[AnswerT]) -> xr.Dataset:
         """Dataset of the study with the answers that belong in it; called with at least one answer."""
         return data
 
     @abstractmethod
-    def lines(self, results: TaskResults[AnswerT], width: int) -> Iterator[str]:
-        """All answers for a terminal."""
-
-    @abstractmethod
-    def tables(self, results: TaskResults[AnswerT]) -> list[Table]:
-        """All answers for a page."""
+    def table(self, results: TaskResults[AnswerT]) -> Table:
+        """All answers, at least one, as terminals, pages and the CSV file of the task show them."""
 
     def introduction(self) -> str:
         """Paragraph above the tables of the task; empty by default."""
         return ""
 
     @abstractmethod
-    def sentences(self, results: TaskResults[AnswerT], write: Writer) -> Iterator[str]:
+    def sentences(self, results: TaskResults[AnswerT]) -> Iterator[str]:
         """Conclusions as sentences; an uncertain one states the uncertainty first."""
 
 

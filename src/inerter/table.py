@@ -45,6 +45,6 @@ class Table:
 class Writer(Protocol):
     """Function that formats a number with its unit, standard error and relative error bound."""
 
-    def __call__(self, value: float, unit: str, error: float = ..., bound: float = ...) -> str:
+    def __call__(self, value: float, unit: str, *, error: float = ..., bound: float = ...) -> str:
         """Formatted number with its unit."""
         ...

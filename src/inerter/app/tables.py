@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.app.answers import answer_panel
 from inerter.errors import StudyError
-from inerter.units import label_with_unit
+from inerter.formatting import label_with_unit
 
 Rows = Iterable[list[Any]]
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import nan
 
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words, with_unit
+from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
+from inerter.formatting import format_quantity
 from inerter.report.index_summary import Wording, headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.problem_statement import limit_words, of_each
@@ -26,7 +26,7 @@ def conclusion_sentences(
     results: xr.Dataset,
     study: Study,
     found: Sequence[Answer] = (),
-    write: Writer = with_unit,
+    write: Writer = format_quantity,
 ) -> list[str]:
     """Warnings, a sentence for each index, the conclusions of the tasks, and the limits, in this order."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
@@ -98,4 +98,4 @@ def _closest_design_clause(results: xr.Dataset, study: Study, write: Writer) -> 
 
 
 def _format_number(value: float, unit: str, write: Writer) -> str:
-    return write(value, unit, nan).strip()
+    return write(value, unit).strip()

@@ -13,6 +13,7 @@ from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
 from inerter.files.identification.running import FIT, RESIDUALS, IdentificationResult, responses
+from inerter.formatting import choose_scale, format_number, format_quantity, format_range
 from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
@@ -35,7 +36,6 @@ from inerter.report.identified_values import (
 )
 from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
-from inerter.units import format_handy, format_number, handy_unit
 from inerter.work.origin import versions
 
 RESPONSE = "response.json"
@@ -147,9 +147,9 @@ def _rows(found: IdentificationResult) -> Iterator[ParameterRow]:
     for name, p in found.fit.parameters.items():
         value, interval = value_and_interval(found, name)
         bounds = found.bounds(name)
-        sought = "" if bounds is None else f"{format_handy(bounds[0], p.unit)} to {format_handy(bounds[1], p.unit)}"
-        identified, (size, unit) = bool(found.fit.identifiable[name]), handy_unit(p.best, p.unit)
-        error = f"{_two_digits(p.standard_error / size)} {unit}".rstrip() if identified else ""
+        sought = "" if bounds is None else format_range(*bounds, p.unit, 3)
+        identified, own = bool(found.fit.identifiable[name]), choose_scale([p.best], p.unit)
+        error = f"{_two_digits(p.standard_error * own.factor)} {own.unit}".rstrip() if identified else ""
         yield ParameterRow(name, value, interval, error, sought, identified)
 
 
@@ -173,9 +173,9 @@ def _goodness(found: IdentificationResult) -> Iterator[tuple[str, ...]]:
         for part, mask in (("fitted", c.fitted), ("check", c.checked)):
             if mask.any():
                 check = part == "check"
-                left = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
+                left = format_quantity(c.rms(check), "N", 3), format_quantity(c.noise_level(check), "N", 3)
                 numbers = (str(int(mask.sum())), format_variance_share(c.variance_explained(check)), *left)
-                yield (c.record.source, part, *numbers, "" if check else format_handy(c.offset, "N"))
+                yield (c.record.source, part, *numbers, "" if check else format_quantity(c.offset, "N", 3))
 
 
 def _computation(found: IdentificationResult) -> str:

@@ -6,14 +6,13 @@ from collections.abc import Iterator
 from math import floor, log10
 from textwrap import wrap
 
-from inerter.figures.labels import format_uncertain
 from inerter.files.identification.running import IdentificationResult, Reading, model_title
+from inerter.formatting import format_quantity, format_uncertain
 from inerter.identification.choice import Candidate
 from inerter.identification.fit import RecordFit
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 from inerter.report.text import WIDTH
-from inerter.units import format_handy
 
 INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
@@ -83,7 +82,7 @@ def likely_causes(found: IdentificationResult) -> Iterator[tuple[str, str, str, 
     for e in likely[:MOST_EXPLANATIONS]:
         units = {name: p.unit for name, p in found.fit.parameters.items()}
         values = ", ".join(
-            f"{name} {format_handy(value, units[name], 4)} +- {format_handy(error, units[name], 2)}"
+            f"{name} {format_quantity(value, units[name], 4)} +- {format_quantity(error, units[name], 2)}"
             for name, (value, error) in e.estimates.items()
             if name in units and e.misfit.is_noise_limited
         )
@@ -111,7 +110,7 @@ def processing_notes(found: IdentificationResult, reading: Reading, comparison: 
     yield f"The displacement was smoothed to {motion.bandwidth:.4g} Hz; it shows motion up to {motion.highest:.4g} Hz."
     fitted, checked = int(comparison.fitted.sum()), int(comparison.checked.sum())
     left = reading.used.time.size - fitted - checked
-    lead = f", among them the first {format_handy(comparison.lead, 's')}" if comparison.lead else ""
+    lead = f", among them the first {format_quantity(comparison.lead, 's', 3)}" if comparison.lead else ""
     unused = f"; {left} are left out{lead}" if left else ""
     yield f"{fitted} samples were fitted, and {checked} kept to check the fit{unused}."
 
@@ -160,7 +159,7 @@ def _estimate_lines(found: IdentificationResult) -> Iterator[str]:
     for c in found.fit.comparisons:
         of = f" of {c.record.source}" if len(found.fit.comparisons) > 1 else ""
         yield from wrap(
-            f"  Offset of the load cell{of}: {format_handy(c.offset, 'N')}", WIDTH, subsequent_indent="    "
+            f"  Offset of the load cell{of}: {format_quantity(c.offset, 'N', 3)}", WIDTH, subsequent_indent="    "
         )
     for remark in limitation_sentences(found):
         yield from wrap(remark, WIDTH, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False)
@@ -184,7 +183,7 @@ def _goodness_lines(found: IdentificationResult) -> Iterator[str]:
     for c in found.fit.comparisons:
         yield f"  {c.record.source}"
         for part, check in (("fitted ", False), ("checked", True))[: 1 + c.checked.any()]:
-            residual, noise = format_handy(c.rms(check), "N"), format_handy(c.noise_level(check), "N")
+            residual, noise = (format_quantity(size, "N", 3) for size in (c.rms(check), c.noise_level(check)))
             left = f"residual {residual} r.m.s., sensor noise {noise}"
             yield f"    {part}  {format_variance_share(c.variance_explained(check))} explained, {left}"
         yield from wrap(whiteness_sentence(c), WIDTH, initial_indent="    ", subsequent_indent="    ")

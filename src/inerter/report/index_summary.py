@@ -26,15 +26,14 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    percent,
     swept_element,
     swept_places,
     swept_text,
     swept_words,
     title_with_name,
     way,
-    with_unit,
 )
+from inerter.formatting import format_percent, format_quantity
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import decisive_method_clause
 from inerter.methods.ties import equally_least
@@ -56,7 +55,7 @@ class Wording:
     `static` are indices and layouts whose largest gain is that under a steady force.
     """
 
-    write: Writer = with_unit
+    write: Writer = format_quantity
     static: frozenset[tuple[str, str]] = frozenset()
 
 
@@ -153,7 +152,9 @@ def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
     return extreme(finite[np.argmin(numbers[finite])]), extreme(finite[np.argmax(numbers[finite])])
 
 
-def place_text(results: xr.Dataset, place: dict[str, float], write: Writer = with_unit, *, named: bool = False) -> str:
+def place_text(
+    results: xr.Dataset, place: dict[str, float], write: Writer = format_quantity, *, named: bool = False
+) -> str:
     """Swept values with their units, and with their names if `named`, as text."""
     texts = []
     for name, value in place.items():
@@ -186,7 +187,7 @@ def crossings(results: xr.Dataset, index: str, layout: str) -> list[tuple[float,
     return found
 
 
-def over_the_sweep(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+def over_the_sweep(results: xr.Dataset, write: Writer = format_quantity) -> list[tuple[str, str]]:
     """Pairs of index and sentence on where each layout outperforms the baseline: crossings, or shares of a map."""
     return crossing_sentences(results, write) if len(swept_places(results)) == 1 else _map_share_sentences(results)
 
@@ -208,7 +209,7 @@ def _map_share_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
     return sentences
 
 
-def crossing_sentences(results: xr.Dataset, write: Writer = with_unit) -> list[tuple[str, str]]:
+def crossing_sentences(results: xr.Dataset, write: Writer = format_quantity) -> list[tuple[str, str]]:
     """Pairs of index and sentence on where each layout crosses the baseline, for a study with one sweep."""
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     words = results[element].attrs["long_name"]
@@ -269,7 +270,8 @@ def _best_layouts_clause(results: xr.Dataset, index: str, wording: Wording) -> s
     if not names:
         return _no_best_clause(results, index)
     design = results.sel(layout=names[0], index=index)
-    value = wording.write(float(design["value"]), index_unit(results, index), error_of(design), bound_of(design))
+    unit = index_unit(results, index)
+    value = wording.write(float(design["value"]), unit, error=error_of(design), bound=bound_of(design))
     limit = f", {_STATIC}" if (index, names[0]) in wording.static else ""
     answer = f"{_format_equal_layouts(names)}, {value}{limit}"
     if names[0] == baseline:
@@ -308,7 +310,7 @@ def _sweep_headline(every: xr.Dataset, index: str, wording: Wording) -> str:
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
-        text = write(value, index_unit(results, index), np.nan)
+        text = write(value, index_unit(results, index))
         where = place_text(results, at, write, named=True)
         return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
@@ -337,4 +339,4 @@ def _no_best_clause(results: xr.Dataset, index: str) -> str:
 
 
 def _format_range(least: float, largest: float) -> str:
-    return "between " + " and ".join(percent(value).removeprefix("+") for value in (least, largest))
+    return "between " + " and ".join(format_percent(value).removeprefix("+") for value in (least, largest))

@@ -21,10 +21,8 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
     title_with_name,
-    typeset,
-    typeset_quantity,
-    with_unit,
 )
+from inerter.formatting import format_quantity, typeset, typeset_quantity
 from inerter.report.problem_statement import of_each
 from inerter.table import Cell, Row, Table, Writer
 
@@ -83,14 +81,14 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
     return one_method(results).sel(where)
 
 
-def _describe_limit(entry: xr.Dataset, index: str, write: Writer = with_unit) -> tuple[str, str]:
+def _describe_limit(entry: xr.Dataset, index: str, write: Writer = format_quantity) -> tuple[str, str]:
     """Value of a limited quantity, and a text on an active limit and its sensitivity; over a sweep, where active."""
     if swept_places(entry):
         where, which = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry), write)
         return (f"at its limit {where}", which) if where else ("nowhere at its limit", "")
     value, cost = float(entry["limit_value"]), float(entry["limit_cost"])
     part = str(entry["limit.part"].item())
-    text = with_unit(value, str(entry["limit_unit"].item())).strip() + (f" ({part})" if part else "")
+    text = format_quantity(value, str(entry["limit_unit"].item())).strip() + (f" ({part})" if part else "")
     if bool(infeasible(entry)):
         return text, "the nearest design"
     if not bool(entry["limit_active"]):
@@ -102,7 +100,7 @@ def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(infeasible(entry).values)
 
 
-def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = with_unit) -> tuple[str, str]:
+def _where(entry: xr.Dataset, wanted: NDArray[np.bool_], write: Writer = format_quantity) -> tuple[str, str]:
     """Number of swept values, or points of a map, and the ranges of those values, as text; empty if none."""
     if not wanted.any():
         return "", ""

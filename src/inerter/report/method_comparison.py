@@ -11,27 +11,29 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
-    Scale,
     bound_of,
     by_method,
     capital,
     compared_layouts,
-    digits_of,
     error_of,
-    format_uncertain,
     improvement_text,
     index_title,
     index_unit,
     indices,
     layouts,
     methods,
-    scale,
-    shows_error,
     swept_places,
     title_with_name,
-    typeset,
     way,
-    with_unit,
+)
+from inerter.formatting import (
+    Scale,
+    choose_scale,
+    format_quantity,
+    format_uncertain,
+    shows_error,
+    significant_digits,
+    typeset,
 )
 from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table
@@ -99,7 +101,7 @@ def _row_layouts(results: xr.Dataset) -> list[str]:
 
 
 def _common_scale(results: xr.Dataset, index: str) -> Scale:
-    return scale(results["value"].sel(index=index).values, index_unit(results, index))
+    return choose_scale(results["value"].sel(index=index).values.ravel(), index_unit(results, index))
 
 
 def _table_entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _Entry:
@@ -120,12 +122,12 @@ def _table_entry(results: xr.Dataset, index: str, layout: str, unit: Scale) -> _
     if compared_layouts(results):
         text = improvement_text(here)
     else:
-        text = with_unit(place[0], index_unit(results, index), error_of(here), bound_of(here))
+        text = format_quantity(place[0], index_unit(results, index), error=error_of(here), bound=bound_of(here))
     return _Entry(text, f"at {place_text(results, place[1])}")
 
 
 def _format_value(value: float, bound: float) -> str:
-    return f"{value:.{digits_of(value, bound)}g}" if np.isfinite(value) else with_unit(value, "")
+    return f"{value:.{significant_digits(value, bound)}g}" if np.isfinite(value) else format_quantity(value, "")
 
 
 def _typeset_unbroken(text: str) -> str:

@@ -13,7 +13,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.atomic_io import write_text
-from inerter.figures.labels import capital, swept_places, together, typeset, typeset_quantity
+from inerter.figures.labels import capital, swept_places
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
@@ -22,6 +22,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
+from inerter.formatting import join_units, typeset, typeset_quantity
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.index_summary import over_the_sweep
 from inerter.report.limits import limit_tables
@@ -154,7 +155,7 @@ def environment(*packages: str) -> Environment:
     templates.filters |= {
         "typeset": typeset,
         "breakable": breakable,
-        "together": together,
+        "together": join_units,
         "capital": capital,
         "sentence": lambda text: typeset(printed_sentence(text)).replace(" × 10", f"{_SPACE}×{_SPACE}10"),
     }

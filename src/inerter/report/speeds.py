@@ -9,16 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import (
-    NOTICEABLE,
-    index_title,
-    index_unit,
-    indices,
-    one_method,
-    percent,
-    swept_places,
-    with_unit,
-)
+from inerter.figures.labels import NOTICEABLE, index_title, index_unit, indices, one_method, swept_places
+from inerter.formatting import format_percent, format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layouts, extremes, place_text
 from inerter.report.json_data import json_data
@@ -55,7 +47,7 @@ def at_speeds(results: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, f
     ]
 
 
-def speed_sentences(results: xr.Dataset, write: Writer = with_unit) -> SpeedSentences:
+def speed_sentences(results: xr.Dataset, write: Writer = format_quantity) -> SpeedSentences:
     """Sentences on the best design of each index at other speeds, separated by whether they are doubts."""
     found = SpeedSentences([], [])
     for index in indices(results) if "at_speeds.value" in results else ():
@@ -91,10 +83,10 @@ def _speed_sentence(results: xr.Dataset, where: Mapping[str, Any], write: Writer
     of = _of(results, where, write)
     by = f" by {' and '.join(brief_words_of(one) for one in method.split())}"
     ends = [
-        f"{write(float(values[i]), unit, np.nan)} at {_at(results, i, write)}{_versus(better[i], baseline, layout)}"
+        f"{write(float(values[i]), unit)} at {_at(results, i, write)}{_versus(better[i], baseline, layout)}"
         for i in (0, 2)
     ]
-    here = f"{write(float(values[1]), unit, np.nan)} at {_at(results, 1, write)}{_versus(better[1], baseline, layout)}"
+    here = f"{write(float(values[1]), unit)} at {_at(results, 1, write)}{_versus(better[1], baseline, layout)}"
     tuned = bool(max(beyond[0], beyond[2]) > 1.0 + _TUNED)
     lost = np.isfinite(better[1]) and better[1] >= NOTICEABLE and min(better[0], better[2]) < _LOST * better[1]
     doubt = bool(lost or tuned)
@@ -127,7 +119,7 @@ def _messages(results: xr.Dataset, where: Mapping[str, Any]) -> list[str]:
 def _alone(results: xr.Dataset, where: Mapping[str, Any], write: Writer) -> str:
     value, unit = float(results["at_speeds.value"].sel(where)[1]), index_unit(results, where["index"])
     speeds = results["at_speeds.speed"].values
-    return " and ".join(write(value * float(np.sqrt(speeds[i] / speeds[1])), unit, np.nan) for i in (0, 2))
+    return " and ".join(write(value * float(np.sqrt(speeds[i] / speeds[1])), unit) for i in (0, 2))
 
 
 def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -142,12 +134,12 @@ def _versus(better: float, baseline: str, layout: str) -> str:
         return ""
     if abs(better) < NOTICEABLE:
         return f" (as good as {baseline})"
-    return f" ({percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
+    return f" ({format_percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
 
 
 def _at(results: xr.Dataset, place: int, write: Writer) -> str:
     speed = 3.6 * float(results["at_speeds.speed"].values[place])
-    return write(speed, "km/h", np.nan)
+    return write(speed, "km/h")
 
 
 def _improvements(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[Any, np.dtype[np.float64]]:

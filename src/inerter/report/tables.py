@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import (
-    Scale,
     bound_of,
     by_method,
     by_which,
@@ -14,7 +13,6 @@ from inerter.figures.labels import (
     compared_layouts,
     error_of,
     flat_range,
-    format_uncertain,
     improvement_text,
     index_title,
     index_unit,
@@ -23,20 +21,24 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    plain_number,
-    scale,
-    shows_error,
     swept_element,
     swept_places,
     swept_scale,
     swept_words,
     title_with_name,
-    typeset,
-    typeset_quantity,
     way,
-    with_unit,
 )
 from inerter.files.study.running import DATASET, SUMMARY
+from inerter.formatting import (
+    Scale,
+    choose_scale,
+    format_entry,
+    format_quantity,
+    format_uncertain,
+    shows_error,
+    typeset,
+    typeset_quantity,
+)
 from inerter.report.index_summary import best_layout, place_text
 from inerter.table import Cell, Row, Table
 
@@ -103,7 +105,7 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
     for name in layouts(results):
         design = at_index.sel(layout=name)
         unit = index_unit(results, index)
-        cells = [Cell(typeset_quantity(float(design["value"]), unit, error_of(design), bound_of(design)))]
+        cells = [Cell(typeset_quantity(float(design["value"]), unit, error=error_of(design), bound=bound_of(design)))]
         cells += [Cell(_improvement(design, baseline))] if compared_layouts(results) else []
         cells += [_parameter(design.sel(parameter=parameter)) for parameter in parameters]
         cells += [Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []
@@ -148,7 +150,7 @@ def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> str:
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element, (words,) = str(swept_element(results)), swept_words(results)
     data = results.sel(index=index).sortby(element)
-    swept, values = swept_scale(data, element), scale(data["value"].values, index_unit(results, index))
+    swept, values = swept_scale(data, element), choose_scale(data["value"].values.ravel(), index_unit(results, index))
     points = _some(data, element)
     rows = []
     for point in points:
@@ -174,7 +176,7 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
     first, second = swept_places(results)
     data = results.sel(index=index, layout=layout).sortby([first, second])
     down, across = (swept_scale(data, place) for place in (first, second))
-    values = scale(data["value"].values, index_unit(results, index))
+    values = choose_scale(data["value"].values.ravel(), index_unit(results, index))
     rows = []
     for i in _spread(data.sizes[first], _MOST_SWEPT):
         cells = []
@@ -237,7 +239,7 @@ def _number(design: xr.Dataset, unit: Scale) -> str:
     value, error, bound = float(design["value"]) * unit.factor, error_of(design) * unit.factor, bound_of(design)
     if shows_error(value, error, bound):
         return typeset(format_uncertain(value, error, bound))
-    return typeset(plain_number(value, bound)) if np.isfinite(value) else with_unit(value, "").strip()
+    return typeset(format_entry(value, bound)) if np.isfinite(value) else format_quantity(value, "").strip()
 
 
 def _failures(data: xr.Dataset) -> list[str]:

@@ -23,11 +23,10 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    percent,
     swept_places,
     swept_words,
-    with_unit,
 )
+from inerter.formatting import format_percent, format_quantity
 from inerter.report.index_summary import extremes, over_the_sweep, place_text
 from inerter.report.limits import limit_lines
 from inerter.report.method_comparison import method_lines
@@ -84,7 +83,7 @@ def _designs(results: xr.Dataset, index: str) -> Iterator[str]:
     for name in layouts(results):
         design = results.sel(layout=name, index=index)
         cells = [
-            with_unit(float(design["value"]), unit, error_of(design), bound_of(design)),
+            format_quantity(float(design["value"]), unit, error=error_of(design), bound=bound_of(design)),
             *([_improvement(design)] if versus else []),
         ]
         table.append(_TextRow(name, cells, _parameters(design), str(design["status"].item())))
@@ -98,7 +97,7 @@ def _improvement(design: xr.Dataset) -> str:
 
 
 def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
-    versus = bool(compared_layouts(results))
+    versus, unit = bool(compared_layouts(results)), index_unit(results, index)
     rows = results["improvement" if versus else "value"].sel(index=index)
     heading = f"{_heading(results, index)}, over {' and '.join(swept_words(results))}"
     yield from wrap(heading, WIDTH, subsequent_indent="    ")
@@ -106,7 +105,7 @@ def _extremes(results: xr.Dataset, index: str) -> Iterator[str]:
     for name in compared_layouts(results) or layouts(results):
         ends = extremes(rows.sel(layout=name)) or ((np.nan, {}),) * 2
         texts = [
-            f"{percent(value) if versus else with_unit(value, index_unit(results, index))} at {place_text(results, at)}"
+            f"{format_percent(value) if versus else format_quantity(value, unit)} at {place_text(results, at)}"
             for value, at in ends
         ]
         texts = texts[::-1] if versus else texts
@@ -133,7 +132,7 @@ def _parameters(design: xr.Dataset) -> list[str]:
         entry = design.sel(parameter=parameter)
         value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
         if np.isfinite(value):
-            text = f"{parameter} = {with_unit(value, str(entry['parameter_unit'].item()))}"
+            text = f"{parameter} = {format_quantity(value, str(entry['parameter_unit'].item()))}"
             flat = flat_range(entry)
             remarks = [*([f"{bound} bound"] if bound else []), *([f"{flat} are as good"] if flat else [])]
             found.append(f"{text} ({', '.join(remarks)})" if remarks else text)

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import capital, format_list, index_title, typeset_quantity, with_unit
+from inerter.figures.labels import capital, format_list, index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.formatting import format_quantity, typeset_quantity
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import BreakEven, break_even
@@ -169,7 +170,9 @@ class Budgets(Task[BudgetAnswer]):
             longest = max(len(one.layout) for one in found)
             for one in found:
                 begin = f"  {one.index}  {one.layout:<{longest}}  "
-                yield from wrap(begin + _sentence(one, with_unit), width, subsequent_indent=" " * min(len(begin), 20))
+                yield from wrap(
+                    begin + _sentence(one, format_quantity), width, subsequent_indent=" " * min(len(begin), 20)
+                )
 
     def tables(self, results: TaskResults[BudgetAnswer]) -> list[Table]:
         """A table for each element, layouts in rows and indices in columns."""
@@ -241,10 +244,10 @@ def _end_of_range(found: BudgetAnswer, write: Writer) -> str:
     """Break-even value as text, or the range if the design is worse again beyond another crossing; empty if none."""
     if found.value is None:
         return ""
-    end = write(found.value, found.unit, found.standard_error or 0.0)
+    end = write(found.value, found.unit, error=found.standard_error or 0.0)
     beyond = [c for c in found.crossings if (c < found.value if found.at_most else c > found.value)]
     if beyond:
-        other = write(max(beyond) if found.at_most else min(beyond), found.unit, float("nan"))
+        other = write(max(beyond) if found.at_most else min(beyond), found.unit)
         return f"from {other} to {end}" if found.at_most else f"from {end} to {other}"
     return f"up to {end}" if found.at_most else f"from {end} on"
 
@@ -253,7 +256,7 @@ def _remark(found: BudgetAnswer, write: Writer) -> str:
     """Remark on a break-even value: further crossings, doubt, or reason why there is none."""
     remarks = []
     if len(found.crossings) > 1:
-        places = [write(value, found.unit, float("nan")) for value in found.crossings]
+        places = [write(value, found.unit) for value in found.crossings]
         remarks.append(f"equally good at {', '.join(places[:-1])} and {places[-1]}")
     if found.doubt:
         remarks.insert(0, found.doubt)

@@ -10,27 +10,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import (
-    criteria,
-    criterion_unit,
-    format_list,
-    layouts,
-    trade_off_title,
-    typeset_quantity,
-    which_front,
-    with_unit,
-)
+from inerter.figures.labels import criteria, criterion_unit, format_list, layouts, trade_off_title, which_front
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.files.study.ways import ways
+from inerter.formatting import format_quantity, label_with_unit, typeset_quantity
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
 from inerter.report.problem_statement import key_in_words
 from inerter.table import Cell, Row, Table, Writer
-from inerter.units import label_with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -173,7 +164,10 @@ class Fronts(Task[FrontAnswer]):
             status = str(data["front_status"].sel(layout=layout).item())
             yield f"  {layout}" if status == "ok" else f"  {layout}: {status}"
             for what, point in _told_points(data, layout):
-                items = [*_values(data, layout, point, with_unit), *_parameters(data, layout, point, with_unit)]
+                items = [
+                    *_values(data, layout, point, format_quantity),
+                    *_parameters(data, layout, point, format_quantity),
+                ]
                 text = ", ".join(item.replace(" ", _NO_BREAK_SPACE) for item in items)
                 hanging = TextWrapper(width, "    ", "      ", break_on_hyphens=False)
                 lines = hanging.wrap(f"{what}: {text}")
@@ -215,10 +209,7 @@ class Fronts(Task[FrontAnswer]):
                 continue
             values = data["front_value"].sel(layout=layout).values[knee[0]]
             told = format_list(
-                [
-                    write(float(value), criterion_unit(data, name), np.nan)
-                    for name, value in zip(names, values, strict=True)
-                ]
+                [write(float(value), criterion_unit(data, name)) for name, value in zip(names, values, strict=True)]
             )
             better = _dominance_clause(data, layout, baseline) if baseline and layout != baseline else ""
             status = str(data["front_status"].sel(layout=layout).item())
@@ -264,7 +255,7 @@ def _told_points(data: xr.Dataset, layout: str) -> list[tuple[str, int]]:
 
 def _values(data: xr.Dataset, layout: str, point: int, write: Writer, *, bare: bool = False) -> list[str]:
     row = data["front_value"].sel(layout=layout).values[point]
-    texts = [write(float(v), criterion_unit(data, n), np.nan) for n, v in zip(criteria(data), row, strict=True)]
+    texts = [write(float(v), criterion_unit(data, n)) for n, v in zip(criteria(data), row, strict=True)]
     return texts if bare else [f"{name} = {text}" for name, text in zip(criteria(data), texts, strict=True)]
 
 
@@ -278,7 +269,7 @@ def _parameters(data: xr.Dataset, layout: str, point: int, write: Writer, *, bar
     found = []
     for name in _own(data, layout, point):
         entry = row.sel(parameter=name)
-        text = write(float(entry), str(entry["parameter_unit"].item()), np.nan)
+        text = write(float(entry), str(entry["parameter_unit"].item()))
         found.append(text if bare else f"{name} = {text}")
     return found
 

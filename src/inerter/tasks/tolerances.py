@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import index_title, typeset_quantity, with_unit
+from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.formatting import format_quantity, typeset_quantity
 from inerter.methods.registry import decisive_method_clause
 from inerter.table import Cell, Row, Table, Writer
 from inerter.uncertainty.tolerance import tolerance_analysis
@@ -133,7 +134,7 @@ class Tolerances(Task[ToleranceAnswer]):
         """A paragraph for each design."""
         yield from ("", "tolerances:")
         for one in results.answers:
-            mean, deviation, quantile, worst = _texts(one, with_unit)
+            mean, deviation, quantile, worst = _texts(one, format_quantity)
             sentence = (
                 f"mean {mean}, standard deviation {deviation}, {100 * SHARE:g} % of cases below {quantile}, worst "
                 f"{worst}; due to {_due(one)}"
@@ -202,7 +203,7 @@ def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
 
 def _texts(one: ToleranceAnswer, write: Writer) -> list[str]:
     nan = float("nan")
-    return [write(one.numbers.get(name, nan), one.unit, nan) for name in _SCATTERED]
+    return [write(one.numbers.get(name, nan), one.unit) for name in _SCATTERED]
 
 
 def _due(one: ToleranceAnswer) -> str:

@@ -13,7 +13,7 @@ from inerter.atomic_io import open_text
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
-from inerter.units import label_with_unit
+from inerter.formatting import label_with_unit
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from inerter.figures.labels import typeset, typeset_quantity
+from inerter.formatting import typeset, typeset_quantity
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.report.data import reason
 from inerter.papers.wang_su_2008.report.text import budget_value, digits, format_signed, rig_value, share, with_error

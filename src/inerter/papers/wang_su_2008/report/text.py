@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import typeset_quantity
+from inerter.formatting import format_quantity, format_with_interval, typeset_quantity
 from inerter.papers.wang_su_2008.judging import RULE, Claim
 from inerter.papers.wang_su_2008.linear import ComparedRow, FoundDesign
 from inerter.papers.wang_su_2008.paper import PAPER
@@ -15,7 +15,6 @@ from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED, IdentifiedParameter
 from inerter.papers.wang_su_2008.rows import VERDICTS, SimulatedRow
 from inerter.report.text import WIDTH
-from inerter.units import format_handy, format_quantity, format_with_interval
 
 _SIGNS = dict(zip(VERDICTS, "=~<?^!", strict=True))
 
@@ -54,8 +53,8 @@ def rig_value(p: IdentifiedParameter) -> tuple[str, str]:
     low, high = p.interval
     if p.value == p.value:
         return format_with_interval(p.value, low, high, p.unit)
-    ends = f"{format_handy(low, p.unit)} to" if low > 0.0 else "below"
-    return "not identifiable", f"{ends} {format_handy(high, p.unit)}"
+    ends = f"{format_quantity(low, p.unit, 3)} to" if low > 0.0 else "below"
+    return "not identifiable", f"{ends} {format_quantity(high, p.unit, 3)}"
 
 
 def _rig_line(p: IdentifiedParameter) -> str:

@@ -119,6 +119,11 @@ class Table:
         return bool(self.rows) and self.shown[-1].prose
 
 
+def cells(*contents: Content) -> list[Cell]:
+    """Cells without remarks."""
+    return [Cell(content) for content in contents]
+
+
 def columns(*headings: str) -> list[Column]:
     """Columns for people only."""
     return [Column(heading) for heading in headings]

@@ -1,4 +1,4 @@
-"""Quantities as text: "120 kN/m" to a number in SI units and back. Only this module uses pint, loaded on first use."""
+"""Quantities in text: "120 kN/m" to a number in SI units. Only this module uses pint, loaded on first use."""
 
 from __future__ import annotations
 
@@ -33,17 +33,7 @@ _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
 _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
 _LONGEST = 100
-_FAR = 100.0  # ratio of the ends of an interval above which each has its own unit
-_MOST_DIGITS = 6  # of a value with an interval
 _IMPORTS, _PAUSE = 5, 0.2  # of pint: attempts, and seconds between them
-
-_PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size, scale, unit
-    "N/m": ((1e6, 1e6, "MN/m"), (1e3, 1e3, "kN/m"), (0.0, 1.0, "N/m")),
-    "N s/m": ((1e6, 1e6, "MN s/m"), (1e3, 1e3, "kN s/m"), (0.0, 1.0, "N s/m")),
-    "N": ((1e6, 1e6, "MN"), (1e3, 1e3, "kN"), (0.0, 1.0, "N")),
-    "m": ((1.0, 1.0, "m"), (1e-5, 1e-3, "mm"), (0.0, 1e-6, "um")),  # 0.1 mm is a gap, 5 um the clearance of a bearing
-    "m/N": ((1.0, 1.0, "m/N"), (1e-3, 1e-3, "mm/N"), (0.0, 1e-6, "um/N")),
-}
 
 
 def parse_quantity(text: str, unit: str) -> float:
@@ -155,140 +145,6 @@ def combine_units(one: str, sign: str, other: str) -> str:
     parts = [_registry().parse_units("" if unit == PURE else unit) for unit in (one, other)]
     found = parts[0] * parts[1] if sign == "*" else parts[0] / parts[1]
     return f"{found:~D}".replace(" ** ", "^").replace(" * ", " ").replace(" / ", "/") or PURE
-
-
-def format_quantity(value: float, unit: str, digits: int = 4) -> str:
-    """Quantity as text: `value` [`unit`] with `digits` significant digits and a suitable prefix.
-
-    `parse_quantity` reads it back, to that many digits.
-
-    >>> format_quantity(7544.2, "N s/m")
-    '7.544 kN s/m'
-    """
-    rounded = float(f"{value:.{digits}g}")
-    if unit in ("", PURE):
-        return f"{rounded:.12g}"
-    if rounded == 0.0 or not math.isfinite(rounded):
-        return f"{rounded:g} {unit}"
-    choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
-    _, scale, name = next(choice for choice in choices if abs(rounded) >= choice[0])
-    return f"{rounded / scale:.12g} {name}"
-
-
-def is_prefixed(given: str, unit: str) -> bool:
-    """Whether `format_quantity` may write quantities in `unit` in this unit.
-
-    >>> is_prefixed("kN/m", "N/m"), is_prefixed("km/h", "m/s")
-    (True, False)
-    """
-    return given in (unit, *(name for _, _, name in _PREFIXES.get(unit, ())))
-
-
-def label_with_unit(what: str, unit: str) -> str:
-    """Label of a column or axis, with its unit in brackets if it has one.
-
-    >>> label_with_unit("value", "N"), label_with_unit("ratio", "")
-    ('value [N]', 'ratio')
-    """
-    return f"{what} [{unit}]" if unit else what
-
-
-def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:
-    """Texts of `value` and its interval [`unit`]: in one unit, with as many decimals as the interval justifies.
-
-    The ends of an interval over decades have separate units, and three digits.
-
-    >>> format_with_interval(113.0123, 112.9917, 113.0331, "kg")
-    ('113.012 kg', '112.992 to 113.033 kg')
-    >>> format_with_interval(9.9997, 9.9973, 10.002, "N")
-    ('9.9997 N', '9.9973 to 10.0020 N')
-    """
-    if low <= 0.0 or high > _FAR * low:
-        return format_handy(value, unit), f"{format_handy(low, unit)} to {format_handy(high, unit)}"
-    size, name = handy_unit(value or high, unit)
-    low, high = low / size, high / size
-    decimals = _decimals(low, high)
-    return f"{value / size:.{decimals}f} {name}".rstrip(), f"{low:.{decimals}f} to {high:.{decimals}f} {name}".rstrip()
-
-
-def format_handy(value: float, unit: str, digits: int = 3) -> str:
-    """Value as text, in a unit of suitable size.
-
-    >>> format_handy(5000.0, "N"), format_handy(2e-3, "s")
-    ('5 kN', '2 ms')
-    """
-    size, name = handy_unit(value, unit)
-    return f"{format_number(value / size, digits)} {name}".rstrip()
-
-
-def format_number(number: float, digits: int) -> str:
-    """Number as text with so many significant digits, without a power of ten unless far from 1.
-
-    >>> format_number(5000.0, 3), format_number(1.234e-7, 2)
-    ('5000', '1.2e-07')
-    """
-    return f"{float(f'{number:.{digits}g}'):.9g}"
-
-
-def handy_unit(value: float, unit: str) -> tuple[float, str]:
-    """Size and name of the unit in which a value [`unit`] is a number of suitable size; ms included.
-
-    >>> handy_unit(12e3, "N/m"), handy_unit(0.0, "m")
-    ((1000.0, 'kN/m'), (1.0, 'm'))
-    """
-    if unit == "s":
-        return (1e-3, "ms") if abs(value) < 0.1 else (1.0, "s")
-    rounded = abs(float(f"{value:.4g}")) if math.isfinite(value) else 0.0
-    choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
-    _, size, name = next(choice for choice in choices if (rounded or 1.0) >= choice[0])
-    return size, name
-
-
-def _decimals(low: float, high: float) -> int:
-    """Number of decimals for which half of the interval has two digits, within limits."""
-    half, size = 0.5 * (high - low), max(abs(low), abs(high))
-    if not half > 0.0 or not size > 0.0:
-        return 3
-    most = max(_MOST_DIGITS - 1 - math.floor(math.log10(size)), 0)
-    return min(max(1 - math.floor(math.log10(half)), 0), most)
-
-
-def decimal_places(value: float, bound: float = math.nan, error: float = math.nan, digits: int = 4) -> int:
-    """Decimal places that a largest error `bound` and a standard `error` justify, both in the unit of the value.
-
-    As many as two digits of the standard error have, without one as make `digits` significant digits; the last place is
-    no smaller than the bound, but there are two significant digits at least, and one of a standard error. Below zero
-    the number is rounded to tens, hundreds, ...
-
-    >>> decimal_places(2.5094), decimal_places(2.5094, bound=0.002), decimal_places(2.5094, bound=1e-4, error=0.00046)
-    (3, 2, 4)
-    """
-    size = _exponent(value)
-    if math.isfinite(error) and error > 0.0:
-        rounded = float(f"{error:.1e}")
-        fine, least = 1 - _exponent(rounded), -_exponent(rounded)
-    else:
-        fine, least = digits - 1 - size, 1 - size
-    if not bound > 0.0:
-        return fine
-    if math.isinf(bound):
-        return least
-    coarse = -math.ceil(math.log10(bound) - 1e-12)
-    return max(min(fine, coarse), least)
-
-
-def digits_at(value: float, places: int) -> int:
-    """Number of significant digits of a value with so many decimal places.
-
-    >>> digits_at(2.5094, 2), digits_at(7544.2, -1)
-    (3, 3)
-    """
-    return max(places + 1 + _exponent(value), 1)
-
-
-def _exponent(value: float) -> int:
-    """Power of ten of the first digit."""
-    return int(f"{value:.15e}".partition("e")[2]) if math.isfinite(value) else 0
 
 
 def quote_value(value: object) -> str:

@@ -17,11 +17,11 @@ from numpy.testing import assert_allclose
 
 import inerter as it
 from inerter.errors import DesignError
+from inerter.formatting import choose_scale
 from inerter.indices.iso2631 import weighting_filter
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.compare import difference_of
 from inerter.methods.method import Estimate
-from inerter.units import handy_unit
 
 ROAD = it.Road.iso8608("C", speed=20.0)
 STRUT = it.Spring(25e3) | it.Damper(1500.0)
@@ -221,7 +221,8 @@ def test_values_of_designs_are_positive(bad: float) -> None:
 )
 def test_units_of_handy_size(value: float, unit: str, name: str) -> None:
     """A prefix of a thousand wherever the number would have four digits before its point, and that size beside it."""
-    size, found = handy_unit(value, unit)
+    scale = choose_scale([value], unit)
+    size, found = 1.0 / scale.factor, scale.unit
     assert found == name
     powers = {"k": 1e3, "M": 1e6, "u": 1e-6} if found != unit else {}
     milli = found != unit and found.startswith("m")

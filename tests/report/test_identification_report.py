@@ -17,6 +17,7 @@ import pytest
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import IdentificationResult, Reading, Responses, responses
+from inerter.formatting import format_quantity
 from inerter.identification.choice import Candidate
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
@@ -37,7 +38,6 @@ from inerter.report.identification_figures import figures, last_periods
 from inerter.report.identification_text import format_variance_share, identification_text, unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
-from inerter.units import format_handy
 
 VOID = {"meta", "wbr", "br"}
 SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")
@@ -142,7 +142,7 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: IdentificationRes
     parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
     poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
-    assert value_and_interval(poor, "b") == ("withheld", "113 kg to 113 kg if explained so")
+    assert value_and_interval(poor, "b") == ("withheld", "113 to 113 kg if explained so")
     assert "unreliable estimates" in elements_block(poor)
 
 
@@ -199,9 +199,9 @@ def test_digits_are_those_that_the_interval_bears(found: IdentificationResult) -
 
 
 def test_single_values_and_shares() -> None:
-    assert format_handy(9.5e-9, "m") == "0.0095 um"
-    assert format_handy(0.0021, "s") == "2.1 ms"
-    assert format_handy(5000.0, "kg") == "5000 kg"
+    assert format_quantity(9.5e-9, "m") == "0.0095 um"
+    assert format_quantity(0.0021, "s") == "2.1 ms"
+    assert format_quantity(5000.0, "kg") == "5000 kg"
     assert format_variance_share(0.5) == "50.0 %"
     assert format_variance_share(1.0) == "100.0 %"
 

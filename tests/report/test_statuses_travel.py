@@ -15,13 +15,13 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import Status, StatusKind
-from inerter.figures.labels import with_unit
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.loading import load_study
 from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, by_task, parts_of
+from inerter.formatting import format_quantity
 from inerter.methods.compare import compare
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
 from inerter.report.conclusions import conclusion_sentences
@@ -139,7 +139,7 @@ def judged_study(tmp_path, text=TEXT):
     lines = {
         key: " ".join(line.strip() for line in list(t.lines(results, 400))[2:]) for key, (t, results) in told.items()
     }
-    sentences = {key: next(task.sentences(results, with_unit), "") for key, (task, results) in told.items()}
+    sentences = {key: next(task.sentences(results, format_quantity), "") for key, (task, results) in told.items()}
     return {
         "headline": conclusion_sentences(data, study, found)[0],
         "answer box": answer[1].replace("<li>", "").strip(),

@@ -7,7 +7,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from synthetic import LONG, designs, improved, judged, sweep, with_value
 
-from inerter.figures.labels import with_unit
+from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layout, crossings, headlines
 from inerter.report.text import WIDTH, summary_table
@@ -92,7 +92,7 @@ def test_one_method_with_errors_is_the_table_as_it_was_with_errors_in_it():
     ],
 )
 def test_a_value_has_the_decimals_of_its_error(value, error, unit, text):
-    assert with_unit(value, unit, error) == text
+    assert format_quantity(value, unit, error=error) == text
 
 
 def test_a_crossing_of_a_sweep_with_its_error():

@@ -12,7 +12,6 @@ from study_text import study_text
 
 import inerter as it
 from inerter.errors import StudyError
-from inerter.figures.labels import with_unit
 from inerter.figures.study import study_figures
 from inerter.figures.style import style_context
 from inerter.files.study.loading import load_study
@@ -20,6 +19,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
+from inerter.formatting import format_quantity
 from inerter.report.page import report
 from inerter.tasks.fronts import Fronts
 
@@ -75,7 +75,7 @@ def test_the_table_has_a_row_a_point_that_is_its_design(found: StudyResult) -> N
 
 def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     results = TaskResults(found.study, found.data, found.answers)
-    (sentence,) = Fronts().sentences(results, with_unit)
+    (sentence,) = Fronts().sentences(results, format_quantity)
     assert sentence.startswith("Trade-off between ride comfort and dynamic tyre load, at the knee: S1 ")
     assert "designs of S1" in sentence
     lines = list(Fronts().lines(results, 80))

@@ -9,7 +9,7 @@ import pytest
 from campaigns import sampled
 
 from inerter.cli.main import call
-from inerter.figures.labels import percent
+from inerter.formatting import format_percent
 
 QUARTER = (Path(__file__).parents[2] / "examples" / "quarter-car.toml").read_text(encoding="utf-8")
 
@@ -36,10 +36,10 @@ def test_what_nothing_has_is_one_sentence(tmp_path, capsys, old, new, said):
 
 def test_percentages_stay_short():
     for value in (1e7, -3.2e154, 1e300):
-        assert len(percent(value)) < 16
-        assert float(percent(value).rstrip("% ")) == pytest.approx(value, rel=5e-3)
-    assert percent(18.73) == "+18.7 %"
-    assert percent(np.inf) == "+inf %"
+        assert len(format_percent(value)) < 16
+        assert float(format_percent(value).rstrip("% ")) == pytest.approx(value, rel=5e-3)
+    assert format_percent(18.73) == "+18.7 %"
+    assert format_percent(np.inf) == "+inf %"
 
 
 @pytest.mark.parametrize("seed", sampled(range(12), often=[0, 4, 8, 10], kept=0))

@@ -13,15 +13,14 @@ from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
 from inerter.errors import DesignError
-from inerter.figures.labels import decimals_of
 from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.place import element_at, place_of
 from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
+from inerter.formatting import format_quantity, shown_decimals
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.method import Estimate
-from inerter.units import format_quantity
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
@@ -190,7 +189,7 @@ def _describe_result(one: _IndexResult, baseline: _IndexResult | None) -> Answer
         "value": estimate.value,
         "standard_error": estimate.standard_error,
         "error_bound": estimate.error_bound,
-        "decimals": decimals_of(estimate.value, estimate.standard_error or np.nan, estimate.error_bound, _DIGITS),
+        "decimals": shown_decimals(estimate.value, estimate.standard_error or np.nan, estimate.error_bound, _DIGITS),
         "status": estimate.status.kind.value,
         "message": estimate.status.message,
         "notes": list(estimate.notes),

@@ -12,12 +12,12 @@ from inerter.errors import Status, StatusKind
 from inerter.files.study.limits import StudyLimit, limits_in, part_words
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
+from inerter.formatting import format_quantity
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.constrained_search import KEPT_COSTLY
 from inerter.optimisation.limits import Limit, for_each, output_of
-from inerter.units import format_quantity
 from inerter.vehicle.vehicle import Vehicle
 
 _REMEMBERED = 2000  # values of designs

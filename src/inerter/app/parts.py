@@ -8,9 +8,10 @@ from typing import Any
 from inerter.errors import InerterError, UnitError
 from inerter.files.common.entries import expression
 from inerter.files.common.problem import EntryError
+from inerter.formatting import format_quantity
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import ExpressionError, ExpressionPart, parse_expression
-from inerter.units import format_quantity, is_unit, parse_quantity, quote_value
+from inerter.units import is_unit, parse_quantity, quote_value
 
 _JOINED = {"|": "parallel", "-": "series"}
 

@@ -12,7 +12,7 @@ from inerter.files.study.place import place_of
 from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import number_of
-from inerter.units import format_quantity
+from inerter.formatting import format_quantity
 
 
 def check_document(document: object) -> dict[str, Any]:

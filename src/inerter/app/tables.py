@@ -8,8 +8,8 @@ from typing import Any
 
 from inerter.app.answers import answer_panel
 from inerter.errors import StudyError
+from inerter.formatting import label_with_unit
 from inerter.table import csv_text
-from inerter.units import label_with_unit
 
 Rows = Iterable[list[Any]]
 

@@ -25,13 +25,13 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import TaskResults, by_task, tasks
+from inerter.files.study.tasks import tasks
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import write_report
-from inerter.report.study_data import as_text
 from inerter.report.sections import design_sections, task_sections
+from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text, wrap_text
 
 _MOST = 20  # designs that are told one by one

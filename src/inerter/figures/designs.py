@@ -22,13 +22,11 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    percent,
-    scale,
     title_with_name,
-    typeset,
     way,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
+from inerter.formatting import choose_scale, format_percent, typeset
 
 Array = NDArray[np.float64]
 
@@ -97,7 +95,7 @@ def frequency_responses(results: xr.Dataset, index: str, axes: Sequence[Axes]) -
     dimension, styles = f"output_{index}", layout_styles(layouts(results), results.attrs["baseline"])
     gain = results[f"gain_{index}"].transpose(dimension, "layout", "omega").sel(layout=layouts(results))
     frequency = gain["omega"].values / (2.0 * np.pi)
-    unit = scale(gain.max("omega").values, gain.attrs["units"])
+    unit = choose_scale(gain.max("omega").values.ravel(), gain.attrs["units"])
     for ax, panel in zip(axes, gain, strict=True):
         curves = np.where(np.isfinite(panel.values) & (panel.values > 0.0), panel.values * unit.factor, np.nan)
         for name, curve in zip(layouts(results), curves, strict=True):
@@ -157,7 +155,7 @@ def _numbers(improvements: Array, values: Array) -> Iterator[str]:
         elif not np.isfinite(improvement):
             yield "n/a"
         else:
-            yield typeset(percent(improvement).removesuffix(" %").removeprefix("+"))
+            yield typeset(format_percent(improvement).removesuffix(" %").removeprefix("+"))
 
 
 def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:

@@ -17,10 +17,10 @@ from inerter.figures.labels import (
     criterion_title,
     criterion_unit,
     layouts,
-    scale,
     title_with_name,
 )
 from inerter.figures.style import LayoutStyle, layout_styles
+from inerter.formatting import choose_scale
 
 
 def pairs(results: xr.Dataset) -> list[tuple[str, str]]:
@@ -38,7 +38,8 @@ def front_curves(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence[Axes]:
     joined = len(criteria(results)) == 2
     for ax, pair in zip(axes, pairs(results), strict=True):
         units = [
-            scale(results["front_value"].sel(criterion=name).values, criterion_unit(results, name)) for name in pair
+            choose_scale(results["front_value"].sel(criterion=name).values.ravel(), criterion_unit(results, name))
+            for name in pair
         ]
         for name in layouts(results):
             row = results.sel(layout=name)

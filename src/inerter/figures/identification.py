@@ -14,8 +14,9 @@ from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from inerter.figures.curves import thin_curve
-from inerter.figures.labels import Scale, axis_label, scale
+from inerter.figures.labels import axis_label
 from inerter.figures.style import add_legend, colour, log_axis, new_figure, save, style_context
+from inerter.formatting import Scale, choose_scale
 from inerter.records.record import Record
 from inerter.records.result import Response
 
@@ -79,7 +80,7 @@ def response_figure(
         first.remove()
         grid = figure.add_gridspec(3, 1, height_ratios=(2.3, 1.7, 0.95))
         axes = [figure.add_subplot(grid[i]) for i in range(3)]
-        own = scale([np.exp(np.mean(np.log(measured.gain)))], "N/m")
+        own = choose_scale([np.exp(np.mean(np.log(measured.gain)))], "N/m")
         curves = [(measured, "measured, with 95 % band", _MEASURED)]
         curves += [] if model is None else [(model, "model at the same amplitude", _MODEL)]
         for response, label, style in curves:
@@ -155,7 +156,7 @@ def record_figure(received: Record, used: Record) -> Figure:
             ]
             ax.set_ylabel(axis_label(name.capitalize(), _over_time(ax, curves, unit).unit))
         if received.force_range is not None:
-            _range_lines(axes[1], received, scale([np.abs(received.force).max()], "N"))
+            _range_lines(axes[1], received, choose_scale([np.abs(received.force).max()], "N"))
         _share_time(axes, received.time, None)
         add_legend(figure, axes)
         figure.align_ylabels(axes)
@@ -176,7 +177,7 @@ def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: M
         left.set_ylabel(axis_label("Residual force", own.unit))
         left.set_xlabel(axis_label("Time", "s"))
         left.set_xlim(float(time[0]), float(time[-1]))
-        spread = scale([np.abs(lags).max()], "s")
+        spread = choose_scale([np.abs(lags).max()], "s")
         right.axhspan(-bound, bound, color="#BBBBBB", linewidth=0.0, label="95 % of white noise")
         right.axhline(0.0, color="black", linewidth=0.6)
         right.plot(lags * spread.factor, correlation, **{**_MEASURED, "linewidth": 0.9})
@@ -191,11 +192,11 @@ def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: M
     """Force [N] over displacement [m] and over velocity [m/s], measured and, where it is given, of a model."""
     with style_context():
         figure, axes = new_figure(2, 2, height=2.6)
-        up = scale([np.abs(force).max()], "N")
+        up = choose_scale([np.abs(force).max()], "N")
         for ax, along, name, unit in zip(
             axes, (displacement, velocity), ("Displacement", "Velocity"), ("m", "m/s"), strict=True
         ):
-            own = scale([np.abs(along).max()], unit)
+            own = choose_scale([np.abs(along).max()], unit)
             style = {**_MEASURED, "linewidth": 0.7} if model is None else {**_BELOW, "linewidth": 1.9}
             ax.plot(along * own.factor, force * up.factor, **style, label="measured")
             if model is not None:
@@ -301,7 +302,7 @@ def _with_gaps(response: Response, values: Matrix) -> tuple[Matrix, Matrix]:
 
 def _over_time(ax: Axes, curves: Sequence[tuple[Matrix, Matrix, str, dict[str, Any]]], unit: str) -> Scale:
     """Draw curves over time in the unit that suits the largest value of the first; returns that unit."""
-    own = scale([np.nanmax(np.abs(curves[0][1]))], unit)
+    own = choose_scale([np.nanmax(np.abs(curves[0][1]))], unit)
     for time, values, label, style in curves:
         named: dict[str, Any] = {"label": label} if label else {}
         ax.plot(*thin_curve(time, values * own.factor), **style, **named)

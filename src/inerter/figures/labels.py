@@ -1,52 +1,33 @@
-"""Labels, names and number formats for the results dataset."""
+"""Labels and names for the results dataset."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from inerter.errors import Status, StatusKind
-from inerter.units import (
-    decimal_places,
-    digits_at,
-    format_number,
+from inerter.formatting import (
+    Scale,
+    choose_scale,
+    format_percent,
     format_quantity,
     is_prefixed,
     label_with_unit,
-    parse_quantity,
+    typeset,
 )
+from inerter.table import Quantity
+from inerter.units import parse_quantity
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_POWER = re.compile(r"\^(-?\d)")
-_EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
 _LONGEST_LABEL = 32
-_LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
-_LEAST_PERCENT = 1e-4
-_TENTH = 0.1 * (1.0 + 1e-9)
-_DIGITS = 4  # of a number for people, at most
 WIDE_RANGE = 1.01  # of equally good values, the highest over the lowest, from which on it is told
 NOTICEABLE = 0.05  # per cent; what rounds to 0.0 % is no improvement
-_SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
-_UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
-_QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-@dataclass(frozen=True)
-class Scale:
-    """A unit that suits the size of some values; a value in SI units times `factor` is in it."""
-
-    factor: float
-    unit: str
 
 
 def one_method(results: xr.Dataset) -> xr.Dataset:
@@ -90,9 +71,16 @@ def bound_of(design: xr.Dataset, of: str = "value") -> float:
     return float(design[name]) if name in design else np.nan
 
 
+def design_quantity(design: xr.Dataset, unit: str, scale: Scale | None = None) -> Quantity:
+    """Value of one design [`unit`] with its uncertainties."""
+    return Quantity(float(design["value"]), unit, error_of(design), bound_of(design), scale)
+
+
 def improvement_text(design: xr.Dataset) -> str:
     """The improvement of one design with its sign."""
-    return percent(float(design["improvement"]), error_of(design, "improvement"), bound_of(design, "improvement"))
+    return format_percent(
+        float(design["improvement"]), error_of(design, "improvement"), bound_of(design, "improvement")
+    )
 
 
 def swept_places(results: xr.Dataset) -> list[str]:
@@ -114,17 +102,17 @@ def swept_scale(results: xr.Dataset, place: str) -> Scale:
     """The unit of swept values for people: that in which the file gives them, or a prefix of the SI unit that suits."""
     unit, written = results[place].attrs["units"], results[place].attrs.get("written", "")
     if not written or is_prefixed(written, unit):
-        return scale(results[place].values, unit)
+        return choose_scale(results[place].values, unit)
     return Scale(1.0 / parse_quantity(f"1 {written}", unit), written)
 
 
-def swept_text(results: xr.Dataset, place: str, value: float, write: Callable[..., str], error: float = np.nan) -> str:
-    """A swept value [SI] with its unit, as `write` has it."""
+def swept_text(results: xr.Dataset, place: str, value: float, error: float = np.nan) -> str:
+    """A swept value [SI] with its unit: that in which the file gives it, or one with a suitable prefix."""
     unit, written = results[place].attrs["units"], results[place].attrs.get("written", "")
     if not written or is_prefixed(written, unit):
-        return write(value, unit, error)
+        return format_quantity(value, unit, error=error)
     factor = swept_scale(results, place).factor
-    return write(value * factor, written, error * factor)
+    return format_quantity(value * factor, written, error=error * factor)
 
 
 def swept_label(results: xr.Dataset, place: str, unit: str) -> str:
@@ -214,7 +202,7 @@ def flat_range(entry: xr.Dataset) -> str:
     """Range of a parameter over equally good optima as text; empty if less than 1 % wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
-    return f"{with_unit(low, unit)} to {with_unit(high, unit)}" if high > WIDE_RANGE * low else ""
+    return f"{format_quantity(low, unit)} to {format_quantity(high, unit)}" if high > WIDE_RANGE * low else ""
 
 
 def format_list(words: Sequence[str]) -> str:
@@ -225,115 +213,6 @@ def format_list(words: Sequence[str]) -> str:
 def capital(text: str) -> str:
     """The text as the beginning of a sentence."""
     return text[:1].upper() + text[1:]
-
-
-def with_unit(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
-    """Value with its unit as text: four digits and a prefix, "inf", or "n/a" for nan.
-
-    With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
-    error, the relative `bound`, allows no more.
-
-    >>> with_unit(7544.2, "N s/m"), with_unit(7544.2, "N s/m", 23.0), with_unit(7544.2, "N s/m", bound=1e-3)
-    ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '7.54 kN s/m')
-    """
-    if np.isnan(value):
-        return "n/a"
-    if np.isinf(value):
-        return "inf"
-    if not shows_error(value, error, bound):
-        return format_quantity(value, unit, digits_of(value, bound))
-    own = scale([value], unit)
-    return f"{format_uncertain(value * own.factor, error * own.factor, bound)} {own.unit}".rstrip()
-
-
-def digits_of(value: float, bound: float = np.nan) -> int:
-    """Significant digits, four at most, of a value with a relative error `bound`."""
-    return digits_at(value, decimal_places(value, bound * abs(value), digits=_DIGITS))
-
-
-def decimals_of(value: float, error: float, bound: float, digits: int) -> int | None:
-    """Decimal places that the uncertainty of a value justifies; at most `digits` significant ones if none is shown."""
-    if not np.isfinite(value):
-        return None
-    shown = error if shows_error(value, error, bound) else np.nan
-    return decimal_places(value, bound * abs(value), shown, digits)
-
-
-def plain_number(value: float, bound: float = np.nan) -> str:
-    """A number of a table without its unit, with as many digits as its relative error `bound` allows."""
-    digits = digits_of(value, bound)
-    text = f"{value:#.{digits}g}"
-    return re.sub(r"\.(?=e|$)", "", text if digits == _DIGITS or "e" not in text else format_number(value, digits))
-
-
-def shows_error(value: float, error: float, bound: float = np.nan) -> bool:
-    """Whether a standard error exists and is large enough to be shown next to a relative error `bound`."""
-    return bool(np.isfinite(value) and np.isfinite(error) and error > np.fmax(_LEAST_ERROR, bound) * abs(value))
-
-
-def format_uncertain(value: float, error: float, bound: float = np.nan, sign: str = "") -> str:
-    """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always."""
-    if not _SMALLEST < error < _LARGEST:
-        return f"{value:{sign}.4g} +- {error:.2g}"
-    decimals = decimal_places(value, bound * abs(value), error)
-    shown = max(decimals, 0)
-    return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
-
-
-def typeset_quantity(value: float, unit: str, error: float = np.nan, bound: float = np.nan) -> str:
-    """Value with its unit in printed form, without line breaks."""
-    return typeset(with_unit(value, unit, error, bound)).replace(" ", _NO_BREAK_SPACE)
-
-
-def together(text: str) -> str:
-    r"""Text with no-break spaces between numbers and their units.
-
-    >>> together("at most 400 N of 1 of 2").split(" ")
-    ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
-    """
-    return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
-
-
-def percent(value: float, error: float = np.nan, bound: float = np.nan) -> str:
-    """Improvement [%] with its sign and, if known, its standard error, as text; "-inf %", or "n/a" for nan.
-
-    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths.
-    """
-    if np.isnan(value):
-        return "n/a"
-    if error >= _LEAST_PERCENT and np.isfinite(error) and abs(value) < _LARGEST and not error <= bound:
-        return f"{format_uncertain(value, error, bound / max(abs(value), 1e-300), '+')} %"
-    if abs(value) >= _LARGEST:
-        return f"{value:+.3g} %"
-    text = f"{value:+.{0 if bound > _TENTH else 1}f} %"
-    return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
-
-
-def typeset(text: str) -> str:
-    """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs.
-
-    >>> typeset("5e-07 m^3/cycle")
-    '5 × 10⁻⁷ m³/cycle'
-    """
-    text = text.replace(" +- ", " ± ")
-    text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
-    text = _EXPONENT.sub(
-        lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
-    )
-    text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
-    return re.sub(r"\bum\b", "µm", re.sub(r"^-(?=[\d.i])", "−", text))
-
-
-def scale(values: ArrayLike, unit: str) -> Scale:
-    """The unit in which the middle one of `values` [SI] is a number of handy size.
-
-    >>> scale([10e3, 300e3], "N/m")
-    Scale(factor=0.001, unit='kN/m')
-    """
-    sizes = np.abs(np.asarray(values, dtype=float))
-    sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
-    _, _, prefixed = format_quantity(float(np.median(sizes)) if sizes.size else 1.0, unit).partition(" ")
-    return Scale(1.0, unit) if prefixed in ("", unit) else Scale(1.0 / parse_quantity(f"1 {prefixed}", unit), prefixed)
 
 
 def axis_label(what: str, unit: str) -> str:

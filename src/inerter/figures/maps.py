@@ -22,14 +22,13 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     layouts,
-    scale,
     swept_label,
     swept_places,
     swept_scale,
     title_with_name,
-    typeset,
 )
 from inerter.figures.style import log_axis, suits_log_axis
+from inerter.formatting import choose_scale, typeset
 
 Array = NDArray[np.float64]
 
@@ -53,7 +52,7 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
     data = _sort_by_sweep(results.sel(index=index))
     others = compared_layouts(results)
     valued = [name for name in layouts(results) if name not in others]
-    unit = scale(data["value"].sel(layout=valued).values, index_unit(results, index))
+    unit = choose_scale(data["value"].sel(layout=valued).values.ravel(), index_unit(results, index))
     values = data["value"].sel(layout=valued) * unit.factor
     label = axis_label(capital(title_with_name(index_title(results, index), index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
@@ -78,7 +77,7 @@ def parameter_panels(results: xr.Dataset, index: str, parameter: str) -> list[st
 def parameter_maps(results: xr.Dataset, index: str, parameter: str, axes: Sequence[Axes]) -> Sequence[Axes]:
     """The value of a parameter that is best for `index`, a layout on one of `axes` each; circles: at a bound."""
     data = _sort_by_sweep(results.sel(index=index, parameter=parameter))
-    unit = scale(data["parameter_value"].values, str(data["parameter_unit"].item()))
+    unit = choose_scale(data["parameter_value"].values.ravel(), str(data["parameter_unit"].item()))
     label = axis_label(f"Best {parameter}", unit.unit)
     for ax, name in zip(axes, parameter_panels(results, index, parameter), strict=True):
         row = data.sel(layout=name)

@@ -12,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from inerter.figures.labels import axis_label, scale
+from inerter.figures.labels import axis_label
 from inerter.figures.style import add_legend, colour, log_axis, new_figure, style_context
+from inerter.formatting import choose_scale
 
 Matrix = NDArray[np.float64]
 _BINS, _CELLS = 24, 18  # of a curve, and of the map to either side
@@ -70,7 +71,7 @@ def _limits(s: ResidualSamples) -> tuple[float, float]:
 
 
 def _over_time(ax: Axes, s: ResidualSamples) -> None:
-    own = scale([np.abs(s.residual).max()], "N")
+    own = choose_scale([np.abs(s.residual).max()], "N")
     ax.plot(s.time, s.residual * own.factor, color=colour(0), linewidth=0.6)
     level = 2.0 * _sound(s) * own.factor
     ax.axhspan(-level, level, color="#BBBBBB", linewidth=0.0, zorder=2.5, alpha=0.6, label="95 % of sensor noise")
@@ -104,7 +105,7 @@ def _spectrum(ax: Axes, s: ResidualSamples) -> None:
     ours = size * np.abs(np.fft.rfft(window * (s.residual - s.residual.mean())))
     sound = size * np.sqrt(np.mean(np.abs(np.fft.rfft(window * s.draws)) ** 2, axis=0))
     force = size * np.abs(np.fft.rfft(window * (s.force - s.force.mean())))
-    own = scale([ours.max()], "N")
+    own = choose_scale([ours.max()], "N")
     first = 2
     curves: tuple[tuple[Matrix, dict[str, Any], str], ...] = (
         (force, {"color": "#BBBBBB", "linewidth": 0.7}, "model force"),
@@ -130,7 +131,7 @@ def _smooth(values: Matrix) -> Matrix:
 
 def _over(ax: Axes, s: ResidualSamples, along: Matrix, name: str, unit: str) -> None:
     """Samples, and the mean of each bin for either direction of the motion."""
-    own, up = scale([np.abs(along).max()], unit), scale([np.abs(s.residual).max()], "N")
+    own, up = choose_scale([np.abs(along).max()], unit), choose_scale([np.abs(s.residual).max()], "N")
     every = max(s.residual.size // _MOST_POINTS, 1)
     ax.plot(along[::every] * own.factor, s.residual[::every] * up.factor, **_POINTS)
     edges = _edges(along, _BINS)
@@ -161,7 +162,7 @@ def _bin_means(along: Matrix, values: Matrix, edges: Matrix) -> tuple[Matrix, Ma
 
 def _surface(figure: Figure, ax: Axes, s: ResidualSamples) -> None:
     """The mean residual over position and speed: what the restoring force lacks."""
-    x, v = scale([np.abs(s.displacement).max()], "m"), scale([np.abs(s.velocity).max()], "m/s")
+    x, v = choose_scale([np.abs(s.displacement).max()], "m"), choose_scale([np.abs(s.velocity).max()], "m/s")
     edges = [_edges(q, _CELLS) for q in (s.displacement, s.velocity)]
     count, *_ = np.histogram2d(s.displacement, s.velocity, edges)
     total, *_ = np.histogram2d(s.displacement, s.velocity, edges, weights=s.residual)
@@ -170,7 +171,7 @@ def _surface(figure: Figure, ax: Axes, s: ResidualSamples) -> None:
     known = np.abs(mean[np.isfinite(mean)])
     most = float(np.quantile(known, 0.97)) if known.size else 1.0
     most = max(most, _sound(s))
-    up = scale([most], "N")
+    up = choose_scale([most], "N")
     cells = ax.pcolormesh(
         edges[0] * x.factor, edges[1] * v.factor, mean.T * up.factor, cmap="RdBu_r",
         vmin=-most * up.factor, vmax=most * up.factor, rasterized=True,

@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from inerter.errors import NetworkError
-from inerter.figures.labels import typeset_quantity
 from inerter.figures.style import WIDE, save, style_context
 from inerter.figures.symbols import (
     HALF_HEIGHT,
@@ -31,6 +30,7 @@ from inerter.figures.symbols import (
     translate_line,
     write,
 )
+from inerter.formatting import typeset_quantity
 from inerter.networks.elements import (
     Element,
     Free,

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import StudyError
 from inerter.figures.curves import thin_curve
-from inerter.figures.labels import axis_label, capital, scale
+from inerter.figures.labels import axis_label, capital
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
+from inerter.formatting import choose_scale
 from inerter.networks.elements.roles import GuardRole
 from inerter.systems.outputs import force_of
 
@@ -142,7 +143,7 @@ def draw_panel(result: SimulationResult, panel: TimePanel, inside: NDArray[np.bo
     run = result.run
     time = run.time[inside]
     values = [run[curve.output][inside] * curve.weight for curve in panel.curves]
-    unit = scale([max(float(np.abs(v).max(initial=0.0)) for v in values)], panel.unit)
+    unit = choose_scale([max(float(np.abs(v).max(initial=0.0)) for v in values)], panel.unit)
     for curve, value in zip(panel.curves, values, strict=True):
         ax.plot(*thin_curve(time, value * unit.factor), **_style(curve))
     _shade(result, panel.shaded, (float(time[0]), float(time[-1])), ax)
@@ -158,7 +159,7 @@ def draw_loop(result: SimulationResult, inside: NDArray[np.bool_], ax: Axes) -> 
     time, x, y = (
         result.run[name][inside] if name else result.run.time[inside] for name in ("", road, f"{device}_force")
     )
-    along, up = (scale([np.abs(v).max()], unit) for v, unit in ((x, "m"), (y, "N")))
+    along, up = (choose_scale([np.abs(v).max()], unit) for v, unit in ((x, "m"), (y, "N")))
     period = result.request.period
     last = time >= time[-1] - (period or np.inf) * (1.0 + 1e-9)
     if not last.all():

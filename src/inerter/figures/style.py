@@ -21,7 +21,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, ScalarFo
 from numpy.typing import ArrayLike
 
 from inerter.atomic_io import atomic_write
-from inerter.figures.labels import typeset
+from inerter.formatting import typeset
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it

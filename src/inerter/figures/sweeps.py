@@ -25,7 +25,6 @@ from inerter.figures.labels import (
     layouts,
     methods,
     one_method,
-    scale,
     swept_element,
     swept_label,
     swept_scale,
@@ -33,6 +32,7 @@ from inerter.figures.labels import (
     way,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
+from inerter.formatting import choose_scale
 
 Array = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
     sweeps = [_sweep(by_method(results, name), index) for name in names] or [_sweep(results, index)]
     lines = [_method_line(number) for number in range(len(names))] if len(names) > 1 else [{}]
     sweep, (left, *right) = sweeps[0], axes
-    unit = scale(sweep.data["value"].values, index_unit(results, index))
+    unit = choose_scale(sweep.data["value"].values.ravel(), index_unit(results, index))
     for one, line in zip(sweeps, lines, strict=True):
         for name in layouts(results):
             _curve(one, left, name, "value", unit.factor, line)
@@ -142,7 +142,7 @@ def parameter_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> S
     sweep = _sweep(results, index)
     for ax, parameter in zip(axes, results["parameter"].values.tolist(), strict=True):
         column = sweep.data.sel(parameter=parameter)
-        unit = scale(column["parameter_value"].values, str(column["parameter_unit"].item()))
+        unit = choose_scale(column["parameter_value"].values.ravel(), str(column["parameter_unit"].item()))
         for name in layouts(results):
             row = column.sel(layout=name)
             numbers = row["parameter_value"].values * unit.factor

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
+from inerter.formatting import format_quantity, format_with_interval
 from inerter.records.finding import Finding
 from inerter.records.remedy import Action, Remedy, Text
-from inerter.units import format_quantity, format_with_interval
 
 
 class FitFinding(StrEnum):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from inerter.deprecation import RenamedAttribute
+from inerter.formatting import format_quantity
 from inerter.networks.elements.roles import LinearRole
-from inerter.units import format_quantity
 
 
 class Verdict(StrEnum):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
+from inerter.formatting import format_quantity
 from inerter.records.finding import Finding
 from inerter.records.remedy import Text
-from inerter.units import format_quantity
 
 TRAVEL, FRICTION = "travel since the last reversal", "position, against the motion"
 UNITS = {  # of what the residual may depend on

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from enum import StrEnum
 from typing import Any
 
+from inerter.formatting import format_quantity
 from inerter.records.remedy import Action, Remedy, Text
-from inerter.units import format_quantity
 
 Details = Mapping[str, Any]
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status, StatusKind, worst_of
+from inerter.formatting import format_quantity
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.optimisation.constrained_search import KEPT_COSTLY, ConstrainedProblem, sensitivities
 from inerter.optimisation.limits import Limit, Sense
-from inerter.units import format_quantity
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

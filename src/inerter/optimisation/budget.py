@@ -12,12 +12,12 @@ import numpy as np
 import scipy
 
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
+from inerter.formatting import format_quantity
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.units import format_quantity
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
+from inerter.formatting import format_quantity
 from inerter.indices.question import Combination, Index, IndexDefinition, OfIndex
 from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
-from inerter.units import format_quantity
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle

@@ -12,7 +12,8 @@ import re
 from dataclasses import dataclass
 
 from inerter.errors import UnitError
-from inerter.units import format_quantity, parse_quantity, quote_value
+from inerter.formatting import format_quantity
+from inerter.units import parse_quantity, quote_value
 from inerter.validation import is_number
 
 _SIGNS = re.compile(r"\+/-|\+-|±")

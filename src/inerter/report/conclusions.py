@@ -93,4 +93,3 @@ def _closest_design_clause(results: xr.Dataset, study: Study) -> str:
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
     return f"; closest: {of} with {format_list(told)}"
-

@@ -151,4 +151,3 @@ def _computation(found: IdentificationResult) -> str:
         f"from a parametric bootstrap. Settings: {settings}. Schwarz's criterion (lower is better): "
         f"{fit.criterion:.1f}."
     )
-

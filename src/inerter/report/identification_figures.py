@@ -21,10 +21,10 @@ from inerter.figures.identification import (
 )
 from inerter.figures.misfit import ResidualSamples, misfit_figure
 from inerter.files.identification.running import IdentificationResult, Responses
+from inerter.formatting import choose_scale
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.report.identified_values import ResultKind, result_kind, value_and_interval
-from inerter.units import handy_unit
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
@@ -149,15 +149,15 @@ def _profile(found: IdentificationResult, name: str) -> ProfileCurve | None:
         return None
     points = np.array(sorted(parameter.profile))
     ends = (points[0, 0], points[-1, 0])
-    size, unit = handy_unit(parameter.best if parameter.best > 0.01 * ends[1] else ends[1], parameter.unit)
+    own = choose_scale([parameter.best if parameter.best > 0.01 * ends[1] else ends[1]], parameter.unit)
     value, _ = value_and_interval(found, name)
     low, high = parameter.interval
     return ProfileCurve(
         label=name,
-        values=points[:, 0] / size,
+        values=points[:, 0] * own.factor,
         rises=points[:, 1],
-        interval=(low / size, high / size),
-        unit=unit,
+        interval=(low * own.factor, high * own.factor),
+        unit=own.unit,
         remark="" if result_kind(found, name) is ResultKind.VALUE else value,
     )
 

@@ -17,7 +17,7 @@ from inerter.formatting import (
 from inerter.identification.choice import Candidate
 from inerter.report.identified_values import value_and_interval
 from inerter.report.options import as_options
-from inerter.table import Cell, Column, Row, Table, columns
+from inerter.table import Cell, Column, Row, Table, cells, columns
 
 LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
 
@@ -30,7 +30,7 @@ def parameter_table(found: IdentificationResult) -> Table:
         bounds = found.bounds(name)
         sought = "" if bounds is None else format_range(*bounds, p.unit, 3)
         error = _standard_error(p.standard_error, p.best, p.unit) if found.fit.identifiable[name] else ""
-        rows.append(Row(list(map(Cell, [name, value, interval, error, sought]))))
+        rows.append(Row(cells(name, value, interval, error, sought)))
     interval = "95 % interval" if found.explains else "Range"
     on_pages = (Column(heading, only_on_pages=True) for heading in ("Standard error", "Sought in"))
     return Table("Estimates", [*columns("Parameter", "Value", interval), *on_pages], rows)
@@ -70,7 +70,7 @@ def candidate_table(found: IdentificationResult) -> Table:
     """Models compared by their loss on the part of the records that was kept for the check."""
     rows = [
         Row(
-            list(map(Cell, [c.name, c.unknowns, format_number(c.loss, 4), _loss_difference(c), str(c.status.kind)])),
+            cells(c.name, c.unknowns, format_number(c.loss, 4), _loss_difference(c), str(c.status.kind)),
             strong=c.name == found.name,
         )
         for c in found.candidates
@@ -97,7 +97,7 @@ def goodness_table(found: IdentificationResult) -> Table:
                 sizes = format_quantity(c.rms(check), "N", 3), format_quantity(c.noise_level(check), "N", 3)
                 offset = None if check else format_quantity(c.offset, "N", 3)
                 part = "check" if check else "fitted"
-                rows.append(Row(list(map(Cell, [c.record.source, part, int(mask.sum()), explained, *sizes, offset]))))
+                rows.append(Row(cells(c.record.source, part, int(mask.sum()), explained, *sizes, offset)))
     return Table("Fit of each record", columns(*heads), rows)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 
 from inerter.files.identification.running import IdentificationResult, Reading, model_title
+from inerter.formatting import format_quantity
 from inerter.identification.fit import RecordFit
 from inerter.report.identification_tables import candidate_table, cause_texts, goodness_table, parameter_table
 from inerter.report.identified_values import elements_block
@@ -94,7 +95,7 @@ def processing_notes(found: IdentificationResult, reading: Reading, comparison: 
     yield f"The displacement was smoothed to {motion.bandwidth:.4g} Hz; it shows motion up to {motion.highest:.4g} Hz."
     fitted, checked = int(comparison.fitted.sum()), int(comparison.checked.sum())
     left = reading.used.time.size - fitted - checked
-    lead = f", among them the first {format_handy(comparison.lead, 's')}" if comparison.lead else ""
+    lead = f", among them the first {format_quantity(comparison.lead, 's', 3)}" if comparison.lead else ""
     unused = f"; {left} are left out{lead}" if left else ""
     yield f"{fitted} samples were fitted, and {checked} kept to check the fit{unused}."
 

@@ -7,9 +7,9 @@ from enum import Enum, auto
 from math import isnan
 
 from inerter.files.identification.running import IdentificationResult
+from inerter.formatting import format_quantity, format_range, format_with_interval
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import format_expression
-from inerter.units import format_handy, format_quantity, format_with_interval
 
 _MOST_DIGITS = 6  # of values that are to be read back
 
@@ -40,18 +40,16 @@ def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str
     if what is ResultKind.NOTHING:
         if isnan(low):
             return _WORDS[what], ""
-        return _WORDS[
-            what
-        ], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)} if explained so"
+        return _WORDS[what], f"{format_range(low, high, parameter.unit, 3)} if explained so"
     if what is ResultKind.VALUE:
         return format_with_interval(parameter.best, low, high, parameter.unit)
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:
-        return _WORDS[what], f"below {format_handy(high, parameter.unit)}"
+        return _WORDS[what], f"below {format_quantity(high, parameter.unit, 3)}"
     if below and not above:
-        return _WORDS[what], f"above {format_handy(low, parameter.unit)}"
-    return _WORDS[what], f"{format_handy(low, parameter.unit)} to {format_handy(high, parameter.unit)}"
+        return _WORDS[what], f"above {format_quantity(low, parameter.unit, 3)}"
+    return _WORDS[what], format_range(low, high, parameter.unit, 3)
 
 
 def elements_block(found: IdentificationResult) -> str:

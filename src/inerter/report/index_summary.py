@@ -304,7 +304,7 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
     if largest < NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
     where = place_text(results, at, named=True)
-    best = f"{_format_equal_layouts(names)}, {format_percent(largest).removeprefix("+")} better at {where}"
+    best = f"{_format_equal_layouts(names)}, {format_percent(largest).removeprefix('+')} better at {where}"
     return (
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
         f"improvement over the sweep lies {_format_range(least, largest)}."

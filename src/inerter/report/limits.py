@@ -68,7 +68,11 @@ def _limit_cell(entry: xr.Dataset, index: str) -> Cell:
     """Value of a limited quantity, with a remark on an active limit and its sensitivity; over a sweep, where active."""
     if swept_places(entry):
         active = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry))
-        return Cell("nowhere at its limit") if active.content is None else replace(active, content=f"at its limit {active.content}")
+        return (
+            Cell("nowhere at its limit")
+            if active.content is None
+            else replace(active, content=f"at its limit {active.content}")
+        )
     value, cost, part = float(entry["limit_value"]), float(entry["limit_cost"]), str(entry["limit.part"].item())
     quantity = Quantity(value, str(entry["limit_unit"].item()))
     content = f"{quantity} ({part})" if part else quantity

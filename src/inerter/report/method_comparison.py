@@ -63,4 +63,3 @@ def _cell(results: xr.Dataset, index: str, layout: str, unit: Scale) -> Cell:
     best = row.sel(place)
     shown = improvement_text(best) if compared_layouts(results) else design_quantity(best, index_unit(results, index))
     return Cell(shown, f"at {place_text(results, place)}")
-

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+from inerter.formatting import format_quantity
 from inerter.records.remedy import Action, Remedy
-from inerter.units import format_quantity
 
 _CHANNELS = {"time": "--time", "displacement": "--displacement", "force": "--force-channel"}
 _CONFIG = "of a --config"

@@ -13,7 +13,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.atomic_io import write_text
-from inerter.figures.labels import capital, swept_places, together, typeset, typeset_quantity
+from inerter.figures.labels import capital, swept_places
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
@@ -22,6 +22,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer
+from inerter.formatting import join_units, typeset
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.problem_statement import (
     computation,
@@ -136,19 +137,18 @@ def environment(*packages: str) -> Environment:
         lstrip_blocks=True,
     )
     templates.filters |= {
-        "typeset": typeset,
+        "printed": printed_text,
         "breakable": breakable,
-        "together": together,
         "capital": capital,
-        "sentence": lambda text: typeset(printed_sentence(text)).replace(" × 10", f"{_SPACE}×{_SPACE}10"),
     }
     return templates
 
 
-def printed_sentence(sentence: str) -> str:
-    """Sentence with proper minus signs, and per cent signs on the line of their numbers."""
-    text = sentence.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}").replace(" %", f"{_SPACE}%")
-    return re.sub(r" -(?=[\d.]|inf\b)", " −", text)
+def printed_text(text: str) -> str:
+    """Text in print: minus signs, powers, and no line break between a number, its error and its unit."""
+    text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
+    text = re.sub(r" -(?=[\d.]|inf\b)", " −", text)
+    return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))
 
 
 def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:

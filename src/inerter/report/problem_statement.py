@@ -19,12 +19,12 @@ from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.files.study.ways import ways
+from inerter.formatting import format_quantity
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
 from inerter.signals.road import Road
-from inerter.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,8 +7,8 @@ from textwrap import wrap
 
 import numpy as np
 
-from inerter.figures.labels import with_unit
 from inerter.files.rig.running import RigRequest
+from inerter.formatting import format_quantity
 from inerter.records.record import Record
 from inerter.report.text import WIDTH
 
@@ -25,7 +25,8 @@ def _lines(request: RigRequest, record: Record) -> Iterator[str]:
     yield f"{record.source}"
     yield f"{record.time.size} samples over {record.duration:.6g} s, at {1.0 / record.interval:.6g} Hz"
     yield from record.notes
-    yield f"displacement up to {with_unit(float(np.abs(record.displacement).max()), 'm')}"
+    yield f"displacement up to {format_quantity(float(np.abs(record.displacement).max()), 'm')}"
     full = float(np.mean(np.abs(record.force) >= 0.999 * limit))
     state = f"saturated in {100.0 * full:.2g} % of the samples" if full else "not saturated"
-    yield f"force up to {with_unit(peak, 'N')} of the {with_unit(limit, 'N')} that the load cell can read: {state}"
+    known = format_quantity(limit, "N")
+    yield f"force up to {format_quantity(peak, 'N')} of the {known} that the load cell can read: {state}"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Section:
     """Section of results: its tables, a paragraph before and sentences after them.
 
-    A terminal shows the tables `brief` in their place, if there are any; `columns` are two tables side by side on a page.
+    A terminal shows the tables `brief` in their place, if there are any. `columns`: tables side by side on a page.
     """
 
     title: str

@@ -7,9 +7,9 @@ from operator import attrgetter
 from textwrap import wrap
 from typing import Any
 
-from inerter.figures.labels import with_unit
 from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
+from inerter.formatting import format_quantity
 from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH
 from inerter.simulation.peaks import LiftOff, Peak
@@ -52,7 +52,7 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
 def _request(result: SimulationResult) -> Iterator[str]:
     request, run = result.request, result.run
     signal, units = request.signal, request.signal.units
-    keys = [f"{k} {with_unit(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
+    keys = [f"{k} {format_quantity(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
     yield from wrap(request.title, WIDTH)
     network = "; ".join(dict.fromkeys(request.layouts[request.layout].struts.values()))
     yield from wrap(f"{request.model}, {request.layout} = {network}", WIDTH, subsequent_indent="  ")
@@ -70,18 +70,18 @@ def _values(result: SimulationResult) -> Iterator[str]:
     run = result.run
     pressed = {tyre: f"{tyre} on the road".replace("_", " ") for tyre in run.static_loads}
     width = max(map(len, (*result.main_outputs, *pressed.values())))
-    sizes = {name: with_unit(result.rms(name), run.unit(name)) for name in result.main_outputs}
+    sizes = {name: format_quantity(result.rms(name), run.unit(name)) for name in result.main_outputs}
     column = max(14, *map(len, sizes.values()))
     yield f"  {'':<{width}}  {'r.m.s.':<{column}}  largest"
     for name, size in sizes.items():
         yield f"  {name.replace('_', ' '):<{width}}  {size:<{column}}  {_when(run.peak(name), run.unit(name))}"
     for tyre, least in run.least_tyre_loads.items():
-        pressing = f"least {_when(least, 'N')}, of {with_unit(run.static_loads[tyre], 'N')} at rest"
+        pressing = f"least {_when(least, 'N')}, of {format_quantity(run.static_loads[tyre], 'N')} at rest"
         yield f"  {pressed[tyre]:<{width}}  {pressing}"
 
 
 def _when(peak: Peak, unit: str) -> str:
-    return f"{with_unit(peak.value, unit)} at {peak.time:.4g} s"
+    return f"{format_quantity(peak.value, unit)} at {peak.time:.4g} s"
 
 
 def _elements(result: SimulationResult) -> Iterator[str]:

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import decimals_of
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import by_task
+from inerter.formatting import shown_decimals
 from inerter.report.json_data import json_data
 from inerter.report.speeds import at_speeds
 
@@ -84,4 +84,4 @@ def _decimals(arrays: Mapping[str, Any], place: tuple[int, ...]) -> int | None:
     error, bound = (
         arrays[name][place].item() if name in arrays else np.nan for name in ("standard_error", "error_bound")
     )
-    return decimals_of(arrays["value"][place].item(), error, bound, _DIGITS)
+    return shown_decimals(arrays["value"][place].item(), error, bound, _DIGITS)

@@ -174,7 +174,10 @@ def _first_problem(results: xr.Dataset, layout: str, index: str) -> str:
 def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     element, (words,) = str(swept_element(results)), swept_words(results)
     data = results.sel(index=index).sortby(element)
-    swept, values = swept_scale(data, element), choose_scale(data["value"].values.ravel().tolist(), index_unit(results, index))
+    swept, values = (
+        swept_scale(data, element),
+        choose_scale(data["value"].values.ravel().tolist(), index_unit(results, index)),
+    )
     points = _some(data, element)
     rows = []
     for point in points:
@@ -189,9 +192,7 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
-    caption = (
-        f"Best {_title(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
-    )
+    caption = f"Best {_title(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
     return Table(caption, columns(words, *names), rows, swept=True, failures=_failures(data))
 
 

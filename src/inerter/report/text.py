@@ -87,7 +87,9 @@ def _grid(table: Table) -> _Grid:
     made = [_text_column(c, [cells[i] for _, cells in shown], i == 0) for i, c in heads if not c.listed]
     listed = [(i, column) for i, column in heads if column.listed]
     if listed:
-        items = [[_item(column, cells[i]) for i, column in listed if cells[i].content is not None] for _, cells in shown]
+        items = [
+            [_item(column, cells[i]) for i, column in listed if cells[i].content is not None] for _, cells in shown
+        ]
         made.append(_TextColumn(listed[0][1].listed, [("", "")] * len(shown), items))
     return _Grid([row for row, _ in shown], made)
 
@@ -119,7 +121,7 @@ def _lines(grid: _Grid, width: int) -> Iterator[str]:
     cut = _total_width(grid.columns, cut_headings=True) < width < _total_width(grid.columns, cut_headings=False)
     widths = [column.width(cut) for column in grid.columns if not column.wraps]
     rest = max(width - len(_GAP) * (len(widths) + 1) - sum(widths), _NARROWEST)
-    headings = [wrap(c.heading, w) if cut else [c.heading] for c, w in zip_longest(grid.columns, widths, fillvalue=rest)]
+    headings = [wrap(c.heading, rest if c.wraps else c.width(cut)) if cut else [c.heading] for c in grid.columns]
     yield from _side_by_side(headings, widths)
     for i, row in enumerate(grid.rows):
         cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]

@@ -22,7 +22,7 @@ from inerter.methods.registry import brief_words_of, decisive_method_clause, is_
 from inerter.networks.elements import Free, Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.index_summary import best_layouts
-from inerter.table import MISSING, Cell, Column, Row, Table
+from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value
 
 if TYPE_CHECKING:
@@ -170,9 +170,11 @@ class Budgets(Task[BudgetAnswer]):
                 *(one.method, better, one.value, one.unit, one.standard_error, low, high),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]
-            rows.append(Row(list(map(Cell, contents)), status=_remark(one)))
+            rows.append(Row(cells(*contents), status=_remark(one)))
         by = brief_words_of(results.answers[0].method)
-        return Table(f"Break-even values: where each layout is better than {results.study.baseline}, by {by}", heads, rows)
+        return Table(
+            f"Break-even values: where each layout is better than {results.study.baseline}, by {by}", heads, rows
+        )
 
     def sentences(self, results: TaskResults[BudgetAnswer]) -> Iterator[str]:
         """Ranges of each element in which the best layouts outperform the baseline, as sentences."""

@@ -21,7 +21,7 @@ from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
 from inerter.report.problem_statement import key_in_words
-from inerter.table import Cell, Column, Quantity, Row, Table
+from inerter.table import Column, Quantity, Row, Table, cells
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -164,7 +164,9 @@ class Fronts(Task[FrontAnswer]):
     def sentences(self, results: TaskResults[FrontAnswer]) -> Iterator[str]:
         """Sentence on each Pareto front: indices at its knee, and number of dominated designs of the baseline."""
         study, by_layout = results.study, {front.layout: front for front in results.answers}
-        fronts = sorted((one for one in results.answers if one.knee is not None), key=lambda one: one.layout != study.baseline)
+        fronts = sorted(
+            (one for one in results.answers if one.knee is not None), key=lambda one: one.layout != study.baseline
+        )
         clauses = []
         for front in fronts:
             knee = zip(study.trade_off, front.values[front.knee or 0], strict=True)
@@ -221,10 +223,10 @@ def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterat
             *("yes" if i == front.knee else "", "yes" if i in front.jumps else "", front.statuses[i]),
         ]
         doubt = front.doubt if i == max(shown, default=0) else ""
-        yield Row(list(map(Cell, contents)), status=doubt, shown=i in shown)
+        yield Row(cells(*contents), status=doubt, shown=i in shown)
     if not front.values:
         unknown = [""] * (len(study.trade_off) + len(parameters) + 2)
-        yield Row(list(map(Cell, [front.layout, "", "", *unknown, front.status_text])), status=front.doubt)
+        yield Row(cells(front.layout, "", "", *unknown, front.status_text), status=front.doubt)
 
 
 def _labelled_points(study: Study, front: FrontAnswer) -> dict[int, str]:

@@ -15,7 +15,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.formatting import format_share
 from inerter.methods.registry import decisive_method_clause
-from inerter.table import MISSING, Cell, Column, Quantity, Row, Table
+from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis
 
 SHARE = 0.95  # of cases, of the quantile that is told
@@ -140,7 +140,7 @@ class Tolerances(Task[ToleranceAnswer]):
         for one in results.answers:
             effects = [part for name in names for part in one.effects.get(name, (None, None))]
             contents = [one.layout, one.index, one.method, *map(one.quantity, _NUMBERS), one.unit, *effects]
-            rows.append(Row(list(map(Cell, [*contents, _due(one), one.status_text])), status=one.doubt))
+            rows.append(Row(cells(*contents, _due(one), one.status_text), status=one.doubt))
         return Table("Best designs with tolerances", heads, rows)
 
     def introduction(self) -> str:

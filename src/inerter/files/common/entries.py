@@ -13,10 +13,11 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
+from inerter.formatting import format_quantity
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
-from inerter.units import format_quantity, parse_quantity, quote_value, unit_in
+from inerter.units import parse_quantity, quote_value, unit_in
 
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
 MOST_POINTS = 10_000_000

@@ -7,10 +7,10 @@ from typing import Any
 
 from inerter.field_metadata import Field, fields_of
 from inerter.files.common.vehicle_tables import SEAT
+from inerter.formatting import format_number, format_quantity
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
 from inerter.signals.road import ROAD_CLASSES, Road
-from inerter.units import format_number, format_quantity
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.seat import Seat
 

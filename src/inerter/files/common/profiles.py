@@ -10,10 +10,11 @@ from inerter.errors import RecordError
 from inerter.files.common.entries import positive_in
 from inerter.files.common.problem import EntryError
 from inerter.files.common.suggest import nearest
+from inerter.formatting import format_quantity
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.roads.reading import Columns, read_profile
-from inerter.units import PURE, format_quantity, is_unit_for, quote_value
+from inerter.units import PURE, is_unit_for, quote_value
 
 _UNITS = ("distance", "height")
 COLUMNS_EXAMPLE = 'columns = { distance = "Station", height = 2 }'

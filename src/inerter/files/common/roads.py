@@ -26,10 +26,11 @@ from inerter.files.common.codec import (
 from inerter.files.common.entries import TEXT, QuantityCodec, declaration_of, word
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import some
+from inerter.formatting import format_quantity
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
-from inerter.units import format_quantity, quote_value
+from inerter.units import quote_value
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 

@@ -15,8 +15,9 @@ from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
+from inerter.formatting import format_quantity
 from inerter.networks.elements import Damper, Free, Network, Spring
-from inerter.units import format_quantity, quote_value
+from inerter.units import quote_value
 from inerter.vehicle.mechanism import (
     Coordinate,
     Force,

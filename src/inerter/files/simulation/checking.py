@@ -10,9 +10,9 @@ from inerter.files.common.plausibility import road_sentence, road_warnings, vehi
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.simulation.loading import load_simulation
+from inerter.formatting import format_quantity
 from inerter.networks.parser import names
 from inerter.signals.road import Road
-from inerter.units import format_handy
 
 
 def check_lines(path: Path) -> Iterator[str]:
@@ -30,12 +30,12 @@ def check_lines(path: Path) -> Iterator[str]:
     start = "steady state" if request.initial == "periodic" else f"from {request.initial}"
     yield (
         f"{path}: ok. Simulation of {request.model} with {request.layout} = {layout}; {request.signal.input}: "
-        f"{request.signal.kind}; {length:.6g} s, {steps} steps of {format_handy(request.step, 's', 6)}, "
+        f"{request.signal.kind}; {length:.6g} s, {steps} steps of {format_quantity(request.step, 's', 6)}, "
         f"{request.integrator}, {start}."
     )
     if request.speed is not None and request.roughness is not None:
         road = Road(request.roughness, request.speed)
-        yield f"{road_sentence(road, format_handy(road.speed, 'm/s', 4))}."
+        yield f"{road_sentence(road, format_quantity(road.speed, 'm/s', 4))}."
         yield from road_warnings(road)
     used = {name for text in request.layouts[request.layout].struts.values() for name in names(text)}
     yield from vehicle_warnings(

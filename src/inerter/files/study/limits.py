@@ -14,13 +14,14 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
+from inerter.formatting import format_quantity
 from inerter.indices.names import index_names
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
-from inerter.units import PURE, are_compatible, format_quantity, parse_quantity, quote_value, unit_in
+from inerter.units import PURE, are_compatible, parse_quantity, quote_value, unit_in
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:

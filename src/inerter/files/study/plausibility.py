@@ -11,8 +11,8 @@ from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
 from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.study import Study, elements_used
+from inerter.formatting import format_quantity
 from inerter.signals.road import Road
-from inerter.units import format_quantity
 
 _ROUGHNESS, _SPEED = "road.roughness", "road.speed"
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
+from inerter.formatting import format_quantity
 from inerter.indices.question import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
 from inerter.systems.outputs import input_unit, unit_of
-from inerter.units import format_quantity
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]

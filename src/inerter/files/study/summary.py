@@ -13,8 +13,8 @@ from inerter.atomic_io import open_text
 from inerter.files.study.cases import cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
+from inerter.formatting import label_with_unit
 from inerter.table import csv_cells
-from inerter.units import label_with_unit
 
 _AT_ONCE = 10_000  # designs that are made plain numbers together
 
@@ -83,11 +83,6 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
                     *row["parameter_value"],
                     *(at_bound, row["starts"], row["agreed"]),
                     *row["other_value"],
-                    *(
-                        row[name][i]
-                        for i in range(len(study.limits))
-                        for name in ("limit_value", "limit_cost")
-                    ),
+                    *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
                     *(row["limit.part"][i] for i in parts),
                 ]
-

@@ -19,8 +19,9 @@ from inerter.files.study.place import Place, Sweep, element_at, place_of
 from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import SweepRange
 from inerter.files.study.study import Study, elements_used
+from inerter.formatting import format_quantity
 from inerter.networks.elements import Free, Tied
-from inerter.units import are_compatible, format_quantity, is_unit_for, parse_quantity, quote_value, unit_in
+from inerter.units import are_compatible, is_unit_for, parse_quantity, quote_value, unit_in
 
 Entry = SweepRange | tuple[str, ...]
 _MOST = 2  # places at once: what a map shows

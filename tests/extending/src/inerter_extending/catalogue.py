@@ -6,13 +6,13 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import inerter as it
-from inerter.figures.labels import with_unit
 from inerter.files.common.codec import key, keyed_dataclass
 from inerter.files.common.entries import SWEEP_LIST, TEXT
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case, run_case
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.formatting import format_quantity
 from inerter.table import Cell, Row, Table, Writer
 from inerter.units import parse_quantity
 
@@ -137,12 +137,16 @@ class Catalogues(Task[CatalogueAnswer]):
         """A line for each design."""
         yield from ("", "from the catalogue:")
         for one in results.answers:
-            yield f"  {one.layout} {one.index}: {one.element} = {one.best}, {with_unit(one.value, one.unit)}"
+            yield f"  {one.layout} {one.index}: {one.element} = {one.best}, {format_quantity(one.value, one.unit)}"
 
     def tables(self, results: TaskResults[CatalogueAnswer]) -> list[Table]:
         """One table."""
         rows = [
-            Row(f"{one.layout}, {one.index}", [Cell(one.best), Cell(with_unit(one.value, one.unit))], status=one.doubt)
+            Row(
+                f"{one.layout}, {one.index}",
+                [Cell(one.best), Cell(format_quantity(one.value, one.unit))],
+                status=one.doubt,
+            )
             for one in results.answers
         ]
         return [Table("Best of the catalogue", ["Design", "Value that is sold", "Index"], rows)]

@@ -12,8 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from inerter.figures.identification import MotionCurve, response_figure, time_figure
-from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices, scale
+from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices
 from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, style_context
+from inerter.formatting import choose_scale
 from inerter.papers.wang_su_2008.paper import (
     FIGURE_8,
     FIGURE_9,
@@ -157,8 +158,8 @@ def _values_and_improvements(results: xr.Dataset, kinds: Mapping[str, str]) -> F
 def _curves(ax: Axes, results: xr.Dataset, index: str, styles: Mapping[str, LayoutStyle], what: str) -> str:
     """Curves over the static stiffness with a band of two standard errors; returns the unit of the values."""
     data = results.sel(index=index)
-    unit = scale(data["value"].values, index_unit(results, index))
-    stiffness = results["k"].values * scale(results["k"].values, results["k"].attrs["units"]).factor
+    unit = choose_scale(data["value"].values.ravel(), index_unit(results, index))
+    stiffness = results["k"].values * choose_scale(results["k"].values, results["k"].attrs["units"]).factor
     factor = unit.factor if what == "value" else 1.0
     for layout, style in styles.items():
         curve = data[what].sel(layout=layout).values * factor
@@ -174,7 +175,7 @@ def _curves(ax: Axes, results: xr.Dataset, index: str, styles: Mapping[str, Layo
 
 
 def _finish(axes: Sequence[Axes], results: xr.Dataset, columns: int) -> None:
-    stiffness = scale(results["k"].values, results["k"].attrs["units"])
+    stiffness = choose_scale(results["k"].values, results["k"].attrs["units"])
     for i, ax in enumerate(axes):
         ax.set_xlim(0.0, float(np.max(results["k"]) * stiffness.factor))
         if i >= len(axes) - columns:

@@ -17,16 +17,17 @@ from inerter.papers.wang_su_2008.judging import RULE, ClaimVerdict
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.paper import NETWORKS, PAPER
 from inerter.papers.wang_su_2008.report import figures as drawn
-from inerter.papers.wang_su_2008.report.data import csv_text, method_points, tables
+from inerter.papers.wang_su_2008.report.data import data_csv, method_points, tables
 from inerter.papers.wang_su_2008.report.tables import (
     budgets_table,
-    compared_table,
-    designs_table,
+    design_tables,
+    linear_tables,
     optima_table,
     rig_table,
-    simulated_table,
+    rig_value,
+    simulated_tables,
 )
-from inerter.papers.wang_su_2008.report.text import agreement_of, rig_value
+from inerter.papers.wang_su_2008.report.text import agreement_of
 from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
@@ -62,7 +63,7 @@ def write_reproduction(found: Reproduction, folder: Path, executor: Executor | P
     """Write the tables as CSV, the figures, and a page that shows all of it, into `folder`."""
     for name, rows in tables(found).items():
         if rows:
-            write_text(folder / f"{name}.csv", csv_text(rows))
+            write_text(folder / f"{name}.csv", data_csv(rows))
     with worker_pool(executor=executor) as pool, pool.of_this_machine() as near:  # drawings are files here
         list(near.spread(call, _figures(found, folder / FIGURES)))
     write_text(folder / REPORT, _page(found, folder))
@@ -99,16 +100,15 @@ def _page(found: Reproduction, folder: Path) -> str:
         path = folder / FIGURES / f"{name}.svg"
         if path.exists():
             figures[name] = PageFigure(inline(path.read_text(encoding="utf-8"), name, caption), caption)
-    linear = found.linear
     return (
         environment(__package__)
         .get_template("reproduction.html")
         .render(
             title=PAPER.title,
             summary=_summary(found),
-            linear=[compared_table(linear.compared, number) for number in (1, 2, 3)] if linear else [],
-            simulated=[simulated_table(found, number) for number in (1, 2, 3)],
-            designs=[designs_table(linear.found, number) for number in (1, 2)] if linear else [],
+            linear=linear_tables(found),
+            simulated=simulated_tables(found),
+            designs=design_tables(found),
             origins=origins(found),
             claims=found.claims,
             rule=RULE,

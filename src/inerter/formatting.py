@@ -1,0 +1,316 @@
+"""Numbers as text: with a suitable unit, and with as many digits as their errors justify."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from inerter.units import PURE
+
+_PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size, factor, unit
+    "N/m": ((1e6, 1e-6, "MN/m"), (1e3, 1e-3, "kN/m"), (0.0, 1.0, "N/m")),
+    "N s/m": ((1e6, 1e-6, "MN s/m"), (1e3, 1e-3, "kN s/m"), (0.0, 1.0, "N s/m")),
+    "N": ((1e6, 1e-6, "MN"), (1e3, 1e-3, "kN"), (0.0, 1.0, "N")),
+    "m": ((1.0, 1.0, "m"), (1e-5, 1e3, "mm"), (0.0, 1e6, "um")),  # 0.1 mm is a gap, 5 um the clearance of a bearing
+    "s": ((0.1, 1.0, "s"), (1e-5, 1e3, "ms"), (0.0, 1e6, "us")),
+    "m/N": ((1.0, 1.0, "m/N"), (1e-3, 1e3, "mm/N"), (0.0, 1e6, "um/N")),
+}
+_DIGITS = 4  # of a quantity, unless more or fewer are asked for
+_MOST_DIGITS = 6  # of a value with an interval
+_EXACT = 12  # digits to which values are shown that differ in fewer
+_FAR = 100.0  # ratio of two numbers above which each has its own unit
+_LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
+_LEAST_PERCENT = 1e-4
+_TENTH = 0.1 * (1.0 + 1e-9)
+_SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
+_NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+_POWER = re.compile(r"\^(-?\d)")
+_EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
+_UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
+_QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A unit that suits the size of some values; a value in SI units times `factor` is in it."""
+
+    factor: float
+    unit: str
+
+
+def choose_scale(values: Iterable[float], unit: str) -> Scale:
+    """The unit in which the middle one of `values` [`unit`] is a number of suitable size.
+
+    >>> choose_scale([10e3, 300e3], "N/m"), choose_scale([0.0], "m")
+    (Scale(factor=0.001, unit='kN/m'), Scale(factor=1.0, unit='m'))
+    """
+    sizes = sorted(abs(value) for value in values if value != 0.0 and math.isfinite(value))
+    count = len(sizes)
+    return _scale(0.5 * (sizes[(count - 1) // 2] + sizes[count // 2]) if sizes else 0.0, unit)
+
+
+def is_prefixed(given: str, unit: str) -> bool:
+    """Whether `format_quantity` may write quantities in `unit` in this unit.
+
+    >>> is_prefixed("kN/m", "N/m"), is_prefixed("km/h", "m/s")
+    (True, False)
+    """
+    return given in (unit, *(name for _, _, name in _PREFIXES.get(unit, ())))
+
+
+def format_number(value: float, digits: int = 6, sign: str = "") -> str:
+    """Number as text with so many significant digits, without a power of ten unless far from 1; "n/a" for nan.
+
+    With `sign` "+", a positive number has its sign too.
+
+    >>> format_number(5000.0, 3), format_number(1.234e-7, 2), format_number(0.251, 2, "+")
+    ('5000', '1.2e-07', '+0.25')
+    """
+    if math.isnan(value):
+        return "n/a"
+    text = f"{value:{sign}.{digits}g}" if value else "0"
+    whole = "e" in text and 1.0 <= abs(value) < 10.0 ** max(digits, 9)
+    return f"{float(text):{sign}.0f}" if whole else text
+
+
+def format_quantity(
+    value: float, unit: str, digits: int = _DIGITS, *, error: float = math.nan, bound: float = math.nan
+) -> str:
+    """Value [`unit`] as text: at most `digits` significant digits and a suitable prefix; "n/a" for nan, "inf".
+
+    With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
+    error, the relative `bound`, allows no more. Without one, `parse_quantity` reads the text back to its digits.
+
+    >>> format_quantity(7544.2, "N s/m"), format_quantity(7544.2, "N s/m", error=23.0), format_quantity(2e-3, "s")
+    ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '2 ms')
+    >>> format_quantity(7544.2, "N s/m", bound=1e-3), format_quantity(float("nan"), "N")
+    ('7.54 kN s/m', 'n/a')
+    """
+    if not math.isfinite(value):
+        return format_number(value)
+    if shows_error(value, error, bound):
+        own = _scale(value, unit)
+        return _with_unit(format_uncertain(value * own.factor, error * own.factor, bound), own.unit)
+    return _in_scale(value, _scale(value, unit, digits), significant_digits(value, bound, digits))
+
+
+def format_alike(values: Iterable[float], unit: str, digits: int = _DIGITS) -> list[str]:
+    """Texts of several values [`unit`] that are compared: in one unit, and different where the values are.
+
+    >>> format_alike([950.0, 1050.0], "N"), format_alike([1.000002, 1.0], "m", 3)
+    (['0.95 kN', '1.05 kN'], ['1.000002 m', '1 m'])
+    """
+    values = list(values)
+    own = _scale(max((abs(value) for value in values if math.isfinite(value)), default=0.0), unit, digits)
+    texts = [_in_scale(value, own, digits) for value in values]
+    return texts if digits >= _EXACT or len(set(texts)) == len(set(values)) else format_alike(values, unit, digits + 1)
+
+
+def format_range(low: float, high: float, unit: str, digits: int = _DIGITS) -> str:
+    """Range of values [`unit`], in one unit; if it extends over decades, each end has its own.
+
+    >>> format_range(0.0, 1500.0, "N"), format_range(900.0, 1100.0, "N"), format_range(5e-6, 1.0, "m")
+    ('0 to 1.5 kN', '0.9 to 1.1 kN', '5 um to 1 m')
+    """
+    small, large = sorted((abs(low), abs(high)))
+    own = _scale(large, unit, digits)
+    far = 0.0 < small < large / _FAR and _scale(small, unit, digits) != own
+    if far or not math.isfinite(large):
+        return f"{format_quantity(low, unit, digits)} to {format_quantity(high, unit, digits)}"
+    return f"{format_number(low * own.factor, digits)} to {_in_scale(high, own, digits)}"
+
+
+def format_with_interval(value: float, low: float, high: float, unit: str) -> tuple[str, str]:
+    """Texts of `value` and its interval [`unit`]: in one unit, with as many decimals as the interval justifies.
+
+    The ends of an interval over decades have three digits.
+
+    >>> format_with_interval(113.0123, 112.9917, 113.0331, "kg")
+    ('113.012 kg', '112.992 to 113.033 kg')
+    >>> format_with_interval(9.9997, 9.9973, 10.002, "N")
+    ('9.9997 N', '9.9973 to 10.0020 N')
+    """
+    if low <= 0.0 or high > _FAR * low:
+        return format_quantity(value, unit, 3), format_range(low, high, unit, 3)
+    own = _scale(value or high, unit)
+    value, low, high = value * own.factor, low * own.factor, high * own.factor
+    decimals = _decimals(low, high)
+    ends = f"{low:.{decimals}f} to {high:.{decimals}f}"
+    return _with_unit(f"{value:.{decimals}f}", own.unit), _with_unit(ends, own.unit)
+
+
+def format_uncertain(value: float, error: float, bound: float = math.nan, sign: str = "") -> str:
+    """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always.
+
+    >>> format_uncertain(2.50911, 0.00047), format_uncertain(2.50911, 0.00047, 1e-4)
+    ('2.50911 +- 0.00047', '2.5091 +- 0.0005')
+    """
+    if not _SMALLEST < error < _LARGEST:
+        return f"{value:{sign}.4g} +- {error:.2g}"
+    decimals = decimal_places(value, bound * abs(value), error)
+    shown = max(decimals, 0)
+    return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
+
+
+def format_share(share: float, digits: int = 3, sign: str = "") -> str:
+    """Share of a whole, or a relative change, in per cent.
+
+    >>> format_share(0.12345), format_share(-0.02, sign="+")
+    ('12.3 %', '-2 %')
+    """
+    return f"{format_number(100.0 * share, digits, sign)} %"
+
+
+def format_percent(value: float, error: float = math.nan, bound: float = math.nan) -> str:
+    """Improvement [%] with its sign and, if known, its standard error, as text; "-inf %", or "n/a" for nan.
+
+    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths.
+
+    >>> format_percent(13.74), format_percent(13.74, bound=0.2), format_percent(13.74, 0.05)
+    ('+13.7 %', '+14 %', '+13.740 +- 0.050 %')
+    """
+    if math.isnan(value):
+        return "n/a"
+    if error >= _LEAST_PERCENT and math.isfinite(error) and abs(value) < _LARGEST and not error <= bound:
+        return f"{format_uncertain(value, error, bound / max(abs(value), 1e-300), '+')} %"
+    if abs(value) >= _LARGEST:
+        return f"{value:+.3g} %"
+    text = f"{value:+.{0 if bound > _TENTH else 1}f} %"
+    return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
+
+
+def format_entry(value: float, bound: float = math.nan) -> str:
+    """A number of a table without its unit: four digits, or as many as its relative error `bound` justifies.
+
+    >>> format_entry(2.5), format_entry(2.5, bound=0.03)
+    ('2.500', '2.5')
+    """
+    digits = significant_digits(value, bound)
+    text = f"{value:#.{digits}g}"
+    return re.sub(r"\.(?=e|$)", "", text if digits == _DIGITS or "e" not in text else format_number(value, digits))
+
+
+def shows_error(value: float, error: float, bound: float = math.nan) -> bool:
+    """Whether a standard error exists and is large enough to be shown next to a relative error `bound`."""
+    least = _LEAST_ERROR if math.isnan(bound) else max(_LEAST_ERROR, bound)
+    return bool(math.isfinite(value) and math.isfinite(error) and error > least * abs(value))
+
+
+def decimal_places(value: float, bound: float = math.nan, error: float = math.nan, digits: int = _DIGITS) -> int:
+    """Decimal places that a largest error `bound` and a standard `error` justify, both in the unit of the value.
+
+    As many as two digits of the standard error have, without one as make `digits` significant digits; the last place is
+    no smaller than the bound, but there are two significant digits at least, and one of a standard error. Below zero
+    the number is rounded to tens, hundreds, ...
+
+    >>> decimal_places(2.5094), decimal_places(2.5094, bound=0.002), decimal_places(2.5094, bound=1e-4, error=0.00046)
+    (3, 2, 4)
+    """
+    size = _exponent(value)
+    if math.isfinite(error) and error > 0.0:
+        rounded = float(f"{error:.1e}")
+        fine, least = 1 - _exponent(rounded), -_exponent(rounded)
+    else:
+        fine, least = digits - 1 - size, 1 - size
+    if not bound > 0.0:
+        return fine
+    if math.isinf(bound):
+        return least
+    coarse = -math.ceil(math.log10(bound) - 1e-12)
+    return max(min(fine, coarse), least)
+
+
+def shown_decimals(value: float, error: float, bound: float, digits: int) -> int | None:
+    """Decimal places of a value with a standard error and a relative error `bound`; None unless it is finite.
+
+    Where the standard error is not shown, there are at most `digits` significant digits.
+    """
+    if not math.isfinite(value):
+        return None
+    return decimal_places(value, bound * abs(value), error if shows_error(value, error, bound) else math.nan, digits)
+
+
+def significant_digits(value: float, bound: float = math.nan, digits: int = _DIGITS) -> int:
+    """Significant digits, `digits` at most, that a relative error `bound` justifies.
+
+    >>> significant_digits(2.5094), significant_digits(2.5094, bound=1e-3)
+    (4, 3)
+    """
+    return max(decimal_places(value, bound * abs(value), digits=digits) + 1 + _exponent(value), 1)
+
+
+def label_with_unit(what: str, unit: str) -> str:
+    """Label of a column or axis, with its unit in brackets if it has one.
+
+    >>> label_with_unit("value", "N"), label_with_unit("ratio", "")
+    ('value [N]', 'ratio')
+    """
+    return f"{what} [{unit}]" if unit else what
+
+
+def typeset(text: str) -> str:
+    """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs.
+
+    >>> typeset("5e-07 m^3/cycle")
+    '5 × 10⁻⁷ m³/cycle'
+    """
+    text = text.replace(" +- ", " ± ")
+    text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
+    text = _EXPONENT.sub(
+        lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
+    )
+    text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
+    return re.sub(r"\bu(?=[ms]\b)", "µ", re.sub(r"^-(?=[\d.i])", "−", text))
+
+
+def typeset_quantity(
+    value: float, unit: str, digits: int = _DIGITS, *, error: float = math.nan, bound: float = math.nan
+) -> str:
+    """Value with its unit as `format_quantity` gives it, in printed form and without line breaks."""
+    return typeset(format_quantity(value, unit, digits, error=error, bound=bound)).replace(" ", _NO_BREAK_SPACE)
+
+
+def join_units(text: str) -> str:
+    r"""Text with no-break spaces between numbers and their units.
+
+    >>> join_units("at most 400 N of 1 of 2").split(" ")
+    ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
+    """
+    return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
+
+
+def _scale(size: float, unit: str, digits: int = _DIGITS) -> Scale:
+    """Unit for a value of this size, rounded to its digits; without a size, `unit` itself."""
+    rounded = abs(float(f"{size:.{digits}g}"))
+    rounded = rounded if rounded > 0.0 else 1.0
+    choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
+    return next(Scale(factor, name) for least, factor, name in choices if rounded >= least)
+
+
+def _in_scale(value: float, own: Scale, digits: int) -> str:
+    return (
+        _with_unit(format_number(value * own.factor, digits), own.unit)
+        if math.isfinite(value)
+        else format_number(value)
+    )
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return text if unit in ("", PURE) else f"{text} {unit}"
+
+
+def _decimals(low: float, high: float) -> int:
+    """Number of decimals for which half of the interval has two digits, within limits."""
+    half, size = 0.5 * (high - low), max(abs(low), abs(high))
+    if not half > 0.0 or not size > 0.0:
+        return 3
+    most = max(_MOST_DIGITS - 1 - math.floor(math.log10(size)), 0)
+    return min(max(1 - math.floor(math.log10(half)), 0), most)
+
+
+def _exponent(value: float) -> int:
+    """Power of ten of the first digit."""
+    return int(f"{value:.15e}".partition("e")[2]) if math.isfinite(value) else 0

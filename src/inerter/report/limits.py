@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
@@ -23,7 +22,7 @@ from inerter.figures.labels import (
 )
 from inerter.formatting import format_share
 from inerter.report.problem_statement import of_each
-from inerter.table import Cell, Column, Quantity, Row, Table
+from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
 
 _MOST_RANGES = 3  # of swept values, in a remark
 
@@ -40,17 +39,18 @@ def _table(results: xr.Dataset, index: str) -> Table:
     limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        entry = _entry(results, name, index)
-        cells = [_limit_cell(_entry(results, name, index, limit), index) for limit in limits]
-        cells += [_where(entry, _is_infeasible(entry))] if swept else []
-        rows.append(Row([Cell(name), *cells]))
+        described = _describe_swept_limit if swept else _describe_limit
+        for limit in limits:
+            contents = described(_entry(results, name, index, limit), index)
+            rows.append(Row(cells(name, _limit_text(results, limit), *contents)))
+        if swept:
+            entry = _entry(results, name, index)
+            rows.append(Row(cells(name, "all limits", *_describe_infeasible(entry))))
     caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
-    heads = [_limit_text(results, limit) for limit in limits] + (["No design keeps all"] if swept else [])
-    return Table(
-        f"{caption}, over {' and '.join(swept_words(results))}" if swept else caption,
-        [Column("Layout"), *(Column(head, listed="Limited quantities") for head in heads)],
-        rows,
-    )
+    if swept:
+        heads = [*columns("Layout", "Limit", "Active"), Column("Where", prose=True)]
+        return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
+    return Table(caption, [*columns("Layout", "Limit", "Value"), Column("If it is active", prose=True)], rows)
 
 
 def _limit_text(results: xr.Dataset, limit: str) -> str:
@@ -64,41 +64,46 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
     return one_method(results).sel(where)
 
 
-def _limit_cell(entry: xr.Dataset, index: str) -> Cell:
-    """Value of a limited quantity, with a remark on an active limit and its sensitivity; over a sweep, where active."""
-    if swept_places(entry):
-        active = _where(entry, entry["limit_active"].values & ~_is_infeasible(entry))
-        return (
-            Cell("nowhere at its limit")
-            if active.content is None
-            else replace(active, content=f"at its limit {active.content}")
-        )
+def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
+    """Value of a limited quantity, and the sensitivity to an active limit."""
     value, cost, part = float(entry["limit_value"]), float(entry["limit_cost"]), str(entry["limit.part"].item())
     quantity = Quantity(value, str(entry["limit_unit"].item()))
     content = f"{quantity} ({part})" if part else quantity
     if bool(infeasible(entry)):
-        return Cell(content, "the nearest design")
+        return content, "the nearest design"
     if not bool(entry["limit_active"]):
-        return Cell(content)
-    change = "" if np.isnan(cost) else f": 1 % more of it changes {index} by {format_share(cost / 100.0, 2, '+')}"
-    return Cell(content, f"at its limit{change}")
+        return content, ""
+    if np.isnan(cost):
+        return content, "at its limit"
+    return content, f"1 % more of it changes {index} by {format_share(cost / 100.0, 2, '+')}"
+
+
+def _describe_swept_limit(entry: xr.Dataset, index: str) -> tuple[str, str]:
+    """At how many swept values a limit is active, and where."""
+    return _where(entry, entry["limit_active"].values & ~_is_infeasible(entry)) or ("nowhere", "")
+
+
+def _describe_infeasible(entry: xr.Dataset) -> tuple[str, str]:
+    """At how many swept values no design is feasible, and where."""
+    count, where = _where(entry, _is_infeasible(entry)) or ("", "")
+    return (f"no design keeps them {count}", where) if count else ("kept everywhere", "")
 
 
 def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:
     return np.asarray(infeasible(entry).values)
 
 
-def _where(entry: xr.Dataset, wanted: NDArray[np.bool_]) -> Cell:
-    """Number of swept values, or points of a map, with the ranges of those values; an empty cell if none."""
+def _where(entry: xr.Dataset, wanted: NDArray[np.bool_]) -> tuple[str, str] | None:
+    """Number of swept values, or points of a map, and the ranges of those values; None if there is none."""
     if not wanted.any():
-        return Cell()
+        return None
     count, size = int(wanted.sum()), wanted.size
     places = swept_places(entry)
     if len(places) > 1:
-        return Cell(f"at {'all' if count == size else f'{count} of'} {size} points")
+        return f"at {'all' if count == size else f'{count} of'} {size} points", ""
     (words,), (place,) = swept_words(entry), places
     if count == size:
-        return Cell(f"at all {size} values")
+        return f"at all {size} values", ""
     order = np.argsort(entry[place].values)
     runs = [
         [i for _, i in run]
@@ -108,4 +113,4 @@ def _where(entry: xr.Dataset, wanted: NDArray[np.bool_]) -> Cell:
     ends = [[float(entry[place][i]) for i in dict.fromkeys((run[0], run[-1]))] for run in runs]
     ranges = [" to ".join(swept_text(entry, place, end) for end in pair) for pair in ends]
     remark = f"{words} = {format_list(ranges)}" if len(ranges) <= _MOST_RANGES else ""
-    return Cell(f"at {count} of {size} values", remark)
+    return f"at {count} of {size} values", remark

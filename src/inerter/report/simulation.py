@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from operator import attrgetter
 from textwrap import wrap
 from typing import Any
 
@@ -11,8 +10,9 @@ from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
 from inerter.formatting import format_quantity
 from inerter.report.json_data import json_data
-from inerter.report.text import WIDTH
+from inerter.report.text import WIDTH, table_lines
 from inerter.simulation.peaks import LiftOff, Peak
+from inerter.table import Column, Quantity, Row, Table, cells, columns
 from inerter.units import quote_value
 
 
@@ -68,34 +68,38 @@ def _word(value: object) -> str:
 
 def _values(result: SimulationResult) -> Iterator[str]:
     run = result.run
-    pressed = {tyre: f"{tyre} on the road".replace("_", " ") for tyre in run.static_loads}
-    width = max(map(len, (*result.main_outputs, *pressed.values())))
-    sizes = {name: format_quantity(result.rms(name), run.unit(name)) for name in result.main_outputs}
-    column = max(14, *map(len, sizes.values()))
-    yield f"  {'':<{width}}  {'r.m.s.':<{column}}  largest"
-    for name, size in sizes.items():
-        yield f"  {name.replace('_', ' '):<{width}}  {size:<{column}}  {_when(run.peak(name), run.unit(name))}"
-    for tyre, least in run.least_tyre_loads.items():
-        pressing = f"least {_when(least, 'N')}, of {format_quantity(run.static_loads[tyre], 'N')} at rest"
-        yield f"  {pressed[tyre]:<{width}}  {pressing}"
+    rows = [
+        Row(
+            cells(
+                name.replace("_", " "),
+                Quantity(result.rms(name), run.unit(name)),
+                _when(run.peak(name), run.unit(name)),
+            )
+        )
+        for name in result.main_outputs
+    ]
+    yield from table_lines(Table("Outputs", columns("Output", "r.m.s.", "Largest"), rows))
+    rows = [
+        Row(cells(tyre.replace("_", " "), _when(least, "N"), Quantity(run.static_loads[tyre], "N")))
+        for tyre, least in run.least_tyre_loads.items()
+    ]
+    if rows:
+        yield ""
+        yield from table_lines(Table("Loads of the tyres on the road", columns("Tyre", "Least", "At rest"), rows))
 
 
 def _when(peak: Peak, unit: str) -> str:
-    return f"{format_quantity(peak.value, unit)} at {peak.time:.4g} s"
+    return f"{format_quantity(peak.value, unit)} at {format_quantity(peak.time, 's')}"
 
 
 def _elements(result: SimulationResult) -> Iterator[str]:
-    if result.nonlinear:
-        kinds, width = (max(len(of(n)) for n in result.nonlinear) for of in (attrgetter("kind"), attrgetter("name")))
-        yield f"  {'element':<{kinds + 1 + width}}  events  share of the time"
+    rows = []
     for n in result.nonlinear:
         shares = ", ".join(f"{n.switch.time_in(state)} {100 * share:.1f} %" for state, share in n.shares.items())
-        yield from wrap(
-            f"  {n.kind:<{kinds}} {n.name:<{width}}  {n.events:>6}  {shares}",
-            WIDTH,
-            drop_whitespace=False,
-            subsequent_indent=" " * (kinds + width + 13),
-        )
+        rows.append(Row(cells(f"{n.kind} {n.name}", n.events, shares)))
+    if rows:
+        heads = [*columns("Element", "Events"), Column("Share of the time", prose=True)]
+        yield from table_lines(Table("Nonlinear elements", heads, rows))
     if result.unrecorded_elements:
         names = ", ".join(result.unrecorded_elements)
         yield from wrap(f"Note: this integrator keeps no events of {names}; the event-driven one does.", WIDTH)
@@ -105,18 +109,16 @@ def _energy(result: SimulationResult) -> Iterator[str]:
     energy = result.run.energy
     if energy is None:
         return
-    yield "energy"
     kinds = {n.name: n.kind for n in result.nonlinear}
-    rows = [
-        *((f"put in by {name}", work) for name, work in energy.inputs.items() if name in result.inputs),
-        ("gained by masses, inerters and springs", energy.stored),
-        *((f"dissipated in damper {name}", work) for name, work in energy.dampers.items()),
-        *((f"dissipated in {kinds.get(name, 'friction')} {name}", work) for name, work in energy.friction.items()),
-        ("unaccounted for", energy.residual),
-    ]
-    width = max(len(name) for name, _ in rows)
-    for name, work in rows:
-        yield f"  {name:<{width}}  {work:.4g} J"
+    work = {
+        **{f"put in by {name}": work for name, work in energy.inputs.items() if name in result.inputs},
+        "gained by masses, inerters and springs": energy.stored,
+        **{f"dissipated in damper {name}": work for name, work in energy.dampers.items()},
+        **{f"dissipated in {kinds.get(name, 'friction')} {name}": work for name, work in energy.friction.items()},
+        "unaccounted for": energy.residual,
+    }
+    rows = [Row(cells(name, Quantity(value, "J"))) for name, value in work.items()]
+    yield from table_lines(Table("Energy", columns("Part", "Work"), rows))
 
 
 def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:

@@ -4,38 +4,38 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from textwrap import wrap
 
 from inerter.report.sections import Section
-from inerter.table import Cell, Column, Row, Table
+from inerter.table import MISSING, Cell, Column, Row, Table
 
 WIDTH = 80
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _MEASURED = re.compile(r"\S+ \+- \S+( [^\s,.;)]+)?|\d %")
-_NARROWEST = 20  # of a column that wraps, which goes beyond the width where numbers are enormous
+_NARROWEST = 16  # of a column that wraps, which goes beyond the width where numbers are enormous
 _LONGEST_LABEL = 20  # a longer label of a row has a separate line
 _GAP = "  "
 
 
-def wrap_text(text: str, **indents: str) -> list[str]:
+def wrap_text(text: str, width: int = WIDTH, **indents: str) -> list[str]:
     """Lines of a text for a terminal, without breaks between a number, its standard error and its unit."""
     joined = _MEASURED.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
-    return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, WIDTH, **indents)]  # type: ignore[arg-type]
+    return [line.replace(_NO_BREAK_SPACE, " ") for line in wrap(joined, width, **indents)]  # type: ignore[arg-type]
 
 
 def section_text(sections: Iterable[Section]) -> str:
     """Tables and remarks of the sections of results: ASCII, at most 80 columns."""
     blocks = ["\n".join(block) for section in sections for block in _blocks(section)]
-    return "\n\n".join(blocks).replace("\N{EN DASH}", "-").encode("ascii", "replace").decode()
+    return "\n\n".join(blocks).encode("ascii", "replace").decode()
 
 
 def _blocks(section: Section) -> Iterator[list[str]]:
     for table in section.tables if section.brief is None else section.brief:
         yield list(table_lines(table))
-    for remark in section.remarks:
-        yield wrap_text(remark, subsequent_indent=_GAP)
+    if section.remarks:
+        yield [line for remark in section.remarks for line in wrap_text(remark, subsequent_indent=_GAP)]
 
 
 def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
@@ -45,10 +45,13 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     """
     yield from wrap(table.caption, width, subsequent_indent=_GAP * 2)
     grid = _grid(table)
+    labels = [text for text, _ in grid.columns[0].cells]
+    if _total_width(grid.columns, cut_headings=True) > width:
+        grid = replace(grid, columns=[grid.columns[0].with_short_labels(), *grid.columns[1:]])
     while len(grid.columns) > 1:
         count = _count_fitting(grid, width)
-        yield from _lines(_Grid(grid.rows, grid.columns[:count]), width)
-        grid = _Grid(grid.rows, [grid.columns[0], *grid.columns[count:]])
+        yield from _lines(replace(grid, columns=grid.columns[:count]), labels, width)
+        grid = replace(grid, columns=[grid.columns[0], *grid.columns[count:]])
     for line in table.failures:
         yield from wrap(line, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 
@@ -60,7 +63,6 @@ class _TextColumn:
     heading: str
     cells: Sequence[tuple[str, str]]
     items: Sequence[Sequence[str]] = ()
-    labels: bool = False  # of the rows
 
     @property
     def wraps(self) -> bool:
@@ -69,8 +71,11 @@ class _TextColumn:
     def width(self, cut_heading: bool) -> int:
         """Width of its longest text, and of its heading, which may break at spaces."""
         heading = self.heading.split() if cut_heading else [self.heading]
-        texts = [text for cell in self.cells for text in cell if not (self.labels and _has_line(text))]
-        return max(map(len, [*heading, *texts]))
+        return max(map(len, [*heading, *(text for cell in self.cells for text in cell)]))
+
+    def with_short_labels(self) -> _TextColumn:
+        """Column without its long texts, which stand on lines of their own."""
+        return replace(self, cells=[("" if len(text) > _LONGEST_LABEL else text, "") for text, _ in self.cells])
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,7 @@ class _Grid:
 def _grid(table: Table) -> _Grid:
     shown = list(table.shown_rows())
     heads = [(i, column) for i, column in enumerate(table.shown) if not column.only_on_pages]
-    made = [_text_column(c, [cells[i] for _, cells in shown], i == 0) for i, c in heads if not c.listed]
+    made = [_text_column(c, [cells[i] for _, cells in shown]) for i, c in heads if not c.listed]
     listed = [(i, column) for i, column in heads if column.listed]
     if listed:
         items = [
@@ -94,11 +99,11 @@ def _grid(table: Table) -> _Grid:
     return _Grid([row for row, _ in shown], made)
 
 
-def _text_column(column: Column, cells: Sequence[Cell], labels: bool) -> _TextColumn:
+def _text_column(column: Column, cells: Sequence[Cell]) -> _TextColumn:
     if column.prose:
-        items = [cell.text.split(", ") for cell in cells]
+        items = [_ascii(cell.text).split(", ") for cell in cells]
         return _TextColumn(column.heading, [("", "")] * len(cells), items)
-    return _TextColumn(column.heading, [(cell.text, cell.remark) for cell in cells], labels=labels)
+    return _TextColumn(column.heading, [(_ascii(cell.text), cell.remark) for cell in cells])
 
 
 def _item(column: Column, cell: Cell) -> str:
@@ -116,26 +121,24 @@ def _total_width(columns: Sequence[_TextColumn], *, cut_headings: bool) -> int:
     return sum(widths) + len(_GAP) * len(widths)
 
 
-def _lines(grid: _Grid, width: int) -> Iterator[str]:
+def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
     """Lines of columns side by side, below their headings, which break at spaces only if need be."""
-    cut = _total_width(grid.columns, cut_headings=True) < width < _total_width(grid.columns, cut_headings=False)
+    cut = _total_width(grid.columns, cut_headings=True) <= width < _total_width(grid.columns, cut_headings=False)
     widths = [column.width(cut) for column in grid.columns if not column.wraps]
     rest = max(width - len(_GAP) * (len(widths) + 1) - sum(widths), _NARROWEST)
     headings = [wrap(c.heading, rest if c.wraps else c.width(cut)) if cut else [c.heading] for c in grid.columns]
     yield from _side_by_side(headings, widths)
     for i, row in enumerate(grid.rows):
         cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]
-        if _has_line(cells[0][0]):
-            yield f"{_GAP}{cells[0][0]}"
-            cells[0] = []
+        if labels[i] and not cells[0]:
+            yield f"{_GAP}{labels[i]}"
         yield from _side_by_side(cells, widths)
         if row.status:
             yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 
 
-def _has_line(label: str) -> bool:
-    """Whether a label is so long that it stands on a line of its own."""
-    return len(label) > _LONGEST_LABEL
+def _ascii(text: str) -> str:
+    return text.replace(MISSING, "-")
 
 
 def _side_by_side(cells: Sequence[Sequence[str]], widths: Sequence[int]) -> Iterator[str]:
@@ -153,5 +156,5 @@ def _pack_items(items: Sequence[str], width: int) -> list[str]:
         if lines and len(lines[-1]) + 1 + len(text) <= width:
             lines[-1] += f" {text}"
         else:
-            lines += wrap(text, width)
+            lines += wrap_text(text, width)
     return lines

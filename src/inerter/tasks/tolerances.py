@@ -127,9 +127,8 @@ class Tolerances(Task[ToleranceAnswer]):
         """One row per design; effects are fractions of the variance."""
         names = list(dict.fromkeys(name for one in results.answers for name in one.effects))
         heads = [
-            Column("Layout", "layout"),
-            Column("Index", "index"),
-            Column(key="method"),
+            Column("Design"),
+            *(Column(key=key) for key in ("layout", "index", "method")),
             *(Column(_HEADINGS.get(name, ""), _KEYS.get(name, name)) for name in _NUMBERS),
             Column(key="unit"),
             *(Column(key=f"{kind} effect of {name}") for name in names for kind in ("main", "total")),
@@ -139,7 +138,15 @@ class Tolerances(Task[ToleranceAnswer]):
         rows = []
         for one in results.answers:
             effects = [part for name in names for part in one.effects.get(name, (None, None))]
-            contents = [one.layout, one.index, one.method, *map(one.quantity, _NUMBERS), one.unit, *effects]
+            contents = [
+                f"{one.layout}, {one.index}",
+                one.layout,
+                one.index,
+                one.method,
+                *map(one.quantity, _NUMBERS),
+                one.unit,
+                *effects,
+            ]
             rows.append(Row(cells(*contents, _due(one), one.status_text), status=one.doubt))
         return Table("Best designs with tolerances", heads, rows)
 

@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 
 from inerter.methods.registry import brief_words_of
+from inerter.report.sections import design_sections
+from inerter.report.text import section_text
 
 UNITS = {"J1": "m/s^2", "J3": "N", "J5": "m/N"}
 TITLES = {"J1": "ride comfort", "J3": "dynamic tyre load", "J5": "dynamic load carrying"}
@@ -165,3 +167,8 @@ def _gain(omega: np.ndarray, height: float, resonance: float, damping: float) ->
     """The gain of an oscillator, `height` at its resonance [rad/s]."""
     r = omega / resonance
     return height * 2 * damping * r / np.abs(1 - r**2 + 2j * damping * r)
+
+
+def terminal_text(results: xr.Dataset) -> str:
+    """What a terminal shows of the designs."""
+    return section_text(design_sections(results))

@@ -38,7 +38,7 @@ from inerter.papers.wang_su_2008.judging import (
 )
 from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.over_stiffness import Curves
-from inerter.papers.wang_su_2008.report.data import reason
+from inerter.papers.wang_su_2008.report.reasons import reason
 from inerter.papers.wang_su_2008.report.text import reproduction_text
 from inerter.papers.wang_su_2008.reproduce import JOURNAL, PaperItem, Reproduction, work
 from inerter.papers.wang_su_2008.rig import IdentifiedParameter, RigTest

@@ -35,7 +35,8 @@ from inerter.records.remedy import Action, Remedy, in_python
 from inerter.report.identification import identification_page, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_figures import figures, last_periods
-from inerter.report.identification_text import format_variance_share, identification_text, unreliability_reason
+from inerter.report.identification_tables import format_variance_share
+from inerter.report.identification_text import identification_text, unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 
@@ -185,8 +186,8 @@ def test_several_models_are_listed_best_first(found: IdentificationResult) -> No
     )
     clear = Finding(FitFinding.NOT_REACHED, "warning", "ideal", {"other": "friction"})
     text = identification_text(replace(found, candidates=rows, choice=(clear,)))
-    assert text.index("friction ") < text.index("* custom ") < text.index("ideal ")
-    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30  inaccurate", "ideal: not converged"):
+    assert text.index("friction ") < text.index("custom (chosen) ") < text.index("ideal ")
+    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30            inaccurate", "ideal: not converged"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 
@@ -249,7 +250,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
         doubted = replace(found, fit=replace(found.fit, status=status, explanations=(one,)))
         for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
             told = " ".join(text.split())
-            assert ("113 kg" in told.partition("estimates value")[0].partition("Parameters")[0]) == sound
+            assert ("113 kg" in told.partition("Estimates Parameter")[0].partition("Parameters")[0]) == sound
             assert "use the values under this hypothesis, where" in told
             assert "above" not in told.partition("records")[0]
     assert len(proposed) == 6

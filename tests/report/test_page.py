@@ -17,7 +17,7 @@ from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.study.loading import load_study
 from inerter.report.page import environment, report, write_report
-from inerter.table import Cell, Row, Table
+from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -96,7 +96,7 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text
     assert "Friction f, S3, ride comfort: better for every f." in text
-    assert "J1: equally good at 280.5 N and 900 N" in text
+    assert "S3, J1 – equally good at 280.5 N and 900 N" in text
     assert "S3 – J1: better for every f" in text
     poor = replace(found, layout="S3", status="inaccurate", message="it sticks. Take expected-value")
     doubtful = Page(report(results, asked, tmp_path, [found, poor])).text.replace(SPACE, " ")
@@ -161,8 +161,9 @@ def test_what_may_be_wider_than_the_screen_says_so(long_names):
 
 
 def test_words_in_a_table_may_go_over_several_lines_and_a_last_column_of_words_is_a_verdict():
-    cells = [[Cell("1 m"), Cell("as far as known", strong=strong, prose=True)] for strong in (True, False)]
-    table = Table("Verdicts", ["Case", "Value", "Verdict"], [Row("a", row, status="it is long") for row in cells])
+    verdicts = [Cell("as far as known", strong=strong) for strong in (True, False)]
+    rows = [Row([*cells("a", "1 m"), verdict], status="it is long") for verdict in verdicts]
+    table = Table("Verdicts", [*columns("Case", "Value"), Column("Verdict", prose=True)], rows)
     source = environment().get_template("tables.html").module.grid(table)
     assert '<table class="short judged">' in source
     assert [source.count(f"<td{attributes}>") for attributes in (' class="own prose"', ' class="prose"', "")] == [
@@ -171,7 +172,7 @@ def test_words_in_a_table_may_go_over_several_lines_and_a_last_column_of_words_i
         2,
     ]
     assert source.count("<span>a – it is long</span>") == 2
-    assert not replace(table, rows=[Row("a", [Cell("1 m"), Cell("2 m")])]).has_verdict
+    assert not replace(table, columns=columns("Case", "Value", "Verdict")).has_verdict
 
 
 @pytest.mark.campaign

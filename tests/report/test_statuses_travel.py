@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import pytest
 from study_text import study_text
+from synthetic import terminal_text
 
 import inerter as it
 from inerter.errors import Status, StatusKind
@@ -21,13 +22,12 @@ from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, by_task, parts_of
-from inerter.formatting import format_quantity
 from inerter.methods.compare import compare
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import report
 from inerter.report.study_data import as_text
-from inerter.report.text import summary_table
+from inerter.report.text import table_lines
 from inerter.uncertainty.distributions import scatter_of
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -136,17 +136,16 @@ def judged_study(tmp_path, text=TEXT):
     result = StudyResult(tmp_path, study, data, len(outcomes), found, False)
     answer = re.search(r'<ul class="answer">(.*?)</ul>', report(data, study, tmp_path, found), re.DOTALL)
     told = {task.key: (task, TaskResults(study, data, own)) for task, own in by_task(found).items()}
-    lines = {
-        key: " ".join(line.strip() for line in list(t.lines(results, 400))[2:]) for key, (t, results) in told.items()
-    }
-    sentences = {key: next(task.sentences(results, format_quantity), "") for key, (task, results) in told.items()}
+    tables = {key: task.table(results) for key, (task, results) in told.items()}
+    sentences = {key: next(task.sentences(results), "") for key, (task, results) in told.items()}
     return {
         "headline": conclusion_sentences(data, study, found)[0],
         "answer box": answer[1].replace("<li>", "").strip(),
         "front": sentences.get("fronts", ""),
-        "budget": lines.get("budgets", "").partition("  S2")[2],
-        "tolerance": lines.get("tolerances", "").partition(": ")[2],
-        "table": summary_table(data),
+        "budget": sentences.get("budgets", ""),
+        "tolerance": tables["tolerances"].rows[-1].status if "tolerances" in tables else "",
+        "terminal": {key: "\n".join(table_lines(table)) for key, table in tables.items()},
+        "table": terminal_text(data),
         "json": json.loads("".join(as_text(result))),
     }
 

@@ -5,12 +5,12 @@ import math
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
-from synthetic import LONG, designs, improved, judged, sweep, with_value
+from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_text, with_value
 
 from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layout, crossings, headlines
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
 METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-linear"]
@@ -22,7 +22,7 @@ ANY_VALUE = st.one_of(st.floats(1e-12, 1e12), st.sampled_from([math.inf, math.na
 def test_tables_fit_a_terminal(names, value, swept, message):
     results = (sweep if swept else designs)(names, baseline=names[0])
     results = with_value(results, value, f"failed: {message}", layout=names[-1], index="J3")
-    text = summary_table(results)
+    text = terminal_text(results)
     assert text.isascii()
     assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
     for name in names[1:] if len(names) > 1 else names:
@@ -30,20 +30,20 @@ def test_tables_fit_a_terminal(names, value, swept, message):
 
 
 def test_designs_with_their_numbers():
-    lines = summary_table(designs()).split("\n")
+    lines = terminal_text(designs()).split("\n")
     assert lines[:5] == [
-        "J1: ride comfort, compared with S1",
-        "  layout  value        improvement  parameters",
+        "Best for ride comfort (J1)",
+        "  Layout  J1           Improvement  Parameters",
         "  S1      2.575 m/s^2  baseline     c = 4.12 kN s/m",
         "  S2      2.42 m/s^2   +6.0 %       c = 3.873 kN s/m, b = 250 kg",
-        "  S3      2.266 m/s^2  +12.0 %      c = 3.626 kN s/m, b = 250 kg (upper bound)",
+        "  S3      2.266 m/s^2  +12.0 %      c = 3.626 kN s/m,",
     ]
 
 
 def test_a_sweep_by_its_best_and_its_worst():
     results = improved(sweep(stiffness=[10e3, 100e3, 300e3]))
     results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, -2.0, 7.0]
-    assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in summary_table(results).split("\n")
+    assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in terminal_text(results).split("\n")
 
 
 @settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
@@ -51,20 +51,20 @@ def test_a_sweep_by_its_best_and_its_worst():
 def test_tables_by_method_fit_a_terminal(names, value, swept, count):
     results = (sweep if swept else designs)(names, baseline=names[0])
     results = judged(with_value(results, value, layout=names[-1], index="J3"), METHODS[-count:])
-    text = summary_table(results)
+    text = terminal_text(results)
     assert text.isascii()
     assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
     assert all(brief_words_of(method).split()[-1] in text for method in METHODS[-count:] if count > 1)
 
 
 def test_methods_side_by_side_with_their_errors():
-    lines = summary_table(judged(designs())).split("\n")
-    assert lines[0] == "J1: ride comfort, by exact norms, compared with S1"
-    assert lines[6:13] == [
-        "  by each method, in m/s^2",
-        "  layout  by exact norms  by simulation",
+    lines = terminal_text(judged(designs())).split("\n")
+    assert lines[0] == "Best for ride comfort (J1), by exact norms"
+    start = lines.index("Ride comfort (J1) by each method, in m/s^2")
+    assert lines[start + 1 : start + 7] == [
+        "  Layout  By exact norms  By simulation",
         "  S1      2.575           2.601",
-        "  S2      2.42            2.4447 +- 0.0098",
+        "  S2      2.420           2.4447 +- 0.0098",
         "          +6.0 %          +6.00 +- 0.31 %",
         "  S3      2.266           2.2887 +- 0.0092",
         "          +12.0 %         +12.00 +- 0.31 %",
@@ -72,9 +72,9 @@ def test_methods_side_by_side_with_their_errors():
 
 
 def test_one_method_with_errors_is_the_table_as_it_was_with_errors_in_it():
-    lines = summary_table(judged(designs(), ["expected-value"])).split("\n")
-    assert lines[0] == "J1: ride comfort, compared with S1"
-    assert lines[3] == "  S2      2.4205 +- 0.0097 m/s^2  +6.00 +- 0.31 %   c = 3.873 kN s/m, b = 250 kg"
+    lines = terminal_text(judged(designs(), ["expected-value"])).split("\n")
+    assert lines[0] == "Best for ride comfort (J1)"
+    assert lines[3].split("  ")[1:5:3] == ["S2", "2.4205 +- 0.0097 m/s^2"]
     assert "by each method" not in "\n".join(lines)
 
 
@@ -106,7 +106,7 @@ def test_a_crossing_of_a_sweep_with_its_error():
     scattered = results.assign(improvement_error=results["improvement"] * 0.0 + 0.5)
     for (_, exact), (_, wide) in zip(crossings(results, "J1", "S2"), crossings(scattered, "J1", "S2"), strict=True):
         assert wide > exact
-    assert "S2 and S1 are equally good at k = " in summary_table(results)
+    assert "S2 and S1 are equally good at k = " in terminal_text(results)
 
 
 def test_curves_that_lie_on_each_other_do_not_cross():
@@ -118,13 +118,16 @@ def test_curves_that_lie_on_each_other_do_not_cross():
 
 def test_a_status_that_is_not_ok_is_told():
     status = "unstable: the design has no finite norm"
-    assert f"    ! {status}" in summary_table(with_value(designs(), math.inf, status, layout="S2", index="J1"))
+    assert f"    ! {status}" in terminal_text(with_value(designs(), math.inf, status, layout="S2", index="J1"))
     one_point = with_value(sweep(), math.inf, status, layout="S2", index="J1", k=10e3)
-    assert f"    ! {status} (1 of 5 values are not ok)" in summary_table(one_point).split("\n")
+    assert f"    ! {status} (1 of 5 values are not ok)" in terminal_text(one_point).split("\n")
 
 
 def test_ten_layouts_in_one_block_each():
-    assert [line[:2] for line in summary_table(designs(LONG)).split("\n") if line[:1] == "J"] == ["J1", "J3", "J5"]
+    lines = terminal_text(designs(LONG)).split("\n")
+    assert [line for line in lines if line.startswith("Best for")] == [
+        f"Best for {title} ({index})" for index, title in TITLES.items()
+    ]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import sampled
-from synthetic import LONG, a_map, designs, judged, limited, sweep
+from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_text
 
 import inerter as it
 from inerter.figures.study import study_figures
@@ -27,7 +27,7 @@ from inerter.report.method_comparison import method_tables
 from inerter.report.page import report
 from inerter.report.problem_statement import vehicle_rows
 from inerter.report.tables import tables_of, trade_off_tables
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH
 from inerter.signals.road import ROAD_CLASSES
 from inerter.tasks.budgets import BudgetAnswer
 
@@ -54,11 +54,11 @@ def test_whatever_is_said_names_methods_by_their_words(make, count):
     tables = [*tables_of(results), *method_tables(results)]
     said = [
         *(table.caption for table in tables),
-        *(text for table in tables for text in table.header),
+        *(text for table in tables for text in [column.heading for column in table.shown]),
         *(figure.caption for figure in study_figures(results)),
         *headlines(results),
         *(sentence for _, sentence in over_the_sweep(results) if make is not designs),
-        summary_table(results),
+        terminal_text(results),
     ]
     assert not [text for text in said if KEYS.search(text)]
     with style_context():
@@ -81,16 +81,16 @@ def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
     active = random.random((*shape, 2)) < random.choice([0.0, 0.3, 1.0])
     missed = random.random(shape) < random.choice([0.0, 0.2])
     results = limited(data, active, missed)
-    text = summary_table(results)
+    text = terminal_text(results)
     assert all(len(line) <= WIDTH for line in text.split("\n"))
     joined = re.sub(r"\s+", " ", text)
     for j, table in enumerate(limit_tables(results)):
-        for i, row in enumerate(table.rows):
+        for i, rows in enumerate(zip(*[iter(table.rows)] * 3, strict=True)):  # two limits, and both
             here = active[i, j].reshape(-1, 2) & ~missed[i, j].reshape(-1, 1)
-            for k, cell in enumerate(row.cells[:2]):
-                assert count_of(cell.text) == here[:, k].sum()
-                assert f"{row.label}: {cell.text}" in joined
-            assert count_of(row.cells[2].text) == missed[i, j].sum()
+            counts = [count_of(row.cells[2].text) for row in rows]
+            assert counts == [*here.sum(axis=0), missed[i, j].sum()]
+            assert {row.cells[0].text for row in rows} == {results["layout"].values[i]}
+            assert all(row.cells[2].text in joined for row in rows)
     figures = [f for f in study_figures(results) if f.name in ("sweep-J1", "map-J1")]
     mark = "Open markers" if make is sweep else "Black dots"
     assert (f"{mark}: active constraint." in figures[0].caption) == bool((active.any(-1) & ~missed)[:, 0].any())
@@ -130,7 +130,7 @@ def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_
         assert figure.caption.endswith("Of a layout without a feasible design, that of the closest design.")
     for table, index in zip(trade_off_tables(results), ["J1", "J3", "J5"], strict=True):
         assert [[cell.remark for cell in row.cells] for row in table.rows] == [
-            ["infeasible" if other == index else "" for other in ("J1", "J3", "J5")]
+            ["", *("infeasible" if other == index else "" for other in ("J1", "J3", "J5"))]
         ] * 3
 
 

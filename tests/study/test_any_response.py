@@ -14,6 +14,7 @@ from campaigns import sampled
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from random_mechanisms import FAMILIES, mechanisms
+from synthetic import terminal_text
 
 import inerter as it
 from inerter.cli.main import call
@@ -26,7 +27,6 @@ from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.networks.elements import Network, Parallel, Series
 from inerter.report.page import report
-from inerter.report.text import summary_table
 
 UNITS = {it.Spring: "N/m", it.Damper: "N s/m", it.Inerter: "kg"}
 SPEED = 20.0
@@ -367,7 +367,7 @@ def test_a_transmissibility_is_a_ratio_and_no_static_limit(load: Load, tmp_path:
     gains = np.abs(strut * kt / ((body * s**2 + strut) * (wheel * s**2 + strut + kt) - strut**2))
     assert data["value"].item() == pytest.approx(gains.max(), rel=1e-8)
     assert at_static_limit(study, data) == frozenset()
-    assert summary_table(data).splitlines()[2].split() == ["S1", f"{gains.max():.4g}"]
+    assert terminal_text(data).splitlines()[2].split() == ["S1", f"{gains.max():.4g}"]
     (value, unit) = next(csv.reader((tmp_path / "out" / "summary.csv").read_text().splitlines()[1:]))[3:5]
     assert (float(value), unit) == (data["value"].item(), "")
 

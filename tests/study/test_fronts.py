@@ -19,8 +19,8 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
-from inerter.formatting import format_quantity
 from inerter.report.page import report
+from inerter.report.text import table_lines
 from inerter.tasks.fronts import Fronts
 
 FREE = """k = "30 kN/m"
@@ -75,22 +75,19 @@ def test_the_table_has_a_row_a_point_that_is_its_design(found: StudyResult) -> N
 
 def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     results = TaskResults(found.study, found.data, found.answers)
-    (sentence,) = Fronts().sentences(results, format_quantity)
+    (sentence,) = Fronts().sentences(results)
     assert sentence.startswith("Trade-off between ride comfort and dynamic tyre load, at the knee: S1 ")
     assert "designs of S1" in sentence
-    lines = list(Fronts().lines(results, 80))
-    assert max(map(len, lines)) <= 80
-    assert [line.strip().partition(":")[0] for line in lines if ":" in line][1:4] == [
-        "least J1",
-        "knee",
-        "least tyre-load",
-    ]
+    table = Fronts().table(results)
+    assert max(map(len, table_lines(table))) <= 80
+    shown = [tuple(cell.text for cell in cells[:2]) for _, cells in table.shown_rows()]
+    assert shown[:3] == [("S1", "least J1"), ("S1", "knee"), ("S1", "least tyre-load")]
     (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
     with style_context():
         figure.draw().draw_without_rendering()
     page = report(found.data, found.study, tmp_path, found.answers)
     assert ">Trade-off</h2>" in page
-    assert "S2, knee" in page
+    assert ">S2</th><td>knee</td>" in page
 
 
 @pytest.mark.campaign
@@ -111,7 +108,8 @@ def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> Non
     result = run_study(study, tmp_path / "out")
     assert [front.status for front in result.answers] == ["infeasible"] * 2
     assert any(line.startswith("front of S1: infeasible") for line in result.failures)
-    assert "infeasible" in "\n".join(Fronts().lines(TaskResults(study, result.data, result.answers), 80))
+    table = Fronts().table(TaskResults(study, result.data, result.answers))
+    assert all("infeasible" in row.status for row in table.rows)
     assert "front" not in [figure.name for figure in study_figures(result.data)]
     assert report(result.data, study, tmp_path)
 

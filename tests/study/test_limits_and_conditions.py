@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from combinations import CARS
 from study_text import study_text
+from synthetic import terminal_text
 
 import inerter as it
 from inerter.app.designs import design_of
@@ -30,7 +31,7 @@ from inerter.report.index_summary import headlines
 from inerter.report.page import report
 from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -84,9 +85,9 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
         if NAME.fullmatch(str(name)) and not str(name).startswith(("gain_", "output_")):
             with pytest.raises(EntryError, match="results use"):
                 element_name(name)
-    text = summary_table(result.data)
+    text = terminal_text(result.data)
     assert max(map(len, text.splitlines())) <= WIDTH
-    assert "at its limit: 1 % more" in text
+    assert "1 % more of it changes" in " ".join(text.split())
     assert "Every design satisfies these constraints" in report(result.data, study, tmp_path)
 
 
@@ -372,7 +373,7 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
         assert found == pytest.approx(alone[part], rel=1e-6)
         assert found == pytest.approx(max(alone.values()), rel=1e-6)
         assert it.evaluate(design, study.index(limit), it.Norm()).value > 1.1 * found
-    said, told = limit.replace("-", " "), summary_table(result.data)
+    said, told = limit.replace("-", " "), terminal_text(result.data)
     assert max(map(len, told.splitlines())) <= WIDTH
     named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
     page = report(result.data, study, tmp_path)

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from study_text import study_text
+from synthetic import terminal_text
 
 from inerter.cli.main import call
 from inerter.cli.pace import Pace
@@ -37,7 +38,6 @@ from inerter.files.study.study import Study
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.tables import sweep_tables
-from inerter.report.text import summary_table
 from inerter.work.journal import Journal
 
 WORDS = ("lower", "upper", "")
@@ -239,13 +239,13 @@ def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) 
             rows = one_method(data)["improvement"].sel(index=index, layout="S2")
             finite = rows[np.isfinite(rows)]
             best = f"{float(rows.k[int(np.nanargmax(rows.where(np.isfinite(rows))))]) / 1e3:.4g}"
-            assert best in [row.label for row in table.rows]
+            assert best in [row.cells[0].text for row in table.rows]
             assert any(f"{float(finite.max()):+.1f}" in cell.remark for row in table.rows for cell in row.cells)
             assert len(table.failures) == 21
             assert table.failures[-1].startswith("and ")
         assert "study.resolved.toml has all" in pages[-1]
         assert f"The designs at all {points} values of k are in summary.csv and results.nc." in pages[-1]
-        assert max(map(len, summary_table(data).splitlines())) <= 80
+        assert max(map(len, terminal_text(data).splitlines())) <= 80
     assert abs(len(pages[1]) - len(pages[0])) < 0.1 * len(pages[0])
 
 

@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 from campaigns import sampled
 from study_text import study_text
+from synthetic import terminal_text
 
 from inerter.figures.study import draw_study, study_figures
 from inerter.figures.style import style_context
@@ -22,7 +23,7 @@ from inerter.files.study.study import Study
 from inerter.report.index_summary import headlines
 from inerter.report.page import report
 from inerter.report.tables import map_tables
-from inerter.report.text import WIDTH, summary_table
+from inerter.report.text import WIDTH
 
 SWEEP = (
     'sweep = { "vehicle.sprung_mass" = ["300 kg", "200 kg", "400 kg"], '
@@ -101,7 +102,7 @@ def test_a_map_goes_on_to_the_same_bytes(study: Study, folder: Path, tmp_path: P
 
 
 def test_a_map_is_told_in_words_that_fit(data: xr.Dataset) -> None:
-    text = summary_table(data)
+    text = terminal_text(data)
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "over sprung mass and k" in text
     better = data["improvement"].sel(layout="S2", index="J1").squeeze("method")
@@ -124,11 +125,11 @@ def test_the_figures_of_a_map_are_drawn_and_captioned(study: Study, data: xr.Dat
 
 def test_tables_of_a_map_hold_the_numbers_of_its_points(data: xr.Dataset) -> None:
     (first, *_) = map_tables(data)
-    assert first.header[1:] == ["30", "90"]
-    assert [row.label for row in first.rows] == ["200", "300", "400"]
+    assert [column.heading for column in first.columns[1:]] == ["30", "90"]
+    assert [row.cells[0].text for row in first.rows] == ["200", "300", "400"]
     at = data.sel({"layout": "S2", "index": "J1", "vehicle.sprung_mass": 200.0, "k": 90e3}).squeeze("method")
-    assert first.rows[0].cells[1].remark == f"{float(at['value']):.4g}"
-    assert first.rows[0].cells[1].text.replace("−", "-").startswith(f"{float(at['improvement']):+.1f}")
+    assert first.rows[0].cells[2].remark == f"{float(at['value']):.4g}"
+    assert first.rows[0].cells[2].text.startswith(f"{float(at['improvement']):+.1f}")
 
 
 @pytest.mark.parametrize("bad", sampled([np.nan, np.inf], [np.inf]))
@@ -140,7 +141,7 @@ def test_a_map_with_values_that_are_none_is_drawn(data: xr.Dataset, *, bad: floa
         holes["value"][1, 0] = holes["improvement"][1, 0] = bad
     with style_context():
         study_figures(holes)[0].draw().draw_without_rendering()
-    assert summary_table(holes)
+    assert terminal_text(holes)
     assert headlines(holes)
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from inerter.errors import PerformanceIndexError, StudyError
 from inerter.files.common.layouts import StrutLayout
@@ -15,15 +16,16 @@ from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
-from inerter.files.study.running import StudyResult, csv_text, run_study
+from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import answer_of, journal_entry, parts_of
+from inerter.files.study.tasks import TaskResults, answer_of, journal_entry, parts_of
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import break_even
 from inerter.optimisation.optimise import optimise
+from inerter.table import csv_rows, csv_text
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
 TEXT = """
@@ -160,7 +162,8 @@ def test_a_budget_without_a_value_has_no_better_side(study: Study, at_most: bool
     )
     none = {"value": None, "standard_error": None, "interval": None, "status": "unbounded"}
     endless = replace(ended, **none, crossings=[], message="the design is better for no h from 1 N to 2 N")
-    told = list(csv.DictReader(csv_text(Budgets().csv(study, [ended, endless])).splitlines()))
+    table = Budgets().table(TaskResults(study, xr.Dataset(), [ended, endless]))
+    told = list(csv.DictReader(csv_text(csv_rows(table)).splitlines()))
     assert [row["better"] for row in told] == ["below" if at_most else "above", ""]
     assert told[1]["status"] == "unbounded: the design is better for no h from 1 N to 2 N"
 

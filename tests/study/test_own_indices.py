@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from study_text import study_text
+from synthetic import terminal_text
 
 from inerter.errors import StudyError
 from inerter.files.study.loading import load_study
@@ -18,7 +19,6 @@ from inerter.files.study.study import Study
 from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.report.page import report
-from inerter.report.text import summary_table
 
 OWN = """[indices.grip]
 kind = "tyre-load"
@@ -66,7 +66,7 @@ def test_an_own_index_is_its_kind_with_its_settings(load: Callable[..., Study], 
     np.testing.assert_array_equal(data["value"].sel(index="grip"), alone["value"].sel(index="J3"))
     page = report(data, study, tmp_path)
     assert "High-pass filter of grip" in page
-    assert "grip: dynamic tyre load" in summary_table(data)
+    assert "Dynamic tyre load (grip)" in terminal_text(data)
 
 
 def test_settings_of_the_study_are_those_of_its_indices_that_have_none(load: Callable[..., Study]) -> None:

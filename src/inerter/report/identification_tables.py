@@ -68,13 +68,11 @@ def _format_correlation(value: float) -> str:
 
 def candidate_table(found: IdentificationResult) -> Table:
     """Models compared by their loss on the part of the records that was kept for the check."""
-    rows = [
-        Row(
-            cells(c.name, c.unknowns, format_number(c.loss, 4), _loss_difference(c), str(c.status.kind)),
-            strong=c.name == found.name,
-        )
-        for c in found.candidates
-    ]
+    rows = []
+    for c in found.candidates:
+        chosen = c.name == found.name
+        name, loss = f"{c.name} (chosen)" if chosen else c.name, format_number(c.loss, 4)
+        rows.append(Row(cells(name, c.unknowns, loss, _loss_difference(c), str(c.status.kind)), strong=chosen))
     return Table("Models", columns("Model", "Unknowns", "Loss on check", "Over the best", "Status"), rows)
 
 

@@ -28,7 +28,7 @@ from inerter.units import quote_value
 if TYPE_CHECKING:
     import xarray as xr
 
-_KEYS = ("method", "better", "value", "unit", "standard_error", "low", "high", "crossings", "status")
+_KEYS = ("index", "layout", "method", "better", "value", "unit", "standard_error", "low", "high", "crossings", "status")
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
@@ -155,10 +155,7 @@ class Budgets(Task[BudgetAnswer]):
     def table(self, results: TaskResults[BudgetAnswer]) -> Table:
         """One row per break-even value."""
         heads = [
-            Column("Element", "parameter"),
-            Column("Index", "index"),
-            Column("Layout", "layout"),
-            Column("Better", prose=True),
+            *(Column("Design"), Column("Element", "parameter"), Column("Better", prose=True)),
             *(Column(key=key) for key in _KEYS),
         ]
         rows = []
@@ -166,7 +163,7 @@ class Budgets(Task[BudgetAnswer]):
             low, high = one.interval or (None, None)
             better = "" if one.value is None else "below" if one.at_most else "above"
             contents = [
-                *(one.parameter, one.index, one.layout, _verdict(one)),
+                *(f"{one.layout}, {one.index}", one.parameter, _verdict(one), one.index, one.layout),
                 *(one.method, better, one.value, one.unit, one.standard_error, low, high),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]

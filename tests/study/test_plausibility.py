@@ -42,7 +42,7 @@ def test_check_says_which_class_a_road_is(tmp_path, capsys, roughness, letter):
         ("5e-7 m^3/cycle", "5e-7 m^3", "no road is as smooth as Gd(n0) = 0.5e-6 m^3"),
         ('"25 m/s"', '"250 m/s"', "no vehicle drives at 250 m/s"),
         ("181.75 kg", "200 mg", "no quarter car is like this one: sprung mass 0.0002 kg, less than 1 kg"),
-        ('tyre_stiffness = "120 kN/m"', 'tyre_stiffness = "120 N/m"', "tyre stiffness 120 N/m, less than 2 kN/m"),
+        ('tyre_stiffness = "120 kN/m"', 'tyre_stiffness = "120 N/m"', "tyre stiffness 0.12 kN/m, less than 2 kN/m"),
     ],
 )
 def test_check_doubts_what_no_road_or_vehicle_is(tmp_path, capsys, old, new, warning):

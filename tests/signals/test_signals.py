@@ -189,7 +189,8 @@ def test_a_sum_takes_the_roughest_hold_and_the_known_speed():
     kerb = multisine(ROAD, seed=0) + step(0.1, time=0.25)
     assert (kerb.hold, kerb.speed) == ("zero", 25.0)
     assert (sine(1.0, 1.0) + SIGNALS["linear"]).hold == "linear"
-    with pytest.raises(SignalError, match=r"different speeds cannot be added, got (25 m/s and 10 m/s|10 m/s and 25 m/s)\."):
+    speeds = r"different speeds cannot be added, got (25 m/s and 10 m/s|10 m/s and 25 m/s)\."
+    with pytest.raises(SignalError, match=speeds):
         SIGNALS["multisine"] + SIGNALS["sine"]
 
 

@@ -20,6 +20,7 @@ _PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size,
 _DIGITS = 4  # of a quantity, unless more or fewer are asked for
 _MOST_DIGITS = 6  # of a value with an interval
 _EXACT = 12  # digits to which values are shown that differ in fewer
+_SMALL, _LARGE = 1e-4, 1e6  # numbers in a prefixed unit; others are written with a power of ten and without a prefix
 _FAR = 100.0  # ratio of two numbers above which each has its own unit
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
@@ -74,6 +75,18 @@ def format_number(value: float, digits: int = 6, sign: str = "") -> str:
     text = f"{value:{sign}.{digits}g}" if value else "0"
     whole = "e" in text and 1.0 <= abs(value) < 10.0 ** max(digits, 9)
     return f"{float(text):{sign}.0f}" if whole else text
+
+
+def format_complex(value: complex, digits: int = _DIGITS) -> str:
+    """Complex number as text, as its real part where the imaginary one is rounding.
+
+    >>> format_complex(-0.5 - 12.3456j), format_complex(-3.0 + 1e-15j)
+    ('-0.5 - 12.35j', '-3')
+    """
+    if abs(value.imag) <= 1e-12 * abs(value):
+        return format_number(value.real, digits)
+    sign = "+" if value.imag > 0.0 else "-"
+    return f"{format_number(value.real, digits)} {sign} {format_number(abs(value.imag), digits)}j"
 
 
 def format_quantity(
@@ -287,7 +300,8 @@ def _scale(size: float, unit: str, digits: int = _DIGITS) -> Scale:
     rounded = abs(float(f"{size:.{digits}g}"))
     rounded = rounded if rounded > 0.0 else 1.0
     choices = _PREFIXES.get(unit, ((0.0, 1.0, unit),))
-    return next(Scale(factor, name) for least, factor, name in choices if rounded >= least)
+    found = next(Scale(factor, name) for least, factor, name in choices if rounded >= least)
+    return found if _SMALL <= rounded * found.factor < _LARGE else Scale(1.0, unit)
 
 
 def _in_scale(value: float, own: Scale, digits: int) -> str:

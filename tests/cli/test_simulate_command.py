@@ -82,7 +82,7 @@ def test_results_are_replaced_on_demand_only(
 
     rattle.write_text(RATTLE.replace('frequency = "3 Hz"', 'frequency = "30 kHz"'), encoding="utf-8")
     assert call(["simulate", str(rattle), "--force"]) == 2
-    assert "rattle.toml: simulation: a step of 0.0001 s is too long" in capsys.readouterr().err
+    assert "rattle.toml: simulation: a step of 0.1 ms is too long" in capsys.readouterr().err
     assert events.read_bytes() == before
     rattle.write_text(RATTLE.replace('frequency = "3 Hz"', 'frequency = "4 Hz"'), encoding="utf-8")
     assert call(["simulate", str(rattle), "--force"]) == 0

@@ -221,7 +221,7 @@ def test_a_comparison_is_as_good_as_the_worse_of_its_estimates():
         found = Comparison(one, other, Difference(-1.0, "N", 0.1, (-1.2, -0.8)))
         assert found.status is bad
         assert found.percent == -50.0
-        assert str(found) == "not certain (inaccurate: so so): the first is 50 % ± 5 % better than the second"
+        assert str(found) == "not certain (inaccurate: so so): the first is 50.0 ± 5.0 % better than the second"
 
 
 CASES = {

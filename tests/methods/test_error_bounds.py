@@ -54,7 +54,7 @@ def test_a_bound_beyond_the_promise_is_said_with_its_number():
         it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10), ErrorSource("period", 0.02)], 0.01
     )
     assert found.status.kind is StatusKind.INACCURATE
-    assert "relative error up to 2.0e-02, more than 0.01" in found.status.message
+    assert "relative error up to 0.02, more than 0.01" in found.status.message
     assert "period" in found.status.message
     assert with_error_sources(it.Estimate(2.0, "m"), [ErrorSource("rounding", 1e-10)], 0.01).status.ok
 

@@ -155,7 +155,7 @@ def test_rows_that_are_left_out_beyond_the_limit_are_named(tmp_path):
     (tmp_path / "a.csv").write_text("\n".join(["time [s],x [mm],F [N]", *rows]), encoding="utf-8")
     with pytest.raises(
         RecordError,
-        match=r"20 samples are missing in the times after 0\.078 s, too many to interpolate .* gaps='longest'",
+        match=r"20 samples are missing in the times after 78 ms, too many to interpolate .* gaps='longest'",
     ):
         it.read_record(tmp_path / "a.csv", gaps="fill")
     assert it.read_record(tmp_path / "a.csv", gaps=0.05).uniform

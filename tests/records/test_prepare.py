@@ -88,7 +88,7 @@ def test_gaps_in_the_times_are_filled():
     assert done.time == pytest.approx(T)
     assert done.displacement == pytest.approx(SMOOTH.displacement, abs=1e-9)
     assert done.notes[-1] == "Samples missing in the times, interpolated: 4, up to 3 in a row."
-    with pytest.raises(RecordError, match=r"gap of 0\.004 s after 0\.699 s, longer than the limit of 0\.003 s"):
+    with pytest.raises(RecordError, match=r"gap of 4 ms after 0\.699 s, longer than the limit of 3 ms"):
         prepare.fill_gaps(record, 0.003)
     assert prepare.fill_gaps(SMOOTH, 0.01).notes[-1].startswith("The times have no gaps")
 

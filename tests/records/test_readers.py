@@ -151,7 +151,7 @@ def test_mdf_of_several_rasters(tmp_path):
     assert record.time == pytest.approx(T[inside])
     assert record.force == pytest.approx(F[inside])
     assert record.displacement == pytest.approx(1e-3 * np.cos(2 * np.pi * 3.0 * T[inside]), abs=1e-12)
-    assert "interpolated to the times of the force, every 0.002 s" in record.notes[0]
+    assert "interpolated to the times of the force, every 2 ms" in record.notes[0]
 
 
 @pytest.mark.parametrize("write", [write_mat, write_mat73])

@@ -25,7 +25,7 @@ WRONG = {
     "a seed below zero": (lambda: multisine(ROAD, -1), "non-negative integer, got -1"),
     "half a seed": (lambda: held_noise(0.5, 1.0), "non-negative integer, got 0.5"),
     "no seed": (lambda: flat_multisine(None, 1.0, 1.0, 2.0), "got None"),
-    "reversed frequencies": (lambda: multisine(ROAD, 0, 10.0, 1.0), "got 10 and 1 Hz. Swap them"),
+    "reversed frequencies": (lambda: multisine(ROAD, 0, 10.0, 1.0), "got 10 Hz and 1 Hz. Swap them"),
     "no lowest frequency": (
         lambda: multisine(ROAD, 0, 0.0),
         "lowest frequency of a multisine must be a positive number",
@@ -46,7 +46,7 @@ WRONG = {
     "too long a noise": (lambda: held_noise(0, 1.0, 1e-9, 1e3), r"has 1e\+12 intervals"),
     "a noise of less than an interval": (lambda: held_noise(0, 1.0, 1.0, 0.2), "Use an interval such as 0.2 s"),
     # transients
-    "reversed chirp": (lambda: chirp(1.0, 5.0, 1.0, 10.0), "got 5 and 1 Hz. Swap them"),
+    "reversed chirp": (lambda: chirp(1.0, 5.0, 1.0, 10.0), "got 5 Hz and 1 Hz. Swap them"),
     "no duration": (lambda: chirp(1.0, 1.0, 5.0, 0.0), "duration .* must be a positive number of s"),
     "a chirp as text": (lambda: chirp("1", 1.0, 5.0, 1.0), "amplitude of a chirp must be a finite number"),
     "endless step": (lambda: step(math.inf), "height of a step must be a finite number"),

@@ -87,11 +87,11 @@ MECHANISMS: dict[str, tuple[Callable[[], object], str]] = {
 REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     "a step too long for a formula": (
         lambda: drive(road=it.multisine(it.Road(5e-7, 25.0), seed=0), step=1e-3),
-        r"step of 0.001 s is too long for .*goes up to 1000 Hz\. Take 0.0005 s or less",
+        r"step of 1 ms is too long for .*goes up to 1000 Hz\. Take 0.5 ms or less",
     ),
     "a step too long for a table": (
         lambda: drive(road=table(), step=2e-2, duration=0.2),
-        r"step of 0.02 s is too long .* samples are 0.01 s apart\. Take 0.01 s or less",
+        r"step of 20 ms is too long .* samples are 10 ms apart\. Take 10 ms or less",
     ),
     "no input": (lambda: drive(road=None), r"motion of road is missing"),
     "no input on the rig": (lambda: rig(it.Spring(1e3), displacement=None), r"motion of displacement is missing"),

@@ -42,7 +42,7 @@ def test_check_says_which_class_a_road_is(tmp_path, capsys, roughness, letter):
         ("5e-7 m^3/cycle", "5e-7 m^3", "no road is as smooth as Gd(n0) = 0.5e-6 m^3"),
         ('"25 m/s"', '"250 m/s"', "no vehicle drives at 250 m/s"),
         ("181.75 kg", "200 mg", "no quarter car is like this one: sprung mass 0.0002 kg, less than 1 kg"),
-        ('tyre_stiffness = "120 kN/m"', 'tyre_stiffness = "120 N/m"', "tyre stiffness 120 N/m, less than 2 kN/m"),
+        ('tyre_stiffness = "120 kN/m"', 'tyre_stiffness = "120 N/m"', "tyre stiffness 0.12 kN/m, less than 2 kN/m"),
     ],
 )
 def test_check_doubts_what_no_road_or_vehicle_is(tmp_path, capsys, old, new, warning):
@@ -77,7 +77,7 @@ def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
     lines = capsys.readouterr().out
     answer = " ".join(lines[lines.rindex("Warning: J1") :].split())
     assert "more than the acceleration of gravity" in answer
-    assert "more than the static load of 2028 N" in answer  # (181.75 kg + 25 kg) g
+    assert "more than the static load of 2.028 kN" in answer  # (181.75 kg + 25 kg) g
     assert answer.index("Warning") < answer.index("Best ride comfort")
     assert "Road: class G of ISO 8608 (Gd(n0) = 51200e-6 m^3" in " ".join(lines.split())
     assert "no public road is as rough" in (tmp_path / "results" / "report.html").read_text(encoding="utf-8")

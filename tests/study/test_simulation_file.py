@@ -296,7 +296,7 @@ BAD = {
         ["incompatible unit", '"1 N"'],
     ),
     "seed": (CAR, [("seed = 3", "seed = -3")], "signal.seed", ["whole number"]),
-    "band": (CAR, [("seed = 3", 'lowest = "3 kHz"')], "signal", ["must not exceed", "3000 and 1000 Hz"]),
+    "band": (CAR, [("seed = 3", 'lowest = "3 kHz"')], "signal", ["must not exceed", "3000 Hz and 1000 Hz"]),
     "road as force": (CAR, [("seed = 3", 'input = "sprung_force"')], "signal.kind", ["shape of a road"]),
     "input": (CAR, [("seed = 3", 'input = "rod"')], "signal.input", ['"rod"', 'Did you mean "road"?']),
     "rig's input": (RIG, [('"3 Hz"', '"3 Hz"\ninput = "road"')], "signal.input", ["displacement"]),

@@ -26,6 +26,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study
+from inerter.formatting import format_number
 from inerter.report.conclusions import conclusion_sentences
 
 ROUGH = 'roughness = "5e-7 m^3/cycle"'
@@ -206,7 +207,7 @@ def test_a_waviness_that_is_not_two_is_told_first(load, tmp_path, waviness, belo
     write_profile(tmp_path / "road.csv", heights(3, waviness, class_of=16e-6))
     study = load('profile = "road.csv"\nsampling = "filtered"')
     (note,) = study_notes(study)[:1]
-    assert f"has the waviness {study.line.waviness:.2f}" in note
+    assert f"has the waviness {format_number(study.line.waviness, 3)}" in note
     assert study.line.waviness == pytest.approx(waviness, abs=0.1)
     warnings = list(study.line.warnings)
     assert len(warnings) == bool(below)

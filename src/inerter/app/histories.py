@@ -14,6 +14,7 @@ from inerter.files.common.roads import road_values
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.study.study import Study
+from inerter.formatting import format_alike
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
 from inerter.vehicle.mechanism import Mechanism
@@ -55,9 +56,8 @@ def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) ->
     """
     duration, step = float(body.get("duration") or _DURATION), float(body.get("step") or _STEP)
     if duration > _LONGEST:
-        raise StudyError(
-            f"Got {duration:g} s; a page shows at most {_LONGEST:g} s. Longer ones are for: inerter simulate."
-        )
+        given, most = format_alike([duration, _LONGEST], "s")
+        raise StudyError(f"Got {given}; a page shows at most {most}. Longer ones are for: inerter simulate.")
     if study.road is None:
         raise StudyError("The motion is one over a road, and this study has none. Add [road].")
     return SimulationRequest(

@@ -41,7 +41,7 @@ class _Telling:
         if (self.folder / STOP).exists():
             raise JobStopped
         if not step.over and time.monotonic() - self.last > _SELDOM:
-            self(*self.count, f"{step}, {step.seconds:.0f} s")
+            self(*self.count, f"{step}, {round(step.seconds)} s")
 
 
 def work(folder: str) -> dict[str, Any]:

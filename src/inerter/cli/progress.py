@@ -27,6 +27,7 @@ from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
+from inerter.formatting import format_number
 from inerter.kernels.prepare import ProgressCallback
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
@@ -72,7 +73,7 @@ class _Study:
         if self.begun is None:
             return f"{self.what}: {self.compiling or step}"
         part = self.part()
-        rate = f", {self.rate():.3g} a second" if self.done > self.kept + 9 else ""
+        rate = f", {format_number(self.rate(), 3)} a second" if self.done > self.kept + 9 else ""
         count = f"{self.done} of {self.total} {self.items} found{_not_ok(self.not_ok)}{rate}"
         return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
 
@@ -194,7 +195,7 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
         part = [0.0]
 
         def words(step: ProgressStep) -> str:
-            return f"{what}: {100 * part[0]:.0f} % done{f'; {step}' if step.total else ''}"
+            return f"{what}: {round(100 * part[0])} % done{f'; {step}' if step.total else ''}"
 
         with pulse(words):
             yield lambda done: part.__setitem__(0, done)

@@ -86,5 +86,5 @@ def duration(seconds: float) -> str:
     """Duration for readers, in the largest unit of which it has at least two."""
     for unit, size in (("h", 3600.0), ("min", 60.0)):
         if seconds >= 2.0 * size:
-            return f"{seconds / size:.0f} {unit}"
-    return f"{seconds:.0f} s"
+            return f"{round(seconds / size)} {unit}"
+    return f"{round(seconds)} s"

@@ -15,6 +15,7 @@ from inerter.files.common.folder import FIGURES
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.running import SimulationResult, run_simulation
+from inerter.formatting import format_number, format_quantity
 from inerter.report.simulation import simulation_data, simulation_text
 
 
@@ -55,7 +56,7 @@ def _window(text: str, request: SimulationRequest) -> Window:
         window = (math.nan, math.nan)
     if not window[1] - window[0] >= 2.0 * sample:
         raise StudyError(
-            f"--window is FROM:TO in seconds, at least two samples within the {length:g} s of the simulation, such as "
-            f"--window 0:{length:g}; got {text!r}."
+            f"--window is FROM:TO in seconds, at least two samples within the {format_quantity(length, 's', 6)} of the "
+            f"simulation, such as --window 0:{format_number(length)}; got {text!r}."
         )
     return window

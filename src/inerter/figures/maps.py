@@ -28,7 +28,7 @@ from inerter.figures.labels import (
     title_with_name,
 )
 from inerter.figures.style import log_axis, suits_log_axis
-from inerter.formatting import choose_scale, typeset
+from inerter.formatting import choose_scale, format_number, typeset
 
 Array = NDArray[np.float64]
 
@@ -139,7 +139,7 @@ def _draw(data: xr.Dataset, numbers: Array, ax: Axes, look: dict[str, Any], labe
         _mark(ax, *(grid.ravel() for grid in np.meshgrid(x, y)), markersize=2.0, **_OPEN)
         held = np.argwhere(held_back(data).values)
         _mark(ax, x[held[:, 0]], y[held[:, 1]], markersize=2.4, color="black", clip_on=False)
-    plain = FuncFormatter(lambda value, _: typeset(f"{value:.6g}"))
+    plain = FuncFormatter(lambda value, _: typeset(format_number(value)))
     bar = ax.figure.colorbar(bands, ax=ax, location="bottom", fraction=0.06, pad=0.02, format=plain)
     bar.set_label(label.replace("\n", " "))
     bar.ax.locator_params(nbins=5)

@@ -18,7 +18,7 @@ from inerter.figures.curves import thin_curve
 from inerter.figures.labels import axis_label, capital
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
-from inerter.formatting import choose_scale
+from inerter.formatting import choose_scale, format_number, format_range
 from inerter.networks.elements.roles import GuardRole
 from inerter.systems.outputs import force_of
 
@@ -75,7 +75,7 @@ def panels(result: SimulationResult) -> list[TimePanel]:
     if result.accelerations:
         weights = {w.output: w.weight for w in result.mechanism.measures.comfort}
         body = tuple(
-            Curve(name, name.removesuffix("_acceleration") + ("" if w == 1.0 else f" × {w:.3g} m"), i, w)
+            Curve(name, name.removesuffix("_acceleration") + ("" if w == 1.0 else f" × {format_number(w, 3)} m"), i, w)
             for i, (name, w) in enumerate(weights.items(), len(struts))
         )
         found.append(TimePanel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
@@ -117,8 +117,8 @@ def simulation_figure(result: SimulationResult, window: Window) -> Figure:
     inside = (run.time >= window[0]) & (run.time <= window[1])
     if np.sum(inside) < 2:
         raise StudyError(
-            f"The window from {window[0]:g} to {window[1]:g} s holds less than two samples of those from "
-            f"{run.time[0]:g} to {run.time[-1]:g} s."
+            f"The window from {format_range(*window, 's', 6)} holds less than two samples of those from "
+            f"{format_range(run.time[0], run.time[-1], 's', 6)}."
         )
     rig = result.on_rig
     figure, axes = new_figure(len(wanted), height=_HEIGHT) if not rig else _with_loop(len(wanted))

@@ -37,6 +37,7 @@ from inerter.figures.labels import (
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
+from inerter.formatting import format_number
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side
@@ -113,7 +114,7 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"sweep-{index}",
             f"Best {title} for each value of {element}{versus}."
             + _uncertain(results, " Bands: one standard error to both sides.")
-            + (f" Below {WORST:g} % the curves are cut." if _any(_cut(here)) else "")
+            + (f" Below {format_number(WORST)} % the curves are cut." if _any(_cut(here)) else "")
             + _limits(here, "Open markers" if markers_shown(results) else "", "No curve"),
             partial(_sweep, results, index),
         )

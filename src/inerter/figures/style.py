@@ -21,7 +21,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, ScalarFo
 from numpy.typing import ArrayLike
 
 from inerter.atomic_io import atomic_write
-from inerter.formatting import typeset
+from inerter.formatting import format_number, typeset
 
 NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
@@ -177,7 +177,7 @@ def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None
         low, high = middle / half, middle * half
         ax.set(**{f"{which}lim": (low, high)})
     few = high < _LABELLED_RATIO * low
-    plain = FuncFormatter(lambda value, _: typeset(f"{value:g}"))
+    plain = FuncFormatter(lambda value, _: typeset(format_number(value)))
     axis.set_major_formatter(plain)
     axis.set_minor_locator(LogLocator(subs=(2.0, 5.0) if few else tuple(range(2, 10))))
     axis.set_minor_formatter(plain if few else NullFormatter())

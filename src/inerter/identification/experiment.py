@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
+from inerter.formatting import format_alike
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
 from inerter.records.record import Record
@@ -149,9 +150,9 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
     at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
     wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
     if not 0.0 <= wait < record.duration:
+        part, whole = format_alike([wait, record.duration], "s")
         raise IdentificationError(
-            f"lead: the part discarded at the start, {wait:g} s, must be non-negative and shorter than the record, "
-            f"{record.duration:g} s."
+            f"lead: the part discarded at the start, {part}, must be non-negative and shorter than the record, {whole}."
         )
     kept[: round(wait / interval)] = False
     edge = min(round(1.0 / (motion.bandwidth * interval)), count // 10)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
-from inerter.formatting import format_quantity, format_with_interval
+from inerter.formatting import format_alike, format_number, format_quantity, format_share, format_with_interval
 from inerter.records.finding import Finding
 from inerter.records.remedy import Action, Remedy, Text
 
@@ -51,8 +51,8 @@ class FitFinding(StrEnum):
 
 def _unpredictable_text(f: Finding) -> Text:
     return (
-        f"the force is too sensitive to encoder noise ({f.numbers['changed']:.1f} % change) to identify any parameter; "
-        f"record a motion with less rattling",
+        f"the force is too sensitive to encoder noise ({format_number(f.numbers['changed'], 3)} % change) to identify "
+        f"any parameter; record a motion with less rattling",
     )
 
 
@@ -62,8 +62,9 @@ def _possible_cause_text(f: Finding) -> Text:
 
 def _misfit_text(f: Finding) -> Text:
     n = f.numbers
-    times = f"the residual is {n['times']:.2g} times the sensor noise"
-    share = "" if n["explained"] is None else f", and the variance explained is only {n['explained']:.1f} %"
+    times = f"the residual is {format_number(n['times'], 2)} times the sensor noise"
+    explained = n["explained"]
+    share = "" if explained is None else f", and the variance explained is only {format_number(explained, 3)} %"
     if n["likeliest"] is None:
         where = "" if n["where"] is None else f", but {n['where'].sentence}"
         return (f"{times}{share}; no tested cause accounts for it{where}",)
@@ -73,7 +74,7 @@ def _misfit_text(f: Finding) -> Text:
 
 
 def _saturation_text(f: Finding) -> Text:
-    return (f"the load cell was saturated in {100.0 * f.numbers['share']:.0f} % of the samples",)
+    return (f"the load cell was saturated in {format_share(f.numbers['share'], 2)} of the samples",)
 
 
 def _reversed_force_text(f: Finding) -> Text:
@@ -123,15 +124,15 @@ def _included_uncertainty_text(f: Finding) -> Text:
 def _force_margin_text(f: Finding) -> str:
     """Force up to which the load cell has range."""
     limit = f.numbers["limit"]
-    return "" if limit is None else f", up to the {limit:.0f} N of the load cell"
+    return "" if limit is None else f", up to the {format_quantity(limit, 'N')} of the load cell"
 
 
 def _faster_reversals_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"{f.about}: a faster motion with frequent force reversals (present motion: up to {n['fastest']:.3g} Hz and "
-        f"{n['peak']:.3g} N{_force_margin_text(f)}), sampled so that crossing {format_quantity(n['width'], 'm')} takes "
-        f"several samples.",
+        f"{f.about}: a faster motion with frequent force reversals (present motion: up to "
+        f"{format_quantity(n['fastest'], 'Hz', 3)} and {format_quantity(n['peak'], 'N', 3)}{_force_margin_text(f)}), "
+        f"sampled so that crossing {format_quantity(n['width'], 'm')} takes several samples.",
     )
 
 
@@ -146,8 +147,8 @@ def _larger_accelerations_text(f: Finding) -> Text:
 
 def _higher_frequencies_text(f: Finding) -> Text:
     return (
-        f"{f.about}: a multisine or sweep of small amplitude up to twice the present {f.numbers['fastest']:.3g} Hz or "
-        f"more{_force_margin_text(f)}.",
+        f"{f.about}: a multisine or sweep of small amplitude up to twice the present "
+        f"{format_quantity(f.numbers['fastest'], 'Hz', 3)} or more{_force_margin_text(f)}.",
     )
 
 
@@ -162,26 +163,26 @@ def _break_away_text(f: Finding) -> Text:
 def _narrower_interval_text(f: Finding) -> Text:
     n = f.numbers
     changes = [
-        f"{n['larger']:g} times the amplitude" if n["larger"] != 1.0 else "",
-        f"{n['faster']:g} times the frequencies" if n["faster"] != 1.0 else "",
+        f"{format_number(n['larger'])} times the amplitude" if n["larger"] != 1.0 else "",
+        f"{format_number(n['faster'])} times the frequencies" if n["faster"] != 1.0 else "",
         f"{n['longer']} times as long" if n["longer"] != 1 else "",
     ]
     amplitude, duration = format_quantity(n["amplitude"], "m", 3), format_quantity(n["duration"], "s", 3)
     return (
         f"{f.about}: the same motion, {', '.join(filter(None, changes))} (amplitude {amplitude}, up to "
-        f"{n['highest']:.3g} Hz, {duration}): expected interval width {_width(n['expected'], f)} instead of "
-        f"{_width(n['width'], f)}.",
+        f"{format_quantity(n['highest'], 'Hz', 3)}, {duration}): expected interval width {_width(n['expected'], f)} "
+        f"instead of {_width(n['width'], f)}.",
     )
 
 
 def _width(width: float, f: Finding) -> str:
-    share = f" ({100.0 * width / abs(f.numbers['value']):.2g} %)" if f.numbers["value"] else ""
+    share = f" ({format_share(width / abs(f.numbers['value']), 2)})" if f.numbers["value"] else ""
     return f"{format_quantity(width, f.numbers['unit'], 2)}{share}"
 
 
 def _calibrate_text(f: Finding) -> Text:
     n = f.numbers
-    fixed, width = (format_quantity(n[name], n["unit"], 2) for name in ("fixed", "width"))
+    fixed, width = format_alike([n["fixed"], n["width"]], n["unit"], 2)
     return (
         f"{f.about}: a better calibration of the sensors: their scales alone cause {fixed} of the interval width of "
         f"{width}, which no other motion can reduce.",
@@ -193,7 +194,8 @@ def _next_candidate_text(f: Finding) -> str:
     n = f.numbers
     if n["next"] is None:
         return ""
-    how = f"{n['ratio']:.3g} times" if n["ratio"] > 2.0 else f"{100.0 * (n['ratio'] - 1.0):.2g} % above"
+    ratio = n["ratio"]
+    how = f"{format_number(ratio, 3)} times" if ratio > 2.0 else f"{format_share(ratio - 1.0, 2)} above"
     return f" Next candidate: {n['next']}, {how} the loss of the best."
 
 
@@ -210,7 +212,7 @@ def _fewest_unknowns_text(f: Finding) -> Text:
     n = f.numbers
     return (
         f"{f.about}: with {_unknowns_text(f)}, prediction of the validation data as good as {n['best']} with "
-        f"{n['best_unknowns']} (loss {100.0 * n['behind']:.2g} % higher).{_next_candidate_text(f)}",
+        f"{n['best_unknowns']} (loss {format_share(n['behind'], 2)} higher).{_next_candidate_text(f)}",
     )
 
 
@@ -243,8 +245,8 @@ def _given_inertance_text(f: Finding) -> Text:
 
 def _saturated_check_text(f: Finding) -> Text:
     return (
-        f"The load cell was saturated in {100.0 * f.numbers['share']:.2g} % of the validation record, which no model "
-        f"includes. Reduce the motion.",
+        f"The load cell was saturated in {format_share(f.numbers['share'], 2)} of the validation record, which no "
+        f"model includes. Reduce the motion.",
     )
 
 

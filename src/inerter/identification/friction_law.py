@@ -14,6 +14,7 @@ from scipy.stats import f as fisher
 from scipy.stats import t as student
 
 from inerter.errors import IdentificationError
+from inerter.formatting import format_alike, format_number, format_quantity, format_range
 from inerter.identification.fit import Fit
 from inerter.identification.initial_estimate import chain_of
 from inerter.networks.elements import Free, Network, Tied
@@ -154,30 +155,33 @@ def _not_identifiable(
 def _coulomb_text(law: FrictionLaw) -> str:
     unseen, top = max(abs(end) for end in law.fast_interval), law.speeds[1]
     return (
-        f"No dependence on speed up to {top:.3g} m/s (p = {law.p_value:.2g}); a viscous part above {unseen:.3g} N s/m, "
-        f"{unseen * top:.2g} N at that speed, can be excluded."
+        f"No dependence on speed up to {format_quantity(top, 'm/s', 3)} (p = {format_number(law.p_value, 2)}); a "
+        f"viscous part above {format_quantity(unseen, 'N s/m', 3)}, {format_quantity(unseen * top, 'N', 2)} at that "
+        f"speed, can be excluded."
     )
 
 
 def _stribeck_text(law: FrictionLaw) -> str:
     return (
-        f"Friction falls with speed at low speed, by {-law.slow:.3g} N s/m below {_SLOW * law.speeds[1]:.3g} m/s "
-        f"(p = {law.p_value:.2g}): a Stribeck effect, which Coulomb's law neglects."
+        f"Friction falls with speed at low speed, by {format_quantity(-law.slow, 'N s/m', 3)} below "
+        f"{format_quantity(_SLOW * law.speeds[1], 'm/s', 3)} (p = {format_number(law.p_value, 2)}): a Stribeck effect, "
+        f"which Coulomb's law neglects."
     )
 
 
 def _viscous_text(law: FrictionLaw) -> str:
     slope = law.fast if law.fast_interval[0] > 0.0 else law.slow
     return (
-        f"Friction grows with speed, by {slope:.3g} N s/m (p = {law.p_value:.2g}): add a damper in parallel with the "
-        f"inerter."
+        f"Friction grows with speed, by {format_quantity(slope, 'N s/m', 3)} (p = {format_number(law.p_value, 2)}): "
+        f"add a damper in parallel with the inerter."
     )
 
 
 def _other_text(law: FrictionLaw) -> str:
+    slow, fast = format_alike([law.slow, law.fast], "N s/m", 3)
     return (
-        f"Friction depends on speed (p = {law.p_value:.2g}), yet neither as a damper nor as Stribeck's law: slopes "
-        f"{law.slow:.3g} and {law.fast:.3g} N s/m."
+        f"Friction depends on speed (p = {format_number(law.p_value, 2)}), yet neither as a damper nor as Stribeck's "
+        f"law: slopes {slow} and {fast}."
     )
 
 
@@ -185,8 +189,8 @@ def _not_identifiable_text(law: FrictionLaw) -> str:
     low, high = law.speeds
     why = {
         "samples": f"the device slides in {law.samples} samples only; record more, with larger strokes",
-        "friction": f"the friction, {law.level:.3g} N, does not exceed the noise",
-        "speeds": f"the sliding speeds range from {low:.3g} to {high:.3g} m/s only; use larger strokes",
+        "friction": f"the friction, {format_quantity(law.level, 'N', 3)}, does not exceed the noise",
+        "speeds": f"the sliding speeds range from {format_range(low, high, 'm/s', 3)} only; use larger strokes",
     }
     return f"The friction law is not identifiable: {why[law.reason]}."
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from inerter.deprecation import RenamedAttribute
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements.roles import LinearRole
 
 
@@ -72,7 +72,7 @@ def _cause(i: Identifiability) -> str:
         return "The records contain too little information on the sensor."
     if i.held is not None:
         what = "It never slipped" if i.role is LinearRole.OPEN else "The friction in parallel with it never slipped"
-        return f"{what}, under forces of up to {_format_value(i.held, 'N')}; excite with larger or faster motion."
+        return f"{what}, under forces of up to {format_quantity(i.held, 'N')}; excite with larger or faster motion."
     if i.role is not LinearRole.CLOSED:
         return _CAUSES[i.role]
     if i.openings == 0:
@@ -80,18 +80,13 @@ def _cause(i: Identifiability) -> str:
     return f"All {i.openings} lift-offs are too short to be resolved in the noise."
 
 
-def _format_value(value: float, unit: str) -> str:
-    return format_quantity(value, unit) if unit else f"{value:.4g}"
-
-
 def _magnitude(i: Identifiability) -> str:
-    low, high = (_format_value(end, i.unit) for end in i.interval)
-    return f"identified; only its order of magnitude, {low} to {high}."
+    return f"identified; only its order of magnitude, {format_range(*i.interval, i.unit)}."
 
 
 def _below(i: Identifiability) -> str:
-    least = format_quantity(i.least, i.unit) if i.unit else f"{i.least:g}"
-    upper = _format_value(i.interval[1], i.unit)
+    least = format_quantity(i.least, i.unit)
+    upper = format_quantity(i.interval[1], i.unit)
     return f"not identifiable: only an upper bound, {upper}, is known (search from {least}). {_cause(i)}"
 
 
@@ -101,12 +96,12 @@ _SENTENCES: Mapping[Verdict, Callable[[Identifiability], str]] = {
     Verdict.ANY: lambda i: f"not identifiable: the confidence interval covers all of its bounds. {_cause(i)}",
     Verdict.BELOW: _below,
     Verdict.ABOVE: lambda i: (
-        f"not identifiable: only a lower bound, {_format_value(i.interval[0], i.unit)}, is known. {_cause(i)}"
+        f"not identifiable: only a lower bound, {format_quantity(i.interval[0], i.unit)}, is known. {_cause(i)}"
     ),
     Verdict.WITHHELD: lambda i: "withheld: the fit is unreliable.",
     Verdict.CONDITIONAL: lambda i: (
-        f"withheld: the fit is unreliable; {_format_value(i.interval[0], i.unit)} to "
-        f"{_format_value(i.interval[1], i.unit)} under the most likely causes of the misfit."
+        f"withheld: the fit is unreliable; {format_range(*i.interval, i.unit)} under the most likely causes of the "
+        f"misfit."
     ),
     Verdict.UNPREDICTABLE: lambda i: "not identifiable: the force of this device cannot be predicted.",
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
-from inerter.formatting import format_quantity
+from inerter.formatting import format_alike, format_number, format_quantity, format_share
 from inerter.records.finding import Finding
 from inerter.records.remedy import Text
 
@@ -53,8 +53,8 @@ class MisfitPattern(StrEnum):
 
 
 def _times_text(f: Finding) -> str:
-    n = f.numbers
-    return f"{n['before']:.2g} times the sensor noise before, {n['after']:.2g} times after{_with_motion(f)}"
+    before, after = (format_number(f.numbers[when], 2) for when in ("before", "after"))
+    return f"{before} times the sensor noise before, {after} times after{_with_motion(f)}"
 
 
 def _with_motion(f: Finding) -> str:
@@ -66,20 +66,19 @@ def _grows_text(f: Finding) -> str:
     n = f.numbers
     way = "grows" if n["after"] > n["before"] else "decreases"
     motion = ", together with the acceleration of the motion" if n["motion"] else ""
-    return (
-        f"the misfit {way} over the record, from {n['before']:.2g} to {n['after']:.2g} times the sensor noise{motion}"
-    )
+    before, after = format_number(n["before"], 2), format_number(n["after"], 2)
+    return f"the misfit {way} over the record, from {before} to {after} times the sensor noise{motion}"
 
 
 def _size(f: Finding, key: str) -> str:
     unit = COEFFICIENTS[f.about][1]
     size = f.numbers[key]
-    return format_quantity(size, unit, 3) if unit else f"{100.0 * size:.3g} %"
+    return format_quantity(size, unit, 3) if unit else format_share(size)
 
 
 def _coefficient_step_text(f: Finding) -> str:
     like = COEFFICIENTS[f.about][0]
-    change, time = _size(f, "change"), f"{f.numbers['time']:.4g} s"
+    change, time = _size(f, "change"), format_quantity(f.numbers["time"], "s")
     return f"the misfit is like {like} that changes by {change} at {time}{_with_motion(f)}"
 
 
@@ -107,17 +106,18 @@ def _mean_text(f: Finding) -> str:
 
 def _range_text(f: Finding) -> str:
     n, unit = f.numbers, UNITS[f.about]
-    low, high = (format_quantity(n[which], unit, 2) for which in ("at_least", "at_most"))
-    least, most = (format_quantity(n[which], "N", 2) for which in ("least", "most"))
+    low, high = format_alike([n["at_least"], n["at_most"]], unit, 2)
+    least, most = format_alike([n["least"], n["most"]], "N", 2)
     return f"{least} at {low}, {most} at {high}"
 
 
 def _spread_text(f: Finding) -> str:
     n = f.numbers
     how = "grows" if n["high"] > n["low"] else "decreases"
+    low, high = format_alike([n["low"], n["high"]], "N", 2)
     return (
-        f"the scatter of the misfit {how} with the size of the {f.about}{_other_quantities_text(f)}, "
-        f"from {format_quantity(n['low'], 'N', 2)} to {format_quantity(n['high'], 'N', 2)}"
+        f"the scatter of the misfit {how} with the size of the {f.about}{_other_quantities_text(f)}, from {low} to "
+        f"{high}"
     )
 
 
@@ -135,19 +135,20 @@ def _line_text(f: Finding) -> str:
     elif n["resonates"]:
         foreign = "where the device resonates: any fault excites that"
     size = format_quantity(n["amplitude"], "N", 3)
-    return f"the misfit is a spectral line of {size} at {n['frequency']:.4g} Hz, {foreign}"
+    return f"the misfit is a spectral line of {size} at {format_quantity(n['frequency'], 'Hz')}, {foreign}"
 
 
 def _band_text(f: Finding) -> str:
     n = f.numbers
     where = ", above the motion" if n["low"] > n["highest"] else ""
     where = ", where the device resonates: any fault excites that" if n["resonates"] else where
-    return f"the misfit lies between {n['low']:.3g} and {n['high']:.3g} Hz{where}"
+    low, high = format_alike([n["low"], n["high"]], "Hz", 3)
+    return f"the misfit lies between {low} and {high}{where}"
 
 
 def _instants_text(f: Finding) -> str:
     n = f.numbers
-    times = ", ".join(f"{t:.4g}" for t in n["times"])
+    times = ", ".join(format_number(t, 4) for t in n["times"])
     more = ", ..." if n["count"] > len(n["times"]) else ""
     where = "one instant" if n["count"] == 1 else f"{n['count']} instants"
     lasting = "one sample" if n["longest"] == 1 else f"up to {n['longest']} samples"
@@ -157,9 +158,11 @@ def _instants_text(f: Finding) -> str:
 
 
 _TEXTS: Mapping[MisfitPattern, Callable[[Finding], str]] = {
-    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {f.numbers['time']:.4g} s: {_times_text(f)}",
-    MisfitPattern.ENDS: lambda f: f"the misfit ends at {f.numbers['time']:.4g} s: {_times_text(f)}",
-    MisfitPattern.LEVEL_STEP: lambda f: f"the misfit changes at {f.numbers['time']:.4g} s: {_times_text(f)}",
+    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}",
+    MisfitPattern.ENDS: lambda f: f"the misfit ends at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}",
+    MisfitPattern.LEVEL_STEP: lambda f: (
+        f"the misfit changes at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}"
+    ),
     MisfitPattern.GROWS: _grows_text,
     MisfitPattern.COEFFICIENT_STEP: _coefficient_step_text,
     MisfitPattern.COEFFICIENT_TREND: _coefficient_trend_text,

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from enum import StrEnum
 from typing import Any
 
-from inerter.formatting import format_quantity
+from inerter.formatting import format_alike, format_number, format_quantity, format_share
 from inerter.records.remedy import Action, Remedy, Text
 
 Details = Mapping[str, Any]
@@ -57,7 +57,8 @@ class Suspect(StrEnum):
 
 
 def _delay_text(d: Details) -> str:
-    return f"the {'force' if d['delay'] > 0.0 else 'displacement'} is delayed by {1e3 * abs(d['delay']):.3g} ms"
+    late = "force" if d["delay"] > 0.0 else "displacement"
+    return f"the {late} is delayed by {format_quantity(abs(d['delay']), 's', 3)}"
 
 
 def _corner_frequency_text(d: Details) -> str:
@@ -66,17 +67,17 @@ def _corner_frequency_text(d: Details) -> str:
 
 def _dropped_samples_text(d: Details) -> str:
     records = (
-        ", ".join(f"{count} at {at:.4g} s" for count, at in places[:4]) + (", ..." if len(places) > 4 else "")
+        ", ".join(f"{count} at {format_quantity(at, 's')}" for count, at in places[:4])
+        + (", ..." if len(places) > 4 else "")
         for places in d["places"]
     )
     return f"samples were dropped without a gap in the time channel ({'; '.join(records)})"
 
 
 def _stribeck_text(d: Details) -> str:
-    return (
-        f"friction falls with speed (Stribeck), from {format_quantity(d['at_rest'], 'N', 3)} at rest to "
-        f"{format_quantity(d['beyond'], 'N', 3)} beyond {format_quantity(d['speed'], 'm/s', 2)}"
-    )
+    at_rest, beyond = format_alike([d["at_rest"], d["beyond"]], "N", 3)
+    speed = format_quantity(d["speed"], "m/s", 2)
+    return f"friction falls with speed (Stribeck), from {at_rest} at rest to {beyond} beyond {speed}"
 
 
 def _offset_text(d: Details) -> str:
@@ -85,41 +86,42 @@ def _offset_text(d: Details) -> str:
 
 
 def _asymmetric_text(d: Details) -> str:
-    up, down = (format_quantity(d[way], "N", 3) for way in ("up", "down"))
+    up, down = format_alike([d["up"], d["down"]], "N", 3)
     return f"friction is {up} in one direction and {down} in the other"
 
 
 def _places_text(d: Details) -> str:
-    times = ", ".join(f"{t:.4g}" for t in d["times"]) + (", ..." if d["count"] > len(d["times"]) else "")
+    times = ", ".join(format_number(t, 4) for t in d["times"]) + (", ..." if d["count"] > len(d["times"]) else "")
     return f"{d['count']} {'place' if d['count'] == 1 else 'places'}, at {times} s"
 
 
 def _clock_text(d: Details) -> str:
     way = "later" if d["growth"] > 0.0 else "earlier"
     return (
-        f"the clocks of force and displacement differ by {1e6 * abs(d['rate']):.3g} ppm, so that the force is "
-        f"{1e3 * abs(d['growth']):.3g} ms {way} at the end than at the start"
+        f"the clocks of force and displacement differ by {format_number(1e6 * abs(d['rate']), 3)} ppm, so that the "
+        f"force is {format_quantity(abs(d['growth']), 's', 3)} {way} at the end than at the start"
     )
 
 
 def _hum_text(d: Details) -> str:
     return (
-        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at {d['frequency']:.4g} Hz, or at an "
-        f"alias of it such as {d['rate'] - d['frequency']:.4g} Hz"
+        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at "
+        f"{format_quantity(d['frequency'], 'Hz')}, or at an alias of it such as "
+        f"{format_quantity(d['rate'] - d['frequency'], 'Hz')}"
     )
 
 
 def _saturation_text(d: Details) -> str:
-    upper, lower = (format_quantity(d[end], "N", 3) for end in ("upper", "lower"))
+    upper, lower = format_alike([d["upper"], d["lower"]], "N", 3)
     return f"the force is clipped above {upper} and below -{lower} (load cell or amplifier saturated)"
 
 
 def _changed_device_text(d: Details) -> str:
     values = ", ".join(
-        f"{name} {format_quantity(before, unit, 3)} before and {format_quantity(after, unit, 3)} after"
+        f"{name} {' before and '.join(format_alike([before, after], unit, 3))} after"
         for name, unit, before, after in d["values"]
     )
-    return f"the device changes at {d['time']:.4g} s" + (f": {values}" if values else "")
+    return f"the device changes at {format_quantity(d['time'], 's')}" + (f": {values}" if values else "")
 
 
 def _cross_talk_text(d: Details) -> str:
@@ -167,15 +169,16 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"a damping grows with the square of the speed, {format_quantity(d['most'], 'N', 2)} at the largest"
     ),
     Suspect.STIFFENING: lambda d: (
-        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {100.0 * abs(d['share']):.2g} % at "
-        f"the largest force"
+        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {format_share(abs(d['share']), 2)} "
+        f"at the largest force"
     ),
     Suspect.SECOND_GAP: _second_gap_text,
     Suspect.SATURATION: _saturation_text,
     Suspect.CLOCK_DRIFT: _clock_text,
     Suspect.CROSS_TALK: _cross_talk_text,
     Suspect.FRAME: lambda d: (
-        f"the frame of the load cell resonates at {d['frequency']:.3g} Hz (damping ratio {d['ratio']:.2g})"
+        f"the frame of the load cell resonates at {format_quantity(d['frequency'], 'Hz', 3)} (damping ratio "
+        f"{format_number(d['ratio'], 2)})"
     ),
     Suspect.HUM: _hum_text,
     Suspect.CHANGED_DEVICE: _changed_device_text,

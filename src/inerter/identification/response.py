@@ -11,6 +11,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError, RecordError, Status
+from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.networks.transform import linearise
 from inerter.records.periods import common_periods, whole_periods
@@ -88,7 +89,7 @@ def with_load_cell(response: Response, bandwidth: float | None) -> Response:
         return response
     s = 1j * response.frequency / bandwidth
     read = exact_response(response.omega, response.value / (s * s + math.sqrt(2.0) * s + 1.0), response.amplitude)
-    note = f"With a load cell bandwidth of {bandwidth:g} Hz."
+    note = f"With a load cell bandwidth of {format_quantity(bandwidth, 'Hz', 6)}."
     return replace(read, source=response.source, status=response.status, notes=(*response.notes, note))
 
 
@@ -125,7 +126,7 @@ def smooth_record(record: Record, cutoff: float) -> Record:
         return record.with_notes("Displacement not filtered: it extends to nearly half the sampling rate.")
     filter_ = scipy.signal.butter(_ORDER, cutoff, fs=1.0 / record.interval, output="sos")
     return record.with_notes(
-        f"Displacement low-pass filtered at {cutoff:.4g} Hz (Butterworth, forward and backward).",
+        f"Displacement low-pass filtered at {format_quantity(cutoff, 'Hz')} (Butterworth, forward and backward).",
         displacement=scipy.signal.sosfiltfilt(filter_, record.displacement),
     )
 

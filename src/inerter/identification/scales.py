@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import norm
 
+from inerter.formatting import format_number
 from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import LEVEL, ROBUST, BestFit, steps_of
 from inerter.identification.options import FitOptions
@@ -82,11 +83,11 @@ def apply_scales(record: Record, options: FitOptions) -> Record:
         changes = {
             n: v * force.value for n in ("force", "force_range", "force_noise") if (v := getattr(record, n)) is not None
         }
-        record = record.with_notes(f"Force multiplied by its scale, {force.value:.6g}.", **changes)
+        record = record.with_notes(f"Force multiplied by its scale, {format_number(force.value)}.", **changes)
     if moved is not None and moved.value != 1.0:
         names = ("displacement", "velocity", "acceleration", "displacement_noise")
         changes = {n: v * moved.value for n in names if (v := getattr(record, n)) is not None}
-        record = record.with_notes(f"Displacement multiplied by its scale, {moved.value:.6g}.", **changes)
+        record = record.with_notes(f"Displacement multiplied by its scale, {format_number(moved.value)}.", **changes)
     return record
 
 

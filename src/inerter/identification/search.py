@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
+from inerter.formatting import format_share
 from inerter.identification.options import POINTS
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.work.progress import counter, report
@@ -51,7 +52,7 @@ def search(
         part = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = _distinct(candidates, costs)[:kept]
-        what = f"search on {'all' if horizon == 1.0 else f'{100.0 * horizon:.3g} %'} of the information"
+        what = f"search on {'all' if horizon == 1.0 else format_share(horizon)} of the information"
         tasks = [(part, candidate) for candidate in candidates]
         found = map_problems(
             partial(_improve_candidate, evaluations, accuracy), tasks, progress=counter(what, len(tasks))

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, Status
+from inerter.formatting import format_number, format_quantity, format_range
 from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit, Parameter
 from inerter.identification.friction_law import FrictionLaw, friction_law
@@ -68,14 +69,14 @@ class Band:
         """The verdict in words."""
         how = "agrees" if self.agrees else "differs"
         gain, phase = _format_signed(100.0 * self.gain), _format_signed(math.degrees(self.phase))
-        band = f"{self.lower:.3g} to {self.upper:.3g}" if self.lines > 1 else f"{self.lower:.3g}"
-        return f"{band} Hz: {how}; deviation of the model {gain} % in gain, {phase} degrees in phase."
+        ends = (self.lower, self.upper)
+        band = format_range(*ends, "Hz", 3) if self.lines > 1 else format_quantity(self.lower, "Hz", 3)
+        return f"{band}: {how}; deviation of the model {gain} % in gain, {phase} degrees in phase."
 
 
 def _format_signed(value: float) -> str:
     """The value with its sign, and without one where it rounds to zero."""
-    text = f"{value:+.1f}"
-    return "0.0" if float(text) == 0.0 else text
+    return format_number(round(value, 1), 4, "+")
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
 from inerter.errors import IdentificationError
+from inerter.formatting import format_quantity
 from inerter.identification.models import with_mount
 from inerter.networks.elements import Network
 from inerter.records.record import Record
@@ -101,7 +102,10 @@ class VirtualRig:
             raise IdentificationError(f"The command must be a signal, such as cosine(...), got {command!r}.")
         times = self._times(duration, start)
         if times.samples < 4:
-            raise IdentificationError(f"{duration:g} s are less than 4 samples at {self.sampling:g} Hz.")
+            raise IdentificationError(
+                f"{format_quantity(duration, 's', 6)} are less than 4 samples at "
+                f"{format_quantity(self.sampling, 'Hz', 6)}."
+            )
         rig, end = Rig(with_mount(self.device), self.force_bandwidth), times.steps * times.step
         command.sample(end)
         table = Signal.sampled([0.0, end], [0.0, 0.0], label=command.label)  # at rest: the motion does not matter
@@ -142,8 +146,9 @@ class VirtualRig:
         if highest <= 0.5 * self.sampling:
             return record
         return record.with_notes(
-            f"The table has components up to {highest:.3g} Hz, above the Nyquist frequency of "
-            f"{0.5 * self.sampling:g} Hz: faster motion is aliased. Sample at {2.5 * highest:.3g} Hz or more."
+            f"The table has components up to {format_quantity(highest, 'Hz', 3)}, above the Nyquist frequency of "
+            f"{format_quantity(0.5 * self.sampling, 'Hz', 6)}: faster motion is aliased. Sample at "
+            f"{format_quantity(2.5 * highest, 'Hz', 3)} or more."
         )
 
     def _table_motion(self, command: Matrix, step: float) -> tuple[Matrix, Matrix]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError
+from inerter.formatting import format_number, format_range
 from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
@@ -94,8 +95,8 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     check_positive(PerformanceIndexError, "The speed over a measured road", speed, "m/s")
     if not _SLOPES[0] < spectrum.waviness < _SLOPES[1]:
         raise PerformanceIndexError(
-            f"The waviness of the spectrum is {spectrum.waviness:.3g}; a road for an index has one between 0 and 4. "
-            f"Check the unit of the profile."
+            f"The waviness of the spectrum is {format_number(spectrum.waviness, 3)}; a road for an index has one "
+            f"between 0 and 4. Check the unit of the profile."
         )
     shape = spectrum.shape(spectrum.unevenness, spectrum.waviness)
     road = Road(0.5 * spectrum.unevenness * N0**2, speed, shape=shape)
@@ -119,9 +120,10 @@ def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
             level = math.sqrt(float(ratio.max() * ratio.min()))
             if max(ratio.max() / level, level / ratio.min()) <= 1.0 + DEVIATION:
                 return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
+    band = format_range(ends[0] / unit * N0, ends[1] / unit * N0, "cycle/m")
     raise PerformanceIndexError(
-        f"No filter follows a line from {ends[0] / unit * N0:g} to {ends[1] / unit * N0:g} cycle/m. Fit the PSD over a "
-        f"narrower band: road_spectrum(profile, lowest=..., highest=...)."
+        f"No filter follows a line from {band}. Fit "
+        f"the PSD over a narrower band: road_spectrum(profile, lowest=..., highest=...)."
     )
 
 

@@ -9,6 +9,7 @@ import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import PerformanceIndexError
+from inerter.formatting import format_alike
 from inerter.indices.iso2631 import iso2631_weighting
 from inerter.systems.linear import LinearSystem
 
@@ -98,7 +99,6 @@ def _check_samples(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Arr
     if not steps.size or not steps.min() > 0.0 or np.ptp(steps) > _EVEN * steps.max():
         raise PerformanceIndexError("The time of a weighted motion must be equally spaced. Interpolate it first.")
     if times[-1] - times[0] < _RUNNING * (1.0 - _EVEN):
-        raise PerformanceIndexError(
-            f"A weighted motion must last at least {_RUNNING:g} s, got {times[-1] - times[0]:g} s."
-        )
+        least, given_text = format_alike([_RUNNING, times[-1] - times[0]], "s")
+        raise PerformanceIndexError(f"A weighted motion must last at least {least}, got {given_text}.")
     return times, given

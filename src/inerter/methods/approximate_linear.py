@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
+from inerter.formatting import format_quantity
 from inerter.indices.excitation import shape_of, stand_ins_of
 from inerter.indices.question import Index, IndexDefinition
 from inerter.methods.averages import interval_of
@@ -244,8 +245,9 @@ class ApproximateLinear:
             return self._combine(question, model, gains, drive, unseen)
         if has_play(runs.system):
             return replace(self._combine(question, None, gains, drive), notes=(_UNLIKE,))
-        motion = f"the motion at {abs(model.pole.imag):.3g} rad/s, which decays by {-model.pole.real:.2g} 1/s"
-        message = f"a period of {drive.excitation.period:g} s is too short for {motion}; use a longer one"
+        at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
+        period = format_quantity(drive.excitation.period, "s", 6)
+        message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"
         return Estimate(math.nan, question.unit, Status(StatusKind.INACCURATE, message))
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status, worst_of
+from inerter.formatting import format_alike, format_percent, typeset
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
@@ -71,9 +72,9 @@ class Comparison:
     def __str__(self) -> str:
         doubt = "" if self.status.ok else f"not certain ({self.status}): "
         if not np.isfinite(self.percent):
-            values = f"{self.first.value:.4g} and {self.second.value:.4g} {self.first.unit}"
+            values = " and ".join(format_alike([self.first.value, self.second.value], self.first.unit))
             return f"{doubt}{values}: the difference is not defined"
-        apart = f"{abs(self.percent):.2g} % ± {self.percent_error:.1g} %"
+        apart = typeset(format_percent(abs(self.percent), self.percent_error).removeprefix("+"))
         if self.is_tie:
             return f"{doubt}difference not significant at 95 %: {apart}"
         word = "better" if self.difference.value < 0.0 else "worse"

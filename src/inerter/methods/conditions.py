@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError, Status, worst_of
+from inerter.formatting import format_number
 from inerter.indices.measured_road import MeasuredRoad
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
@@ -71,7 +72,7 @@ class Condition:
         return (
             self.name
             or ", ".join(
-                f"{name} = {value:g}" if is_number(value) else f"{name} = {value}"
+                f"{name} = {format_number(value)}" if is_number(value) else f"{name} = {value}"
                 for name, value in {**road, **self.vehicle}.items()
             )
             or "unchanged"

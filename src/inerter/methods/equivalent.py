@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind, with_article
+from inerter.formatting import format_share
 from inerter.indices.question import IndexDefinition
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import LinearRole, StatisticalRole
@@ -82,7 +83,7 @@ class Equivalent:
 
 def poorly_represented(what: str, bound: float) -> Status:
     """Status inaccurate because of `what`, with the error bound if below 1."""
-    most = f", by {100.0 * bound:.2g} % at most" if bound < 1.0 else ""
+    most = f", by {format_share(bound, 2)} at most" if bound < 1.0 else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 

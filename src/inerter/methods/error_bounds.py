@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from inerter.errors import ErrorSource, Status, StatusKind
+from inerter.formatting import format_alike
 
 if TYPE_CHECKING:
     from inerter.methods.method import Estimate
@@ -31,7 +32,8 @@ def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: 
         bound = sum(source.bound for source in several)
         if result.status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
-            message = f"relative error up to {bound:.1e}, more than {most:g}, mostly from {largest.name}"
+            up_to, promised = format_alike([bound, most], "", 2)
+            message = f"relative error up to {up_to}, more than {promised}, mostly from {largest.name}"
             if math.isnan(bound):
                 unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
                 message = f"unknown error from {unknown}"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
+from inerter.formatting import format_quantity, format_range
 from inerter.signals.harmonics import flat_multisine
 from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
@@ -44,7 +45,8 @@ class MultisineExcitation:
             check_positive(PerformanceIndexError, f"The {which} frequency of an excitation", getattr(self, which), "Hz")
         if not 2.0 * self.lowest <= self.highest <= 1e6 * self.lowest:
             raise PerformanceIndexError(
-                f"An excitation needs from 2 to 1e6 harmonics, got a band from {self.lowest:g} to {self.highest:g} Hz."
+                f"An excitation needs from 2 to 1e6 harmonics, got a band from "
+                f"{format_range(self.lowest, self.highest, 'Hz', 6)}."
             )
 
     @property
@@ -89,8 +91,8 @@ class NoiseExcitation:
         count = self.period / self.interval
         if not 4.0 <= count <= 1e8 or abs(count - round(count)) > 1e-6:
             raise PerformanceIndexError(
-                f"The period of an excitation is a whole number of intervals, from 4 to 1e8; got {self.period:g} s in "
-                f"intervals of {self.interval:g} s."
+                f"The period of an excitation is a whole number of intervals, from 4 to 1e8; got "
+                f"{format_quantity(self.period, 's', 6)} in intervals of {format_quantity(self.interval, 's', 6)}."
             )
 
     @property

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
+from inerter.formatting import format_number
 from inerter.methods.equivalent_linear import EquivalentLinearModel, remaining_share
 from inerter.methods.excitation import ExcitedInputs
 from inerter.methods.steady_squares import jump_scatter, relative_bound
@@ -124,7 +125,7 @@ class Runs:
             self.warning = Status(
                 StatusKind.INACCURATE,
                 f"periodic steady state not reached in realisation {number + 1}: relative change of state per period "
-                f"{mismatch:.1e}; use a longer period",
+                f"{format_number(mismatch, 2)}; use a longer period",
             )
         trajectory = trajectory_of(run, None, "")
         self.squares.append(np.array([self.drive.power(trajectory[name]) for name in self.outputs]))

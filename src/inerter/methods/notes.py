@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from inerter.formatting import format_number
+
 Parts = tuple[str | float, ...]  # words, and the numbers between them
 
 
@@ -45,4 +47,4 @@ def text_of(parts: Parts) -> str:
     >>> text_of(("c = ", 1234.5678))
     'c = 1234.57'
     """
-    return "".join(part if isinstance(part, str) else f"{part:.6g}" for part in parts)
+    return "".join(part if isinstance(part, str) else format_number(part) for part in parts)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
+from inerter.formatting import format_quantity, format_share
 from inerter.indices.excitation import stand_ins_of
 from inerter.indices.question import IndexDefinition
 from inerter.methods.averages import interval_of, mean_and_error
@@ -232,14 +233,14 @@ def _cubic(angle: Array, there: Array) -> Array:
 def _almost_undamped(pole: complex, longest: float) -> Status:
     return Status(
         StatusKind.MARGINAL,
-        f"almost undamped mode at {abs(pole.imag):.3g} rad/s, with friction included (decay rate {-pole.real:.1e} "
-        "1/s): "
-        f"no steady state on roads of up to {longest:g} s",
+        f"almost undamped mode at {format_quantity(abs(pole.imag), 'rad/s', 3)}, with friction included (decay rate "
+        f"{format_quantity(-pole.real, '1/s', 2)}): no steady state on roads of up to "
+        f"{format_quantity(longest, 's', 6)}",
     )
 
 
 def _mostly_beyond(share: float) -> Status:
-    message = f"out-of-band contribution to a mean square: {100.0 * share:.0f} %, outside 0.1 to 1000 Hz"
+    message = f"out-of-band contribution to a mean square: {format_share(share, 2)}, outside 0.1 to 1000 Hz"
     return Status(StatusKind.INACCURATE, message)
 
 
@@ -291,7 +292,8 @@ def _with_error_reached(estimate: Estimate, relative_error: float | None) -> Est
     error = estimate.standard_error or 0.0
     if not estimate.status.ok or relative_error is None or error <= relative_error * estimate.value:
         return estimate
-    message = f"after {estimate.realisations} roads the standard error is {error / estimate.value:.1e} of the value"
+    share = format_share(error / estimate.value, 2)
+    message = f"after {estimate.realisations} roads the standard error is {share} of the value"
     return replace(estimate, status=Status(StatusKind.INACCURATE, message))
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status
+from inerter.formatting import format_quantity
 from inerter.indices.question import IndexDefinition
 from inerter.methods.linear import Conventions
 from inerter.methods.steady_squares import steady_squares
@@ -143,7 +144,7 @@ _kept_table = lru_cache(maxsize=_KEPT)(_table)
 def check_drive(system: PiecewiseSystem, way: Drive) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
     if way.hold is not None:
-        held = Signal(label=f"a road held for {way.hold:g} s", hold="zero")
+        held = Signal(label=f"a road held for {format_quantity(way.hold, 's', 6)}", hold="zero")
         check_holds(system, [held for _ in range(way.roads)])
 
 

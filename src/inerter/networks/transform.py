@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
+from inerter.formatting import format_range
 from inerter.networks.elements import Element, Free, Network, Parallel, Series, Tied
 from inerter.networks.elements.roles import LinearRole
 
@@ -100,10 +101,9 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
             taken.add(label)
         here = (element.unit, value.lower, value.upper)
         if known.setdefault(label, here) != here:
-            unit, lower, upper = known[label]
+            one, other = (format_range(low, high, unit, 6) for unit, low, high in (known[label], here))
             raise DesignError(
-                f"The free value {label!r} has two ranges: {lower:g} to {upper:g} {unit} and {value.lower:g} to "
-                f"{value.upper:g} {element.unit}. Give them different names, or one range."
+                f"The free value {label!r} has two ranges: {one} and {other}. Give them different names, or one range."
             )
         return element.with_value(Free(value.lower, value.upper, label))
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
+from inerter.formatting import format_complex
 from inerter.norms.delay import pade_coefficients
 from inerter.norms.mean_square import Transfer, UnknownError, axis_frequencies, mean_square
 from inerter.norms.squared_gain import SquaredGain
@@ -26,8 +27,7 @@ EXACT = 1e-12  # relative error of what is found here: digits in which results a
 
 def undamped_status(frequencies: Sequence[float]) -> Status:
     """Status of an infinite norm due to undamped modes at these frequencies [rad/s]."""
-    where = f"0 + {frequencies[0]:.4g}j" if frequencies[0] > 0.0 else "0"
-    return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {where} rad/s")
+    return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {format_complex(1j * frequencies[0])} rad/s")
 
 
 def h2_exactly(system: LinearSystem, pade_order: int | None) -> tuple[Matrix, Status]:

@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, LinearSystemError, Status, StatusKind
+from inerter.formatting import format_quantity
 from inerter.norms.exact import EXACT, peaks_exactly
 from inerter.norms.response import resolvent
 from inerter.norms.stability import pole_rates, split
@@ -99,7 +100,9 @@ def _sharpness(A: Matrix, peaks: list[GainPeak]) -> Status:
 
 
 def _lost_damping(omega: float) -> Status:
-    return Status(StatusKind.INACCURATE, f"damping of the resonance at {omega:.6g} rad/s lost to rounding")
+    return Status(
+        StatusKind.INACCURATE, f"damping of the resonance at {format_quantity(omega, 'rad/s', 6)} lost to rounding"
+    )
 
 
 def _merge(system: LinearSystem) -> LinearSystem:
@@ -110,7 +113,7 @@ def _merge(system: LinearSystem) -> LinearSystem:
         if np.ptp(delays) > 0.0:
             raise LinearSystemError(
                 f"The H-infinity norm needs the inputs of {source!r} to arrive together, but they are "
-                f"{float(np.ptp(delays)):g} s apart. Choose one of them with select(inputs=...)."
+                f"{format_quantity(float(np.ptp(delays)), 's', 6)} apart. Choose one of them with select(inputs=...)."
             )
     merge = merge.reshape(len(system.sources), len(sources))
     return LinearSystem(system.A, system.B @ merge, system.C, system.D @ merge)

@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
+from inerter.formatting import format_complex
 from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
@@ -57,8 +58,8 @@ class Split:
         """Status of the lasting poles: unstable or marginal."""
         worst = self.poles[int(np.argmax(self.poles.real))]
         if worst.real > 0.0 and not _is_marginal(worst, self.rate):
-            return Status(StatusKind.UNSTABLE, f"unstable system: a pole at {_pole(worst)} rad/s")
-        return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {_pole(worst)} rad/s")
+            return Status(StatusKind.UNSTABLE, f"unstable system: a pole at {format_complex(worst)} rad/s")
+        return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {format_complex(worst)} rad/s")
 
 
 def split(system: LinearSystem) -> Split:
@@ -134,9 +135,3 @@ def _norms(matrix: Matrix, axis: int) -> Matrix:
 
 def _is_marginal(worst: complex, rate: float) -> bool:
     return abs(worst.real) <= 1e-13 * rate + 1e-9 * abs(worst.imag)
-
-
-def _pole(value: complex) -> str:
-    if abs(value.imag) <= 1e-12 * abs(value):
-        return f"{value.real:.3g}"
-    return f"{value.real:.3g} {'+' if value.imag > 0 else '-'} {abs(value.imag):.4g}j"

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
-from inerter.formatting import format_quantity
+from inerter.formatting import format_alike, format_range
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
@@ -102,7 +102,7 @@ def break_even(
     ... )
     >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
     >>> found = it.break_even(design, baseline, comfort, parameter="friction", method=it.StatisticalLinearisation())
-    >>> f"{found.value:.0f} {found.unit}"
+    >>> f"{round(found.value)} {found.unit}"
     '506 N'
     """
     check_request(design, index, method)
@@ -210,7 +210,8 @@ def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[f
             raise DesignError(f"The bounds of {parameter!r} must be two numbers in SI units, got {given!r}.")
         lower, upper = float(given[0]), float(given[1])
         if not 0.0 < lower < upper:
-            raise DesignError(f"The bounds of {parameter!r} must be positive and in order, got {lower:g}, {upper:g}.")
+            ends = ", ".join(format_alike([lower, upper], ""))
+            raise DesignError(f"The bounds of {parameter!r} must be positive and in order, got {ends}.")
         return lower, upper
     present: Any = chosen[0].value
     if not is_number(present):
@@ -287,7 +288,7 @@ def _status(
 def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
     """Clause on the values for which the design is better."""
     whole = f"{parameter} {_format_range(ranges[0].lower, ranges[-1].upper, unit)}"
-    better = [f"{_format_range(one.lower, one.upper, unit)}" for one in ranges if one.better]
+    better = [_format_range(one.lower, one.upper, unit) for one in ranges if one.better]
     if all(one.better for one in ranges):
         return f"the design is better for every {whole}"
     if not better:
@@ -296,4 +297,4 @@ def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
 
 
 def _format_range(lower: float, upper: float, unit: str) -> str:
-    return f"from {format_quantity(lower, unit)} to {format_quantity(upper, unit)}"
+    return f"from {format_range(lower, upper, unit)}"

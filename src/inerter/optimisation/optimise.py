@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, InerterError, Status, StatusKind
+from inerter.formatting import format_alike
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
@@ -378,7 +379,6 @@ def _verify_estimate(estimate: Estimate, searched: float) -> Estimate:
     """The estimate, with a status if it differs from the value of the search."""
     if not estimate.status.ok or abs(estimate.value - searched) <= 1e-6 * abs(searched):
         return estimate
-    message = (
-        f"the value of the search, {searched:.9g}, differs from the exact value of the design, {estimate.value:.9g}"
-    )
+    found, exact = format_alike([searched, estimate.value], estimate.unit)
+    message = f"the value of the search, {found}, differs from the exact value of the design, {exact}"
     return replace(estimate, status=Status(StatusKind.INACCURATE, message))

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 
 from inerter.errors import RecordError, UnitError
+from inerter.formatting import format_quantity
 from inerter.records.channels import Channel
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
@@ -112,7 +113,7 @@ def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
         return (
             f"{whose} is a unit of mass, not of force. If the load cell shows the weight of that mass, use ",
             Remedy(Action.UNIT, (role, force)),
-            f" (1 {force} = {parse_quantity('1 ' + force, 'N'):.6g} N).",
+            f" (1 {force} = {format_quantity(parse_quantity('1 ' + force, 'N'), 'N', 6)}).",
         )
     return (
         f"{whose} is not a unit of {role}, such as {_EXAMPLES[role]}. Name the unit, ",
@@ -129,5 +130,5 @@ def _note(role: str, channel: Channel, unit: str, given: str | None, value: floa
     said = f"instead of {channel.unit} in the file" if channel.unit else "as specified in the call"
     if re.match(r"\s*[+-]?[\d.]", unit):
         return f"One unit of the {role} {channel.name!r} was read as {unit}, {said}."
-    worth = "" if value == 1.0 else f" (1 {unit} = {value:.6g} {CHANNELS[role]})"
+    worth = "" if value == 1.0 else f" (1 {unit} = {format_quantity(value, CHANNELS[role], 6)})"
     return f"The {role} {channel.name!r} was read in {unit}{worth}, {said}."

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_quantity
 from inerter.records.gaps import LONGEST, fill_missing_values
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
@@ -109,8 +110,8 @@ def fill_dropouts(record: Record, gaps: str | float) -> Record:
     limit = LONGEST if isinstance(gaps, str) else math.floor(gaps / record.interval * (1.0 + 1e-6))
     if most.count > limit:
         raise RecordError(
-            f"{record.source}: {most.count} samples dropped at {record.time[most.after]:g} s without a gap in the time "
-            f"channel, too many to interpolate (at most {limit}). Use ",
+            f"{record.source}: {most.count} samples dropped at {format_quantity(record.time[most.after], 's', 6)} "
+            f"without a gap in the time channel, too many to interpolate (at most {limit}). Use ",
             *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
         )
     return insert_samples(record, lost)[0]

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt, sosfreqz
 
 from inerter.errors import RecordError
+from inerter.formatting import format_alike
 
 Vector = NDArray[np.float64]
 ORDER = 4  # of the filter, which runs forwards and backwards
@@ -42,9 +43,8 @@ def gain(frequency: Vector, interval: float, bandwidth: float) -> Vector:
 
 def _sections(interval: float, bandwidth: float) -> Vector:
     if not 0.0 < bandwidth < 0.5 / interval:
-        raise RecordError(
-            f"A bandwidth must lie between 0 and half the sampling rate, {0.5 / interval:g} Hz, got {bandwidth:g} Hz."
-        )
+        most, given = format_alike([0.5 / interval, bandwidth], "Hz")
+        raise RecordError(f"A bandwidth must lie between 0 and half the sampling rate, {most}, got {given}.")
     sections: Vector = butter(ORDER, bandwidth, fs=1.0 / interval, output="sos")
     return sections
 

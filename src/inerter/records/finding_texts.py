@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
+from inerter.formatting import format_alike, format_number, format_quantity, format_share
 from inerter.records.finding import Finding
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
@@ -60,13 +61,16 @@ class RecordFinding(StrEnum):
 
 
 def _format_sampling(f: Finding) -> str:
-    n, usual = f.numbers, f.numbers["interval"]
-    return f"{n['samples']:.0f} samples over {n['duration']:.6g} s, every {usual:.6g} s ({1.0 / usual:.6g} Hz)"
+    usual, duration = f.numbers["interval"], format_quantity(f.numbers["duration"], "s", 6)
+    every = f"every {format_quantity(usual, 's', 6)} ({format_quantity(1.0 / usual, 'Hz', 6)})"
+    return f"{round(f.numbers['samples'])} samples over {duration}, {every}"
 
 
 def _few_samples_text(f: Finding) -> Text:
-    many = f"{f.numbers['samples']:.0f}"
-    return (f"The record has only {many} samples; a fit requires hundreds, over several periods of the motion.",)
+    return (
+        f"The record has only {round(f.numbers['samples'])} samples; a fit requires hundreds, over several periods of "
+        f"the motion.",
+    )
 
 
 def _sampling_text(f: Finding) -> Text:
@@ -76,17 +80,17 @@ def _sampling_text(f: Finding) -> Text:
 def _gaps_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"{_format_sampling(f)}, with {n['gaps']:.0f} gaps of up to {n['longest']:.4g} s, the first at "
-        f"{n['first']:.6g} s: about {n['lost']:.0f} samples are missing. Use ",
+        f"{_format_sampling(f)}, with {round(n['gaps'])} gaps of up to {format_quantity(n['longest'], 's')}, the first "
+        f"at {format_quantity(n['first'], 's', 6)}: about {round(n['lost'])} samples are missing. Use ",
         *(Remedy(Action.FILL_GAPS), " for short ones, ", Remedy(Action.TRIM), " for long ones."),
     )
 
 
 def _jitter_text(f: Finding) -> Text:
     n = f.numbers
-    rounded = f" The resolution of the times is {n['step']:.3g} s." if n["step"] > 0.0 else ""
+    rounded = f" The resolution of the times is {format_quantity(n['step'], 's', 3)}." if n["step"] > 0.0 else ""
     return (
-        f"{_format_sampling(f)}, but unevenly: the intervals vary by {100.0 * n['jitter']:.3g} % (r.m.s.).{rounded} If "
+        f"{_format_sampling(f)}, but unevenly: the intervals vary by {format_share(n['jitter'])} (r.m.s.).{rounded} If "
         f"the clock was even, read the file with ",
         *(Remedy(Action.INTERVAL, n["interval"]), "; else use ", Remedy(Action.RESAMPLE), "."),
     )
@@ -95,8 +99,9 @@ def _jitter_text(f: Finding) -> Text:
 def _lost_samples_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The displacement skips ahead at {_format_count(n['places'], 'instant')}, the first at {n['first']:.4g} s: "
-        f"about {n['samples']:.0f} samples were dropped without a gap in the time channel. Read the file with ",
+        f"The displacement skips ahead at {_format_count(n['places'], 'instant')}, the first at "
+        f"{format_quantity(n['first'], 's')}: about {round(n['samples'])} samples were dropped without a gap in the "
+        f"time channel. Read the file with ",
         *(Remedy(Action.GAPS, "fill"), ", which interpolates them."),
     )
 
@@ -104,8 +109,9 @@ def _lost_samples_text(f: Finding) -> Text:
 def _spikes_text(f: Finding) -> Text:
     n, unit = f.numbers, CHANNELS[f.about]
     return (
-        f"The {f.about} has {_format_count(n['places'], 'spike')} of up to {n['largest']:.4g} {unit} in "
-        f"{n['samples']:.0f} samples, the first at {n['first']:.4g} s. Check cables and connectors, or use ",
+        f"The {f.about} has {_format_count(n['places'], 'spike')} of up to {format_quantity(n['largest'], unit)} in "
+        f"{round(n['samples'])} samples, the first at {format_quantity(n['first'], 's')}. Check cables and connectors, "
+        f"or use ",
         *(Remedy(Action.REPAIR), "."),
     )
 
@@ -113,8 +119,9 @@ def _spikes_text(f: Finding) -> Text:
 def _held_values_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The {f.about} repeats one value at {_format_count(n['places'], 'place')}, for up to {n['longest']:.0f} "
-        f"samples, the first at {n['first']:.4g} s: the recorder missed samples and held the last one. Use ",
+        f"The {f.about} repeats one value at {_format_count(n['places'], 'place')}, for up to {round(n['longest'])} "
+        f"samples, the first at {format_quantity(n['first'], 's')}: the recorder missed samples and held the last one. "
+        f"Use ",
         *(Remedy(Action.REPAIR), ", or ", Remedy(Action.TRIM), " these intervals away."),
     )
 
@@ -122,47 +129,49 @@ def _held_values_text(f: Finding) -> Text:
 def _joint_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The displacement jumps at {_format_count(n['places'], 'place')}, by up to {n['largest']:.4g} m within one "
-        f"interval, the first at {n['first']:.4g} s: the pieces before and after belong to different runs. Use ",
+        f"The displacement jumps at {_format_count(n['places'], 'place')}, by up to "
+        f"{format_quantity(n['largest'], 'm')} within one interval, the first at {format_quantity(n['first'], 's')}: "
+        f"the pieces before and after belong to different runs. Use ",
         *(Remedy(Action.TRIM), " and fit each piece as a separate record."),
     )
 
 
 def _format_count(count: float, noun: str) -> str:
-    return f"one {noun}" if count == 1.0 else f"{count:.0f} {noun}s"
+    return f"one {noun}" if count == 1.0 else f"{round(count)} {noun}s"
 
 
 def _hidden_jitter_text(f: Finding) -> Text:
     n = f.numbers
     return (
         f"The noise of the displacement grows with speed although the times are even: sampling jitter of "
-        f"{1e3 * n['jitter']:.3g} ms (r.m.s., {100.0 * n['jitter'] / n['interval']:.0f} % of an interval). Sample both "
-        f"channels with one hardware clock, or record the true times.",
+        f"{format_quantity(n['jitter'], 's', 3)} (r.m.s., {format_share(n['jitter'] / n['interval'], 2)} of an "
+        f"interval). Sample both channels with one hardware clock, or record the true times.",
     )
 
 
 def _clock_drift_text(f: Finding) -> Text:
     n = f.numbers
-    growth = f"{1e3 * abs(n['growth']):.3g} ms {'later' if n['growth'] > 0.0 else 'earlier'}"
+    growth = f"{format_quantity(abs(n['growth']), 's', 3)} {'later' if n['growth'] > 0.0 else 'earlier'}"
     return (
         f"The phase between force and displacement drifts: the force is {growth} at the end than at the start "
-        f"(standard error {1e3 * n['standard_error']:.2g} ms). The clocks of the channels differ by "
-        f"{1e6 * abs(n['rate']):.3g} ppm, or the losses of the device change. Sample both channels with one clock.",
+        f"(standard error {format_quantity(n['standard_error'], 's', 2)}). The clocks of the channels differ by "
+        f"{format_number(1e6 * abs(n['rate']), 3)} ppm, or the losses of the device change. Sample both channels with "
+        f"one clock.",
     )
 
 
 def _line_text(f: Finding) -> Text:
     n = f.numbers
-    alias = f" or an alias of it, such as {n['rate'] - n['frequency']:.4g} Hz"
+    alias = f" or an alias of it, such as {format_quantity(n['rate'] - n['frequency'], 'Hz')}"
     return (
-        f"The force has an isolated spectral line of {n['amplitude']:.3g} N at {n['frequency']:.4g} Hz that is no "
-        f"harmonic of the motion: pickup at that frequency{alias}. Check grounding and shielding, and use an "
-        f"anti-aliasing filter.",
+        f"The force has an isolated spectral line of {format_quantity(n['amplitude'], 'N', 3)} at "
+        f"{format_quantity(n['frequency'], 'Hz')} that is no harmonic of the motion: pickup at that frequency{alias}. "
+        f"Check grounding and shielding, and use an anti-aliasing filter.",
     )
 
 
 def _filled_samples_text(f: Finding) -> Text:
-    many, longest = f"{f.numbers['samples']:.0f}", f"{f.numbers['longest']:.0f}"
+    many, longest = round(f.numbers["samples"]), round(f.numbers["longest"])
     return (f"Missing samples of the {f.about}, interpolated: {many}, up to {longest} in a row.",)
 
 
@@ -172,13 +181,13 @@ def _truncated_file_text(f: Finding) -> Text:
 
 def _constant_channel_text(f: Finding) -> Text:
     return (
-        f"The {f.about} is constant, {f.numbers['value']:.6g} {CHANNELS[f.about]}, so no model can be fitted. Check "
-        f"the connection of the sensor and the selection of the channel.",
+        f"The {f.about} is constant, {format_quantity(f.numbers['value'], CHANNELS[f.about], 6)}, so no model can be "
+        f"fitted. Check the connection of the sensor and the selection of the channel.",
     )
 
 
 def _implausible_amplitude_text(f: Finding) -> Text:
-    size = f"{f.numbers['amplitude']:.4g} {CHANNELS[f.about]}"
+    size = format_quantity(f.numbers["amplitude"], CHANNELS[f.about])
     return (f"The {f.about} has an implausible amplitude of {size}. Check its unit.",)
 
 
@@ -186,24 +195,25 @@ def _saturation_text(f: Finding) -> Text:
     n = f.numbers
     if "extremes" not in n:
         return (
-            f"The force reaches the range of the load cell, {n['limit']:.6g} N, for {100.0 * n['share']:.2g} % of the "
-            f"samples: ",
+            f"The force reaches the range of the load cell, {format_quantity(n['limit'], 'N', 6)}, for "
+            f"{format_share(n['share'], 2)} of the samples: ",
             *_LIMITED,
         )
-    where = " and ".join(f"{value:.6g} N for {longest}" for value, longest in n["extremes"])
+    where = " and ".join(f"{format_quantity(value, 'N', 6)} for {longest}" for value, longest in n["extremes"])
     return (f"The force is constant at an extreme of {where} consecutive samples: ", *_LIMITED)
 
 
 def _resolution_text(f: Finding) -> Text:
     n = f.numbers
     coarse = " That is coarse: use more of the range of the sensor." if n["levels"] < COARSE else ""
-    step = f"{n['step']:.3g} {CHANNELS[f.about]}"
-    return (f"The {f.about} has a resolution of {step}, {n['levels']:.0f} steps over its range.{coarse}",)
+    step = format_quantity(n["step"], CHANNELS[f.about], 3)
+    return (f"The {f.about} has a resolution of {step}, {round(n['levels'])} steps over its range.{coarse}",)
 
 
 def _offset_text(f: Finding) -> Text:
-    n, unit = f.numbers, CHANNELS[f.about]
-    said = f"The {f.about} has a mean of {n['mean']:.4g} {unit}, with an amplitude of {n['amplitude']:.4g} {unit}."
+    n = f.numbers
+    mean, amplitude = format_alike([n["mean"], n["amplitude"]], CHANNELS[f.about])
+    said = f"The {f.about} has a mean of {mean}, with an amplitude of {amplitude}."
     if not abs(n["mean"]) > LARGE * n["amplitude"]:
         return (said,)
     return (f"{said} If the {f.about} should be zero at rest, use ", Remedy(Action.REMOVE_OFFSET), ".")
@@ -212,8 +222,8 @@ def _offset_text(f: Finding) -> Text:
 def _drift_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The {f.about} drifts by {n['change']:.4g} {CHANNELS[f.about]} from the first quarter to the last, "
-        f"{100.0 * abs(n['change']) / n['range']:.0f} % of its range. Use ",
+        f"The {f.about} drifts by {format_quantity(n['change'], CHANNELS[f.about])} from the first quarter to the "
+        f"last, {format_share(abs(n['change']) / n['range'], 2)} of its range. Use ",
         *(Remedy(Action.DETREND), "."),
     )
 
@@ -221,22 +231,20 @@ def _drift_text(f: Finding) -> Text:
 def _swapped_columns_text(f: Finding) -> Text:
     ratio = f.numbers["displacement"] / max(f.numbers["force"], 1e-12)
     return (
-        f"The displacement is {ratio:.3g} times as rough as the force from sample to sample, but a displacement should "
-        f"be smoother than the force. Check whether the two columns are swapped.",
+        f"The displacement is {format_number(ratio, 3)} times as rough as the force from sample to sample, but a "
+        f"displacement should be smoother than the force. Check whether the two columns are swapped.",
     )
 
 
 def _hum_text(f: Finding) -> Text:
     n = f.numbers
-    hum = f"{n['amplitude']:.3g} N at {n['frequency']:g} Hz"
+    hum = f"{format_quantity(n['amplitude'], 'N', 3)} at {format_quantity(n['frequency'], 'Hz', 6)}"
     return (f"The force contains mains hum: {hum}. Check the grounding of the load cell.",)
 
 
 def _format_correlations(f: Finding) -> str:
-    n = f.numbers
-    return (
-        f"correlation {n['with_acceleration']:+.2f} with the acceleration, {n['with_velocity']:+.2f} with the velocity"
-    )
+    inertia, loss = (format_number(f.numbers[f"with_{which}"], 2, "+") for which in ("acceleration", "velocity"))
+    return f"correlation {inertia} with the acceleration, {loss} with the velocity"
 
 
 def _sign_text(f: Finding) -> Text:
@@ -272,10 +280,10 @@ def _delay_text(f: Finding) -> Text:
             f"A delay between force and displacement cannot be identified from this record alone: {_WHY[f.about]}. "
             f"Record a sweep or multisine, or an acceleration, or leave the delay free when the model is fitted.",
         )
-    late, margin = n["delay"], f"(standard error {1e3 * n['standard_error']:.2g} ms)"
+    late, margin = n["delay"], f"(standard error {format_quantity(n['standard_error'], 's', 2)})"
     if f.severity == "info":
         return (f"No significant delay between force and motion {margin}.",)
-    how = f"{1e3 * abs(late):.3g} ms {'later' if late >= 0.0 else 'earlier'} than the displacement"
+    how = f"{format_quantity(abs(late), 's', 3)} {'later' if late >= 0.0 else 'earlier'} than the displacement"
     said = (
         f"The measured acceleration is {how}, so presumably is the force"
         if f.about == "acceleration"
@@ -286,20 +294,25 @@ def _delay_text(f: Finding) -> Text:
 
 def _bandwidth_text(f: Finding) -> Text:
     n = f.numbers
-    why = "as specified" if n["asked"] else f"the displacement exceeds its noise floor up to {n['highest']:.3g} Hz"
+    why = (
+        "as specified"
+        if n["asked"]
+        else f"the displacement exceeds its noise floor up to {format_quantity(n['highest'], 'Hz', 3)}"
+    )
     return (
-        f"Displacement low-pass filtered at {n['bandwidth']:.4g} Hz ({why}): attenuation "
-        f"{100.0 * n['attenuation']:.2g} % at {n['highest']:.3g} Hz, r.m.s. noise {n['velocity_noise']:.2g} m/s in the "
-        f"velocity and {n['acceleration_noise']:.2g} m/s^2 in the acceleration.",
+        f"Displacement low-pass filtered at {format_quantity(n['bandwidth'], 'Hz')} ({why}): attenuation "
+        f"{format_share(n['attenuation'], 2)} at {format_quantity(n['highest'], 'Hz', 3)}, r.m.s. noise "
+        f"{format_quantity(n['velocity_noise'], 'm/s', 2)} in the velocity and "
+        f"{format_quantity(n['acceleration_noise'], 'm/s^2', 2)} in the acceleration.",
     )
 
 
 def _undersampling_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The displacement has components up to {n['highest']:.3g} Hz, close to the Nyquist frequency of "
-        f"{n['limit']:.4g} Hz: faster components are aliased. Sample at five times the highest frequency of the "
-        f"motion.",
+        f"The displacement has components up to {format_quantity(n['highest'], 'Hz', 3)}, close to the Nyquist "
+        f"frequency of {format_quantity(n['limit'], 'Hz')}: faster components are aliased. Sample at five times the "
+        f"highest frequency of the motion.",
     )
 
 

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import binary_dilation, find_objects, label
 
 from inerter.errors import RecordError
+from inerter.formatting import format_alike, format_quantity
 from inerter.records.channels import Samples
 from inerter.records.remedy import Action, Remedy
 from inerter.validation import is_number
@@ -122,9 +123,10 @@ def resample_onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict
     assert clock is not None
     inside = (clock >= start) & (clock <= stop)
     if inside.sum() < 4:
+        first, last = format_alike([start, stop], "s", 6)
         raise RecordError(
-            f"{source}: the channels do not overlap in time (the latest starts at {start:g} s, the earliest ends at "
-            f"{stop:g} s). Choose channels of one measurement."
+            f"{source}: the channels do not overlap in time (the latest starts at {first}, the earliest ends at "
+            f"{last}). Choose channels of one measurement."
         )
     time = clock[inside]
     result = {"time": Samples(time)}
@@ -132,10 +134,10 @@ def resample_onto_force(source: str, channels: dict[str, Samples]) -> tuple[dict
         role: Samples(s.values[inside] if role == "force" else _interpolate_at(time, s)) for role, s in channels.items()
     }
     steps = {role: float(np.median(np.diff(s.time))) for role, s in channels.items() if s.time is not None}
-    others = ", ".join(f"{role} every {step:.4g} s" for role, step in steps.items() if role != "force")
+    others = ", ".join(f"{role} every {format_quantity(step, 's')}" for role, step in steps.items() if role != "force")
     return result, [
         f"The channels have different time rasters ({others}); they were interpolated to the times of the force, "
-        f"every {steps['force']:.4g} s."
+        f"every {format_quantity(steps['force'], 's')}."
     ]
 
 
@@ -206,8 +208,9 @@ def _interpolate_missing(
         start, stop = max(found, key=lambda run: time[run[1]] - time[run[0]])
         if time[stop] - time[start] > limit:
             raise RecordError(
-                f"{source}: {stop - start} consecutive samples of the {role} are missing from {time[start]:g} s, too "
-                f"many to interpolate (at most {limit:g} s). Use ",
+                f"{source}: {stop - start} consecutive samples of the {role} are missing from "
+                f"{format_quantity(time[start], 's', 6)}, too many to interpolate (at most "
+                f"{format_quantity(limit, 's', 6)}). Use ",
                 *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
             )
         cut[role] = fill_missing_values(time, cut[role], mask[first:last])

@@ -11,6 +11,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_alike, format_number
 from inerter.records.record import Record
 
 Matrix = NDArray[np.float64]
@@ -73,12 +74,14 @@ def whole_periods(record: Record, period: float) -> Periods:
         whole = math.ceil(samples)
         count = math.floor((available - 1) / samples + 1.0 / whole + 1e-9)
         notes.append(
-            f"A period is {samples:.4f} samples; both channels were interpolated by cubic splines to {whole} a period."
+            f"A period is {format_number(samples, 5)} samples; both channels were interpolated by cubic splines to "
+            f"{whole} a period."
         )
     if count < 1 or whole < 4:
+        duration, needed = format_alike([record.duration, period], "s", 6)
         raise RecordError(
-            f"{record.source!r} has {available} samples in {record.duration:g} s, too few for one period of {period:g} "
-            f"s. Record longer, or at a higher rate."
+            f"{record.source!r} has {available} samples in {duration}, too few for one period of {needed}. Record "
+            f"longer, or at a higher rate."
         )
     x, force = (
         _fold_periods(values, samples, whole, count, bool(notes)) for values in (record.displacement, record.force)

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import detrend as without_line
 
 from inerter.errors import RecordError
+from inerter.formatting import format_alike, format_number, format_quantity
 from inerter.records.filtering import HIGHEST, low_pass
 from inerter.records.gaps import LONGEST, SCATTER, fill_missing_values, missing_rows
 from inerter.records.record import CHANNELS, Record
@@ -51,7 +52,10 @@ def remove_offset(
     part = record.trim(start, stop)
     offsets = {role: float(np.mean(_channel(part, role))) for role in channels}
     return record.with_notes(
-        *(f"Offset of the {role} removed: {offset:.6g} {CHANNELS[role]}." for role, offset in offsets.items()),
+        *(
+            f"Offset of the {role} removed: {format_quantity(offset, CHANNELS[role], 6)}."
+            for role, offset in offsets.items()
+        ),
         **{role: _channel(record, role) - offset for role, offset in offsets.items()},
     )
 
@@ -74,10 +78,13 @@ def shift_force(record: Record, delay: float) -> Record:
     slack = 1e-6 * record.interval
     inside = (time + delay >= time[0] - slack) & (time + delay <= time[-1] + slack)
     if inside.sum() < 4:
-        raise RecordError(f"A delay of {delay:g} s leaves fewer than 4 samples of {record.duration:g} s.")
+        raise RecordError(
+            f"A delay of {format_quantity(delay, 's', 6)} leaves fewer than 4 samples of "
+            f"{format_quantity(record.duration, 's', 6)}."
+        )
     force = CubicSpline(time, record.force)(time[inside] + delay)
     others = {role: values[inside] for role, values in record.channels().items() if role != "force"}
-    return record.with_notes(f"The force was moved {delay:.6g} s earlier.", **others, force=force)
+    return record.with_notes(f"The force was moved {format_quantity(delay, 's', 6)} earlier.", **others, force=force)
 
 
 def resample(record: Record, interval: float | None = None) -> Record:
@@ -95,10 +102,12 @@ def resample(record: Record, interval: float | None = None) -> Record:
     count = math.floor(record.duration / step * (1.0 + 1e-9)) + 1
     if not 4 <= count <= MOST:
         raise RecordError(
-            f"An interval of {step:g} s makes {count:.3g} samples of {record.duration:g} s; between 4 and 1e8 are kept."
+            f"An interval of {format_quantity(step, 's', 6)} makes {format_number(count, 3)} samples of "
+            f"{format_quantity(record.duration, 's', 6)}; between 4 and 1e8 are kept."
         )
     time: Vector = _first(record) + step * np.arange(count, dtype=float)
-    sentence = f"Resampled from {usual:.6g} s (median) to {step:.6g} s"
+    before, after = format_alike([usual, step], "s", 6)
+    sentence = f"Resampled from {before} (median) to {after}"
     if step <= 1.001 * usual:
         changes = {role: _spline(record.time, values, time) for role, values in _measured_channels(record).items()}
         return record.with_notes(sentence + " by a cubic spline.", time=time, **changes)
@@ -109,7 +118,9 @@ def resample(record: Record, interval: float | None = None) -> Record:
         even = values if record.uniform else _spline(record.time, values, fine)
         spacing = float(fine[1] - fine[0])
         changes[role] = _spline(fine, low_pass(even, spacing, min(bandwidth, HIGHEST / spacing)), time)
-    return record.with_notes(f"{sentence}, after a zero-phase filter at {bandwidth:.4g} Hz.", time=time, **changes)
+    return record.with_notes(
+        f"{sentence}, after a zero-phase filter at {format_quantity(bandwidth, 'Hz')}.", time=time, **changes
+    )
 
 
 def fill_gaps(record: Record, longest: float) -> Record:
@@ -125,10 +136,11 @@ def fill_gaps(record: Record, longest: float) -> Record:
     if not left_out.any():
         return record.with_notes("The times have no gaps to fill.")
     if np.max(steps) > longest:
-        at = float(record.time[int(np.argmax(steps))])
+        at = format_quantity(float(record.time[int(np.argmax(steps))]), "s", 6)
+        gap, limit = format_alike([float(np.max(steps)), longest], "s")
         raise RecordError(
-            f"{record.source!r} has a gap of {np.max(steps):g} s after {at:g} s, longer than the limit of {longest:g} "
-            f"s. Trim the record to one side of the gap."
+            f"{record.source!r} has a gap of {gap} after {at}, longer than the limit of {limit}. "
+            f"Trim the record to one side of the gap."
         )
     parts = [np.linspace(a, b, n + 2)[:-1] for a, b, n in zip(record.time, record.time[1:], left_out, strict=False)]
     time = np.append(np.concatenate(parts), record.time[-1])
@@ -161,8 +173,9 @@ def with_missing_times(record: Record, gaps: str | float) -> Record:
     most = int(np.argmax(steps))
     if steps[most] > limit * (1.0 + SCATTER):
         raise RecordError(
-            f"{record.source}: {missing.counts.max()} samples are missing in the times after {record.time[most]:g} s, "
-            f"too many to interpolate (at most {limit:g} s). Use ",
+            f"{record.source}: {missing.counts.max()} samples are missing in the times after "
+            f"{format_quantity(record.time[most], 's', 6)}, too many to interpolate (at most "
+            f"{format_quantity(limit, 's', 6)}). Use ",
             *(Remedy(Action.GAPS, "longest"), ", or a longer limit in s if interpolation is acceptable."),
         )
     return fill_gaps(record, float(steps[most]))
@@ -192,7 +205,8 @@ def _channel(record: Record, role: str) -> Vector:
 
 def _span(record: Record, role: str, left: Vector) -> str:
     line = _channel(record, role) - left
-    return f"{line[0]:.4g} {CHANNELS[role]} at the start and {line[-1]:.4g} {CHANNELS[role]} at the end"
+    first, last = format_alike([line[0], line[-1]], CHANNELS[role])
+    return f"{first} at the start and {last} at the end"
 
 
 def _first(record: Record) -> float:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_quantity
 from inerter.records import matlab, mdf, tables, tdms
 from inerter.records.channel_selection import Roles, channel_example, checked_roles, select_channels
 from inerter.records.channel_units import check_present, check_units, is_unit_of_role, scale
@@ -149,7 +150,9 @@ def _check_interval(interval: float | None, time: str | int | None) -> None:
     if not is_number(interval) or interval <= 0.0:
         raise RecordError(f"The interval between samples must be a positive number of s, got {interval!r}.")
     if time is not None:
-        raise RecordError(f"Give either the interval ({interval:g} s) or the time channel ({time!r}), not both.")
+        raise RecordError(
+            f"Give either the interval ({format_quantity(interval, 's', 6)}) or the time channel ({time!r}), not both."
+        )
 
 
 def _scales(
@@ -221,7 +224,7 @@ def _with_times(
     size = channels["force"].values.size
     if interval is not None:
         channels = {"time": Samples(interval * np.arange(size)), **channels}
-        notes.append(f"Sampling interval {interval:g} s as specified in the call.")
+        notes.append(f"Sampling interval {format_quantity(interval, 's', 6)} as specified in the call.")
     elif timed:
         time = rasters["force"]
         channels = {"time": Samples(np.array(time)), **channels} if time is not None else channels

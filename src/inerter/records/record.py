@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import RecordError
+from inerter.formatting import format_alike, format_number, format_quantity, format_range
 from inerter.records.remedy import Action, Remedy
 from inerter.validation import is_number
 
@@ -82,8 +83,8 @@ class Record:
         if not np.all(np.diff(self.time) > 0.0):
             at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
             raise RecordError(
-                f"The times of {self.source!r} must increase, but do not at sample {at} (t = {self.time[at]:g} s). "
-                f"Where a file rounds or repeats its times, read it with ",
+                f"The times of {self.source!r} must increase, but do not at sample {at} (t = "
+                f"{format_quantity(self.time[at], 's', 6)}). Where a file rounds or repeats its times, read it with ",
                 *(Remedy(Action.INTERVAL), " instead."),
             )
         for name in (
@@ -147,11 +148,12 @@ class Record:
         slack = 1e-6 * self.interval
         a, b = np.searchsorted(self.time, [begin - slack, end + slack])
         if b - a < 4:
+            span = " and ".join(format_alike([begin, end], "s", 6))
             raise RecordError(
-                f"Between {begin:g} and {end:g} s {self.source!r} has {max(b - a, 0)} samples; it lasts from "
-                f"{first:g} to {last:g} s."
+                f"Between {span} {self.source!r} has {max(b - a, 0)} samples; it lasts from "
+                f"{format_range(first, last, 's', 6)}."
             )
-        return self.samples(slice(int(a), int(b)), f"Trimmed to {begin:.6g} to {end:.6g} s.")
+        return self.samples(slice(int(a), int(b)), f"Trimmed to {format_range(begin, end, 's', 6)}.")
 
     def split(self, fraction: float = 0.7) -> tuple[Record, Record]:
         """Estimation data, the first `fraction` of the samples, and validation data, the rest.
@@ -163,10 +165,11 @@ class Record:
         at = math.floor(fraction * self.time.size)
         if not 4 <= at <= self.time.size - 4:
             raise RecordError(
-                f"A record of {self.time.size} samples cannot be split at {fraction:g}: a part is too short."
+                f"A record of {self.time.size} samples cannot be split at {format_number(fraction)}: a part is too "
+                f"short."
             )
         cut = float(self.time[at])
         return (
-            self.samples(slice(0, at), f"Estimation data: before {cut:.6g} s."),
-            self.samples(slice(at, None), f"Validation data: after {cut:.6g} s."),
+            self.samples(slice(0, at), f"Estimation data: before {format_quantity(cut, 's', 6)}."),
+            self.samples(slice(at, None), f"Validation data: after {format_quantity(cut, 's', 6)}."),
         )

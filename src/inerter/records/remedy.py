@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from inerter.formatting import format_number
+
 
 class Action(StrEnum):
     """Kind of remedy: an argument of `read_record`, a field of a record, a processing step, or a setting of a fit."""
@@ -61,7 +63,7 @@ _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.UNIT: lambda value: f"units={{{value[0]!r}: {value[1]!r}}}",
     Action.COLUMN: lambda value: ", ".join(f"{role}={name!r}" for role, name in value),
     Action.UNITS: lambda value: f"units={dict(value)!r}",
-    Action.INTERVAL: lambda value: "interval=" if value is None else f"interval={value:.6g}",
+    Action.INTERVAL: lambda value: "interval=" if value is None else f"interval={format_number(value)}",
     Action.GAPS: lambda value: f"gaps={value!r}",
     Action.TRIM: lambda value: "trim",
     Action.RESAMPLE: lambda value: "resample(record)",
@@ -70,7 +72,7 @@ _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.DETREND: lambda value: "detrend(record)",
     Action.REMOVE_OFFSET: lambda value: "remove_offset(record)",
     Action.REVERSE_FORCE: lambda value: " Use reverse_force(record).",
-    Action.SHIFT_FORCE: lambda value: f"shift_force(record, {value:.3g})",
+    Action.SHIFT_FORCE: lambda value: f"shift_force(record, {format_number(value, 3)})",
     Action.FORCE_BANDWIDTH: lambda value: "force_bandwidth=",
     Action.FIXTURE_MASS: lambda value: "fixture_mass=",
     Action.FORCE_SCALE: lambda value: f"force_scale={value!r}",

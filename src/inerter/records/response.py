@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, RecordError, Status, StatusKind
+from inerter.formatting import format_quantity, format_share
 from inerter.norms.response import frequency_response as linear_response
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
@@ -125,18 +126,20 @@ def _periodic_response(records: Sequence[Record], group: Sequence[float], estima
     chosen = every.is_excited()
     if not chosen.any():
         raise RecordError(
-            f"{format_sources(records)}: no harmonic of a period of {period:.6g} s exceeds the scatter of the "
-            f"displacement. Check the period."
+            f"{format_sources(records)}: no harmonic of a period of {format_quantity(period, 's', 6)} exceeds the "
+            f"scatter of the displacement. Check the period."
         )
     lines, left_out = every.at(chosen).without_transients()
     counts = [x.shape[0] for x in lines.displacement]
     if counts == [1]:
         raise RecordError(
-            f"{format_sources(records)}: too short: one whole period of {period:.6g} s. Record two or more: the "
-            f"uncertainty of the response follows from their scatter."
+            f"{format_sources(records)}: too short: one whole period of {format_quantity(period, 's', 6)}. Record two "
+            f"or more: the uncertainty of the response follows from their scatter."
         )
     many = f"{counts[0]} periods" if len(counts) == 1 else f"{len(counts)} records of {min(counts)} or more periods"
-    notes = [f"Periodic: {many} of {period:.6g} s, {chosen.sum()} of {chosen.size} harmonics excited."]
+    notes = [
+        f"Periodic: {many} of {format_quantity(period, 's', 6)}, {chosen.sum()} of {chosen.size} harmonics excited."
+    ]
     notes += [note for part in parts for note in part.notes]
     left = ("period" if n == 1 else f"{n} periods" for n in left_out if n)
     notes += [f"Left out the first {some}: transient in the force." for some in left]
@@ -181,7 +184,7 @@ def _distortion(lines: HarmonicLines, chosen: NDArray[np.bool_]) -> str:
         power = np.mean([np.abs(a.mean(axis=0)) ** 2 for a in amplitudes], axis=0)[at :: at + 1]
         others = math.sqrt(power[1:].sum() / power[0]) if power[0] > 0.0 else math.inf
         third = math.sqrt(power[2] / power[0]) if power.size > 2 and power[0] > 0.0 else 0.0
-        words.append(f"of the {name} {100.0 * others:.2g} % (the third alone {100.0 * third:.2g} %)")
+        words.append(f"of the {name} {format_share(others, 2)} (the third alone {format_share(third, 2)})")
     distortion = " and ".join(words)
     return f"Sinusoidal excitation: harmonic distortion {distortion}; the response is that of the fundamental alone."
 
@@ -194,8 +197,8 @@ def _periodicity_status(x: Sequence[Complex], records: Sequence[Record]) -> Stat
         if change > 0.1:
             return Status(
                 StatusKind.INACCURATE,
-                f"the displacement of {record.source!r} changes by {100.0 * change:.0f} % from period to period; check "
-                f"its period",
+                f"the displacement of {record.source!r} changes by {format_share(change, 2)} from period to period; "
+                f"check its period",
             )
     return OK
 

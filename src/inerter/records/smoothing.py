@@ -17,6 +17,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import detrend, periodogram, welch
 
 from inerter.errors import RecordError
+from inerter.formatting import format_quantity
 from inerter.records.filtering import HIGHEST, gain, low_pass
 from inerter.records.gaps import LONGEST, missing_rows
 from inerter.records.record import Record
@@ -111,7 +112,7 @@ def _uneven(record: Record) -> RecordError:
     remedy = Remedy(Action.FILL_GAPS) if most <= LONGEST else Remedy(Action.GAPS, "longest")
     return RecordError(
         f"{record.source}: {missing.counts.sum()} rows are missing at {places}, the first after "
-        f"{record.time[missing.after[0]]:.6g} s, up to {most} in a row. Use ",
+        f"{format_quantity(record.time[missing.after[0]], 's', 6)}, up to {most} in a row. Use ",
         *(remedy, " first."),
     )
 

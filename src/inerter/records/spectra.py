@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_number, format_quantity
 from inerter.records.periods import Periods
 from inerter.records.record import Record
 from inerter.records.smoothing import resolution
@@ -148,16 +149,17 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
     """
     interval = records[0].interval
     if any(abs(record.interval - interval) > 1e-6 * interval for record in records):
-        rates = ", ".join(f"{1.0 / record.interval:g}" for record in records)
+        rates = ", ".join(format_number(1.0 / record.interval) for record in records)
         raise RecordError(f"The records have different sampling rates ({rates} Hz). Resample them to one.")
     sizes = [record.time.size for record in records]
     length = min(round(sum(sizes) / _SEGMENTS), *sizes) if segment is None else round(segment / interval)
     step = max(length - length // 2, 1)
     counts = np.array([max((size - length) // step + 1, 0) for size in sizes])
     if length < _LEAST_SAMPLES or counts.min() < 1 or counts.sum() < 2:
+        lengths = " and ".join(f"{r.source!r} of {format_quantity(r.duration, 's', 6)}" for r in records)
         raise RecordError(
-            f"Too short: {' and '.join(f'{r.source!r} of {r.duration:g} s' for r in records)} cannot be divided into "
-            f"two or more segments of {length * interval:g} s and at least {_LEAST_SAMPLES} samples."
+            f"Too short: {lengths} cannot be divided into two or more segments of "
+            f"{format_quantity(length * interval, 's', 6)} and at least {_LEAST_SAMPLES} samples."
         )
     window = scipy.signal.windows.hann(length, sym=False)
     sums = [np.zeros(length // 2 + 1, dtype=complex) for _ in range(3)]
@@ -182,8 +184,8 @@ def welch(records: Sequence[Record], segment: float | None) -> Spectra:
     averages = Spectra(np.asarray(2.0 * np.pi * frequency[inside]), xx[inside], ff[inside], sums[2][inside], count)
     related = _is_coherent(averages.coherence, chosen, count)
     notes = [
-        f"Welch: {counts.sum()} Hann segments of {length * interval:g} s, overlapping by half, "
-        f"equivalent to {count:.1f} independent ones."
+        f"Welch: {counts.sum()} Hann segments of {format_quantity(length * interval, 's', 6)}, overlapping by half, "
+        f"equivalent to {format_number(count, 3)} independent ones."
     ]
     if np.any(~chosen):
         notes.append(f"No response at {np.sum(~chosen)} frequencies: no displacement there.")

@@ -21,7 +21,7 @@ from inerter.figures.identification import (
 )
 from inerter.figures.misfit import ResidualSamples, misfit_figure
 from inerter.files.identification.running import IdentificationResult, Responses
-from inerter.formatting import choose_scale
+from inerter.formatting import choose_scale, format_quantity, format_range
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.misfit_patterns import MisfitPattern
 from inerter.report.identified_values import ResultKind, result_kind, value_and_interval
@@ -102,7 +102,7 @@ def _fit_figure(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     yield "fit", time_figure(measured, model), f"the model over the measurement, {_fitted_part(c)}."
     inside = slice(max(first - 1, 0), last + 2)
     near = [MotionCurve(m.label, m.time[inside], m.displacement[inside], m.force[inside]) for m in (measured, model)]
-    yield "window", time_figure(near[0], near[1], part), f"{part[0]:.4g} to {part[1]:.4g} s of it."
+    yield "window", time_figure(near[0], near[1], part), f"{format_range(*part, 's')} of it."
     used = np.flatnonzero(c.fitted | c.checked)
     whole = slice(int(used[0]), int(used[-1]) + 1)
     lags, correlation, bound = _autocorrelation(c.whitened)
@@ -122,8 +122,8 @@ def _fit_figure(c: RecordFit) -> Iterator[tuple[str, Figure, str]]:
     yield (
         "loops",
         loops_figure(record.displacement[loop], c.experiment.motion.velocity[loop], record.force[loop], c.model[loop]),
-        f"the force over displacement and velocity, {part[0]:.4g} to {part[1]:.4g} s; the velocity is that of the "
-        f"displacement smoothed to {c.experiment.motion.bandwidth:.4g} Hz.",
+        f"the force over displacement and velocity, {format_range(*part, 's')}; the velocity is that of the "
+        f"displacement smoothed to {format_quantity(c.experiment.motion.bandwidth, 'Hz')}.",
     )
 
 
@@ -131,7 +131,7 @@ def _fitted_part(c: RecordFit) -> str:
     if not c.checked.any():
         return "all of it fitted"
     start = float(c.record.time[int(np.flatnonzero(c.checked)[0])])
-    return f"which was fitted up to {start:.4g} s and is checked from there on"
+    return f"which was fitted up to {format_quantity(start, 's')} and is checked from there on"
 
 
 def _autocorrelation(white: Matrix) -> tuple[Matrix, Matrix, float]:
@@ -164,7 +164,7 @@ def _profile(found: IdentificationResult, name: str) -> ProfileCurve | None:
 
 def _response_caption(answered: Responses) -> str:
     assert answered.measured is not None
-    size = f"{1e3 * answered.measured.amplitude:.3g} mm"
+    size = format_quantity(answered.measured.amplitude, "m", 3)
     model = "" if answered.model is None else f", the model's at the same amplitude ({size} r.m.s.)"
     return f"Force over displacement: measured, corrected for the fitted sensor errors{model}, and linear."
 

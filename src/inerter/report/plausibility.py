@@ -9,6 +9,7 @@ import xarray as xr
 
 from inerter.errors import InerterError
 from inerter.files.study.study import Study
+from inerter.formatting import format_alike, format_quantity
 from inerter.indices.registry import INDICES
 from inerter.indices.ride_comfort import RideComfort
 from inerter.indices.tyre_load import TyreLoad
@@ -26,13 +27,14 @@ def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
         largest = float(values.max()) if np.isfinite(values).any() else np.nan
         if kind is RideComfort and largest > STANDARD_GRAVITY:
             yield (
-                f"Warning: {name} reaches {largest:.4g} m/s^2 r.m.s., more than the acceleration of gravity, which no "
-                "vehicle stands. Check the road's roughness and speed."
+                f"Warning: {name} reaches {format_quantity(largest, 'm/s^2')} r.m.s., more than the acceleration of "
+                f"gravity, which no vehicle stands. Check the road's roughness and speed."
             )
         if kind is TyreLoad and (static := _static_load(study)) and largest > static:
+            load, limit = format_alike([largest, static], "N")
             yield (
-                f"Warning: {name} reaches {largest:.4g} N r.m.s., more than the static load of {static:.4g} N: the "
-                "tyres would leave the road, which the linear model ignores. Check the road's roughness and speed."
+                f"Warning: {name} reaches {load} r.m.s., more than the static load of {limit}: the tyres would leave "
+                f"the road, which the linear model ignores. Check the road's roughness and speed."
             )
 
 

@@ -19,7 +19,7 @@ from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.files.study.ways import ways
-from inerter.formatting import format_quantity
+from inerter.formatting import format_number, format_quantity, format_share
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 
 _ROUGHNESS = "m^3/cycle"
 _ALSO = {  # the same value in its customary unit
-    "m/s": lambda value: f" ({3.6 * value:.4g} km/h)",
-    "rad/s": lambda value: f" ({value / (2.0 * pi):.3g} Hz)",
+    "m/s": lambda value: f" ({format_quantity(3.6 * value, 'km/h')})",
+    "rad/s": lambda value: f" ({format_quantity(value / (2.0 * pi), 'Hz', 3)})",
     _ROUGHNESS: lambda value: f" ({_road_class(value)})",
 }
 
@@ -103,7 +103,7 @@ def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
     for key, value in study.coherence.items():
         label = f"road.coherence.{key}"
         words = known[label].words if label in known else f"{key} of the coherence"
-        yield capital(words), _number_text(study, label) if label in known else f"{value:g}"
+        yield capital(words), _number_text(study, label) if label in known else format_number(value)
 
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
@@ -143,7 +143,7 @@ def condition_rows(study: Study) -> list[tuple[str, str, str]]:
             f"{label} = {_value_text(study, value, known[label].unit)}" for label, value in condition.numbers.items()
         ]
         told = ", ".join(numbers) or "as above"
-        rows.append((condition.name or f"{i}", f"{100.0 * condition.share / total:.3g} %", told))
+        rows.append((condition.name or f"{i}", format_share(condition.share / total), told))
     return rows
 
 

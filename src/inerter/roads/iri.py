@@ -9,6 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_alike
 from inerter.roads.profile import Profile
 
 Matrix = NDArray[np.float64]
@@ -33,14 +34,13 @@ def iri(profile: Profile) -> float:
         raise RecordError(f"iri requires a Profile, such as read_profile(...), got {profile!r}.")
     widest = float(np.diff(profile.distance).max())
     if widest > _LONGEST * (1.0 + 1e-9):
+        most, widest_text = format_alike([_LONGEST, widest], "m")
         raise RecordError(
-            f"The IRI requires points at most {_LONGEST:g} m apart; those of {profile.source!r} are up to {widest:g} m "
-            f"apart."
+            f"The IRI requires points at most {most} apart; those of {profile.source!r} are up to {widest_text} apart."
         )
     if profile.length < START:
-        raise RecordError(
-            f"The IRI requires a profile of at least {START:g} m; {profile.source!r} has {profile.length:g} m."
-        )
+        least, length = format_alike([START, profile.length], "m")
+        raise RecordError(f"The IRI requires a profile of at least {least}; {profile.source!r} has {length}.")
     even = profile.even()
     return float(np.mean([_track_iri(heights, even.interval) for heights in even.tracks.values()]))
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import RecordError, SignalError
+from inerter.formatting import format_alike, format_quantity
 from inerter.signals.arguments import positive_number
 from inerter.signals.signal import SampledSignal, Signal
 from inerter.validation import is_number
@@ -57,9 +58,10 @@ class Profile:
         back = np.flatnonzero(np.diff(self.distance) <= 0.0)
         if back.size:
             i = int(back[0])
+            before, after = format_alike(self.distance[i : i + 2], "m", 9)
             raise RecordError(
-                f"The distances of {self.source!r} must increase, but point {i + 1} is at {self.distance[i + 1]:.9g} m "
-                f"after {self.distance[i]:.9g} m. Sort the points, and drop repeated ones."
+                f"The distances of {self.source!r} must increase, but point {i + 1} is at {after} after {before}. "
+                f"Sort the points, and drop repeated ones."
             )
 
     @property
@@ -91,8 +93,8 @@ class Profile:
             interval = self.interval
         if not is_number(interval) or not 0.0 < interval <= self.length:
             raise RecordError(
-                f"The interval of a profile of {self.length:g} m must be positive and at most its length, got "
-                f"{interval!r} m."
+                f"The interval of a profile of {format_quantity(self.length, 'm', 6)} must be positive and at most its "
+                f"length, got {interval!r} m."
             )
         points = int(np.floor(self.length / interval * (1.0 + 1e-12))) + 1
         grid = self.distance[0] + interval * np.arange(points)

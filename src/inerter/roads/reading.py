@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError, SignalError, UnitError
+from inerter.formatting import format_quantity, format_range
 from inerter.records import tables
 from inerter.records.channel_selection import fold_name
 from inerter.records.channels import Channel, Contents
@@ -127,7 +128,9 @@ def _read_table(
     if interval is not None and (not is_number(interval) or interval <= 0.0):
         raise RecordError(f"The interval between points must be a positive number of m, got {interval!r}.")
     if interval is not None and named.get("distance") is not None:
-        raise RecordError(f"Give either the interval ({interval:g} m) or the column of distances, not both.")
+        raise RecordError(
+            f"Give either the interval ({format_quantity(interval, 'm', 6)}) or the column of distances, not both."
+        )
     asked = {role: named.get(role) for role in _WORDS}
     try:
         with tables.open_channels(name, source) as contents:
@@ -297,7 +300,7 @@ def _read_crg(name: str, source: str, lateral: tuple[float, ...]) -> Profile:
     for at in lateral:
         if not low - 1e-6 <= at <= high + 1e-6:
             raise RecordError(
-                f"{source}: lateral position {at:g} m outside the road, which extends from {low:g} to {high:g} m from "
-                f"its reference line."
+                f"{source}: lateral position {format_quantity(at, 'm', 6)} outside the road, which extends from "
+                f"{format_range(low, high, 'm', 6)} from its reference line."
             )
     return Profile(distance, heights[0], heights[1] if len(heights) > 1 else None, source)

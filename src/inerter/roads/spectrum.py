@@ -10,6 +10,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import RecordError
+from inerter.formatting import format_quantity, format_range
 from inerter.roads.profile import Profile
 from inerter.signals.road import ROAD_CLASSES, Road, RoadClass, RoadShape
 from inerter.validation import is_number
@@ -104,8 +105,9 @@ def road_spectrum(
     n, smooth, lines = _bands(wavenumber[whole], density[whole] / leaked, lowest, highest)
     if n.size < _FEWEST:
         raise RecordError(
-            f"{profile.source!r} is {profile.length:g} m long with a point every {even.interval:g} m: too short, or "
-            f"too widely spaced, for a fit from {lowest:g} to {highest:g} cycle/m."
+            f"{profile.source!r} is {format_quantity(profile.length, 'm', 6)} long with a point every "
+            f"{format_quantity(even.interval, 'm', 6)}: too short, or too widely spaced, for a fit from "
+            f"{format_range(lowest, highest, 'cycle/m', 6)}."
         )
     x, seen = np.log(n / N0), np.log(smooth) - _bias_of_logarithm(_freedom(even.distance.size, size, lines))
     folding = np.log(_folding(n * even.interval, _waviness(x, seen, n * even.interval, sampling), sampling))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SignalError
+from inerter.formatting import format_alike, format_number, format_quantity
 from inerter.validation import check_positive, is_number
 
 Array = NDArray[np.float64]
@@ -34,9 +35,9 @@ def frequency_band(what: str, lowest: object, highest: object) -> tuple[float, f
     low = positive_number(f"The lowest frequency of a {what}", lowest, "Hz")
     high = positive_number(f"The highest frequency of a {what}", highest, "Hz")
     if low > high:
+        ends = " and ".join(format_alike([low, high], "Hz"))
         raise SignalError(
-            f"The lowest frequency of a {what} must not exceed the highest, got {low:g} and {high:g} Hz. "
-            f"Swap them if they are reversed."
+            f"The lowest frequency of a {what} must not exceed the highest, got {ends}. Swap them if they are reversed."
         )
     return low, high
 
@@ -84,13 +85,14 @@ def whole_number(length: float, interval: float, what: str) -> int:
     ratio = length / interval
     if ratio > MOST:
         raise SignalError(
-            f"{what} of {length:g} s has {ratio:.3g} intervals of {interval:g} s; at most 1e8 are supported."
+            f"{what} of {format_quantity(length, 's', 6)} has {format_number(ratio, 3)} intervals of "
+            f"{format_quantity(interval, 's', 6)}; at most 1e8 are supported."
         )
     count = round(ratio)
     if count < 1 or abs(ratio - count) > 1e-6:
+        given, step, better = format_alike([length, interval, length / max(count, 1)], "s", 12)
         raise SignalError(
-            f"{what} of {length:g} s is not a whole number of intervals of {interval:g} s. "
-            f"Use an interval such as {length / max(count, 1):.12g} s."
+            f"{what} of {given} is not a whole number of intervals of {step}. Use an interval such as {better}."
         )
     return count
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SignalError
+from inerter.formatting import format_number, format_quantity, format_range
 from inerter.signals.arguments import (
     Array,
     checked_grid,
@@ -178,7 +179,7 @@ def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: 
     low, high = frequency_band("multisine", lowest, highest)
     count = len(_orders_up_to(low, high))
     amplitude = np.full(count, size * math.sqrt(2.0 / count))
-    return _random_phases(f"flat multisine of {size:g} r.m.s.", amplitude, low, seed, speed_or_none(speed))
+    return _random_phases(f"flat multisine of {format_number(size)} r.m.s.", amplitude, low, seed, speed_or_none(speed))
 
 
 def sine(amplitude: float, frequency: float, phase: float = 0.0, speed: float | None = None) -> Harmonics:
@@ -207,12 +208,14 @@ def _single(
     rate = positive_number(f"The frequency of a {name}", frequency, "Hz")
     angle = finite_number(f"The phase of a {name}", phase, "rad")
     coefficient = np.array([turn * size * np.exp(1j * angle)])
-    return _harmonics(f"{name} of {size:g}, {rate:g} Hz", coefficient, rate, speed_or_none(speed))
+    return _harmonics(
+        f"{name} of {format_number(size)}, {format_quantity(rate, 'Hz', 6)}", coefficient, rate, speed_or_none(speed)
+    )
 
 
 def _random_phases(name: str, amplitude: Array, lowest: float, seed: int, speed: float | None) -> Harmonics:
     phase = random_generator(seed).uniform(0.0, 2.0 * math.pi, len(amplitude))
-    label = f"{name}, {lowest:g} to {lowest * len(amplitude):g} Hz, seed {seed}"
+    label = f"{name}, {format_range(lowest, lowest * len(amplitude), 'Hz', 6)}, seed {seed}"
     return _harmonics(label, amplitude * np.exp(1j * phase), lowest, speed)
 
 
@@ -227,6 +230,7 @@ def _orders_up_to(lowest: float, highest: float) -> Array:
     count = highest / lowest
     if count > _MOST:
         raise SignalError(
-            f"A multisine from {lowest:g} to {highest:g} Hz has {count:.3g} harmonics; at most 1e7 are supported."
+            f"A multisine from {format_range(lowest, highest, 'Hz', 6)} has {format_number(count, 3)} harmonics; at "
+            f"most 1e7 are supported."
         )
     return np.arange(1.0, math.floor(count * (1.0 + 1e-12)) + 1.0)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from inerter.errors import SignalError, UnitError
+from inerter.formatting import format_alike, format_number, format_quantity
 from inerter.signals.arguments import Array, positive_number, random_generator, whole_number
 from inerter.signals.signal import SampledSignal, Signal
 from inerter.units import parse_quantity, quote_value
@@ -35,7 +36,7 @@ def held_noise(
     duration = positive_number("The duration of a noise", duration, "s")
     count = whole_number(duration, interval, "A duration")
     value = math.sqrt(power / interval) * random_generator(seed).standard_normal(count)
-    label = f"noise of {power:g} per Hz, held for {interval:g} s, seed {seed}"
+    label = f"noise of {format_number(power)} per Hz, held for {format_quantity(interval, 's', 6)}, seed {seed}"
     time = np.linspace(0.0, duration, count + 1)
     return Signal.sampled(time, np.resize(value, count + 1), "zero", periodic=True, speed=speed, label=label)
 
@@ -73,9 +74,9 @@ def _columns(name: str, what: str, units: dict[str, str]) -> Array:
         numbers = [_number(name, line, cell) * scale for cell, scale in zip(cells, scales, strict=True)]
         points.append([numbers[column] for column in order])
         if len(points) > 1 and points[-1][0] <= points[-2][0]:
+            before, after = format_alike([points[-2][0], points[-1][0]], units[first], 9)
             raise SignalError(
-                f"{name}, line {line}: the {first}s of a {what} must increase, got {points[-1][0]:.9g} {units[first]} "
-                f"after {points[-2][0]:.9g} {units[first]}."
+                f"{name}, line {line}: the {first}s of a {what} must increase, got {after} after {before}."
             )
     if len(points) < 2:
         raise SignalError(f"{name}: a {what} requires at least two points, got {len(points)}.")

@@ -40,7 +40,7 @@ class RoadClass:
         return 0.5 * self.mean / _PER_N0_SQUARED
 
     def __str__(self) -> str:
-        low, mean, high = (f"{1e6 * value:.0f}e-6" for value in (self.lowest, self.mean, self.highest))
+        low, mean, high = (f"{round(1e6 * value)}e-6" for value in (self.lowest, self.mean, self.highest))
         span = f"from {low} to {high} m^3"
         if self.lowest == 0.0:
             span = f"up to {high} m^3"

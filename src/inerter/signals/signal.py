@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import SignalError
+from inerter.formatting import format_alike, format_number, format_quantity, format_range
 from inerter.signals.arguments import (
     MOST,
     Array,
@@ -63,9 +64,10 @@ class Signal:
         times = real_array("The times of a signal", time)
         latest = float(times.max(initial=-math.inf))
         if self.duration is not None and latest > self.duration + time_tolerance(self.duration, self.interval):
+            end, asked = format_alike([self.duration, latest], "s", 9)
             raise SignalError(
-                f"The signal {self.label!r} ends at t = {self.duration:.9g} s, before the requested t = {latest:.9g} "
-                f"s. Stop earlier, or use a longer or periodic signal."
+                f"The signal {self.label!r} ends at t = {end}, before the requested t = {asked}. Stop earlier, or use "
+                f"a longer or periodic signal."
             )
         return self._evaluate(times)
 
@@ -92,7 +94,7 @@ class Signal:
         Raises `SignalError` if the period is not a whole number of intervals, or the signal is too short.
         """
         interval = positive_number("The interval of a hold", interval, "s")
-        label = f"{self.label}, held for {interval:g} s"
+        label = f"{self.label}, held for {format_quantity(interval, 's', 6)}"
         if duration is None and self.period is not None:
             count = whole_number(self.period, interval, "A period")
             time = np.linspace(0.0, self.period, count + 1)
@@ -104,7 +106,10 @@ class Signal:
                 f"The signal {self.label!r} is neither periodic nor finite. Give the time to hold: duration = ..."
             )
         if not 1.0 <= end / interval <= MOST:
-            raise SignalError(f"A signal of {end:g} s cannot be held for {interval:g} s; use from 1 to 1e8 intervals.")
+            raise SignalError(
+                f"A signal of {format_quantity(end, 's', 6)} cannot be held for {format_quantity(interval, 's', 6)}; "
+                f"use from 1 to 1e8 intervals."
+            )
         count = math.floor(end / interval * (1.0 + 1e-15)) + 1
         value = self.grid(0.0, interval, count)[0]
         table = Signal.sampled(interval * np.arange(count), value, "zero", speed=self.speed, label=label)
@@ -189,7 +194,9 @@ class SampledSignal(Signal):
         pieces = self.coefficient.shape[1]
         first, last = cycle * pieces + index
         if last - first > MOST:
-            raise SignalError(f"The signal {self.label!r} has more than 1e8 knots from {start:g} to {stop:g} s.")
+            raise SignalError(
+                f"The signal {self.label!r} has more than 1e8 knots from {format_range(start, stop, 's', 6)}."
+            )
         turn, piece = np.divmod(np.arange(int(first), int(last) + 1), pieces)
         return times_within(self.time[piece] + turn * (self.period or 0.0), start, stop, self.interval)
 
@@ -237,14 +244,13 @@ class SignalSum(Signal):
 
 def _weighted_sum(*terms: tuple[float, Signal]) -> SignalSum:
     signals = [signal for _, signal in terms]
-    speeds = {signal.speed for signal in signals} - {None}
+    speeds = {signal.speed for signal in signals if signal.speed is not None}
     if len(speeds) > 1:
-        raise SignalError(
-            f"Signals of different speeds cannot be added, got {' and '.join(f'{v:g}' for v in speeds)} m/s."
-        )
+        given = " and ".join(format_alike(speeds, "m/s"))
+        raise SignalError(f"Signals of different speeds cannot be added, got {given}.")
     return SignalSum(
         terms=terms,
-        label=" + ".join(s.label if weight == 1.0 else f"{weight:g} x ({s.label})" for weight, s in terms),
+        label=" + ".join(s.label if weight == 1.0 else f"{format_number(weight)} x ({s.label})" for weight, s in terms),
         period=_common_period([signal.period for signal in signals]),
         duration=min((s.duration for s in signals if s.duration is not None), default=None),
         highest_frequency=max((s.highest_frequency for s in signals if s.highest_frequency is not None), default=None),

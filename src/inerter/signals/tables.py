@@ -6,6 +6,7 @@ import numpy as np
 import scipy
 
 from inerter.errors import SignalError
+from inerter.formatting import format_alike
 from inerter.signals.arguments import Array, real_vector
 
 HOLDS = ("zero", "linear", "cubic")  # from the roughest
@@ -20,9 +21,10 @@ def check_times(time: Array, count: int) -> None:
     after = np.flatnonzero(np.diff(time) <= 0.0)
     if after.size:
         i = int(after[0])
+        earlier, later = format_alike(time[i : i + 2], "s")
         raise SignalError(
-            f"The times of a table must increase, but time {i + 1} is {time[i + 1]:.12g} s and follows "
-            f"{time[i]:.12g} s. Sort the samples and drop repeated ones."
+            f"The times of a table must increase, but time {i + 1} is {later} and follows {earlier}. Sort the samples "
+            f"and drop repeated ones."
         )
 
 
@@ -41,7 +43,8 @@ def close_period(value: Array) -> Array:
     if abs(value[-1] - value[0]) > 1e-9 * np.ptp(value):
         raise SignalError(
             f"The last value of a periodic table, one period after the first, must equal the first, got "
-            f"{value[0]:.9g} first and {value[-1]:.9g} last. Append the first value again, at the time of one period."
+            f"{' first and '.join(format_alike(value[[0, -1]], ''))} last. Append the first value again, "
+            f"at the time of one period."
         )
     return np.append(value[:-1], value[0])
 

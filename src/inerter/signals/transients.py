@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.formatting import format_number, format_quantity, format_range
 from inerter.signals.arguments import (
     Array,
     finite_number,
@@ -80,7 +81,7 @@ def chirp(amplitude: float, lowest: float, highest: float, duration: float, spee
     size = finite_number("The amplitude of a chirp", amplitude, "its unit")
     end = positive_number("The duration of a chirp", duration, "s")
     return Chirp(
-        label=f"chirp of {size:g}, {low:g} to {high:g} Hz in {end:g} s",
+        label=f"chirp of {format_number(size)}, {format_range(low, high, 'Hz', 6)} in {format_quantity(end, 's', 6)}",
         amplitude=size,
         lowest=low,
         highest_frequency=high,
@@ -98,7 +99,7 @@ def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSi
         finite_number("The height of a step", height, "its unit"),
         finite_number("The time of a step", time, "s"),
     )
-    label = f"step of {size:g} at {begin:g} s"
+    label = f"step of {format_number(size)} at {format_quantity(begin, 's', 6)}"
     return StepSignal(label=label, height=size, time=begin, hold="zero", speed=speed_or_none(speed))
 
 
@@ -118,8 +119,9 @@ def bump(height: float, length: float, speed: float, start: float = 0.0) -> Bump
         positive_number("The length of a bump", length, "m"),
         positive_number("The speed over a bump", speed, "m/s"),
     )
+    extent = f"{format_quantity(long, 'm', 6)} long at {format_quantity(fast, 'm/s', 6)}"
     return Bump(
-        label=f"bump of {size:g}, {long:g} m long at {fast:g} m/s",
+        label=f"bump of {format_number(size)}, {extent}",
         height=size,
         start=begin,
         passage=long / fast,

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import renamed_keywords
 from inerter.errors import SimulationError, Status
+from inerter.formatting import format_alike
 from inerter.kernels.prepare import prepare_on
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
@@ -107,7 +108,8 @@ def simulate_many(
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
     knots, skipped = whole_steps(duration, step), round(discard / step)
     if not 0 <= skipped < knots:
-        raise SimulationError(f"discard: {discard:g} s must be shorter than the duration, {duration:g} s.")
+        part, whole = format_alike([discard, duration], "s")
+        raise SimulationError(f"discard: {part} must be shorter than the duration, {whole}.")
     if executor is not None:
         same = {"outputs": names, "duration": duration, "step": step, "discard": discard, "initial": initial}
         with running_on(executor) as there:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
+from inerter.formatting import format_quantity
 from inerter.kernels import switching
 from inerter.kernels.arrays import (
     EVENT,
@@ -195,13 +196,13 @@ class Integration:
         )
         named = [b.label for b, power in zip(branches, powers, strict=True) if power >= 0.5 * powers.max() > 0.0]
         return (
-            f"{' and '.join(named) or 'a motion'} relax in {1.0 / rate:.2g} s, more than 10 000 times faster than the "
-            f"step of {self.table.step:g} s. Leave out what is so fast, such as a damper on a small inertance or a "
-            "contact, change its value, or take a step of that order"
+            f"{' and '.join(named) or 'a motion'} relax in {format_quantity(1.0 / rate, 's', 2)}, more than 10 000 "
+            f"times faster than the step of {format_quantity(self.table.step, 's', 6)}. Leave out what is so fast, "
+            f"such as a damper on a small inertance or a contact, change its value, or take a step of that order"
         )
 
     def _failure_status(self, why: str) -> Status:
-        return Status(StatusKind.FAILED, f"at t = {self.now:.6g} s {why}; the simulation ends there")
+        return Status(StatusKind.FAILED, f"at t = {format_quantity(self.now, 's', 6)} {why}; the simulation ends there")
 
 
 def _code(states: NDArray[np.int64]) -> int:

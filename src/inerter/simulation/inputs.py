@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
+from inerter.formatting import format_alike, format_number, format_quantity
 from inerter.signals.arguments import time_tolerance
 from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
@@ -157,8 +158,8 @@ def _delay(distance: float, signal: Signal | None, speed: float | None, name: st
     known = signal.speed if speed is None else speed
     if known is None:
         raise SimulationError(
-            f"The road reaches {name!r} {distance:g} m later, but neither the signal nor simulate(..., speed=...) says "
-            f"how fast the vehicle is."
+            f"The road reaches {name!r} {format_quantity(distance, 'm', 6)} later, but neither the signal nor "
+            f"simulate(..., speed=...) says how fast the vehicle is."
         )
     check_positive(SimulationError, "The speed", known, "m/s")
     return distance / known
@@ -292,11 +293,14 @@ def whole_steps(duration: float, step: float) -> int:
     check_positive(SimulationError, "The step of a simulation", step, "s")
     count = duration / step
     if count > 1e9:
-        raise SimulationError(f"{duration:g} s in steps of {step:g} s are {count:.3g} steps; at most 1e9 are possible.")
-    if round(count) < 1 or abs(count - round(count)) > 1e-6:
         raise SimulationError(
-            f"The duration must be a whole number of steps, got {duration:g} s in steps of {step:g} s. "
-            f"Try a step of {duration / max(1, math.ceil(count)):.9g} s."
+            f"{format_quantity(duration, 's', 6)} in steps of {format_quantity(step, 's', 6)} are "
+            f"{format_number(count, 3)} steps; at most 1e9 are possible."
+        )
+    if round(count) < 1 or abs(count - round(count)) > 1e-6:
+        given, steps, better = format_alike([duration, step, duration / max(1, math.ceil(count))], "s", 9)
+        raise SimulationError(
+            f"The duration must be a whole number of steps, got {given} in steps of {steps}. Try a step of {better}."
         )
     return round(count)
 
@@ -309,21 +313,21 @@ def check_steps(signals: Sequence[Signal | None], step: float, end: float) -> No
 
 
 def _check_step(signal: Signal, step: float, end: float) -> None:
-    shortest = None if signal.highest_frequency is None else 0.5 / signal.highest_frequency
-    if shortest is not None and step > shortest * (1.0 + _SAME):
+    highest = signal.highest_frequency
+    if highest is not None and step > 0.5 / highest * (1.0 + _SAME):
+        given, most = format_alike([step, 0.5 / highest], "s")
         raise SimulationError(
-            f"A step of {step:g} s is too long for {signal.label!r}, which goes up to {signal.highest_frequency:g} Hz. "
-            f"Take {shortest:.3g} s or less."
+            f"A step of {given} is too long for {signal.label!r}, which goes up to "
+            f"{format_quantity(highest, 'Hz', 6)}. Take {most} or less."
         )
     if signal.interval is not None and step > signal.interval * (1.0 + _SAME):
+        given, most = format_alike([step, signal.interval], "s")
         raise SimulationError(
-            f"A step of {step:g} s is too long for {signal.label!r}, whose samples are {signal.interval:g} s apart. "
-            f"Take {signal.interval:.3g} s or less."
+            f"A step of {given} is too long for {signal.label!r}, whose samples are {most} apart. Take {most} or less."
         )
     if signal.duration is not None and end > signal.duration * (1.0 + _SAME):
-        raise SimulationError(
-            f"The signal {signal.label!r} lasts {signal.duration:g} s, but the simulation lasts until {end:g} s."
-        )
+        known, asked = format_alike([signal.duration, end], "s")
+        raise SimulationError(f"The signal {signal.label!r} lasts {known}, but the simulation lasts until {asked}.")
 
 
 def check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> None:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.formatting import format_quantity, format_range
+
 Matrix = NDArray[np.float64]
 
 
@@ -52,11 +54,11 @@ def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterat
 def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
     """Sentence on the intervals of wheel lift-off of one tyre."""
     count, total = len(found), sum(one.end - one.begin for one in found)
-    times = "once" if count == 1 else f"{count} times, {total:.3g} s together"
+    times = "once" if count == 1 else f"{count} times, {format_quantity(total, 's', 3)} together"
     return (
-        f"{found[0].tyre} pulls on the road by more than its static load of {static:.4g} N, {times}, first from "
-        f"{found[0].begin:.4g} to {found[0].end:.4g} s: a real tyre would lift off there, so the later motion is not "
-        "valid."
+        f"{found[0].tyre} pulls on the road by more than its static load of {format_quantity(static, 'N')}, {times}, "
+        f"first from {format_range(found[0].begin, found[0].end, 's')}: a real tyre would lift off there, so the later "
+        f"motion is not valid."
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError, Status, StatusKind
+from inerter.formatting import format_alike, format_number
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
@@ -40,9 +41,8 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     for signal in moving:
         ratio = period / float(signal.period or 1.0)
         if abs(ratio - round(ratio)) > 1e-9 * ratio:
-            raise SimulationError(
-                f"The periods of {', '.join(f'{s.period:g}' for s in moving)} s are not multiples of each other."
-            )
+            periods = ", ".join(format_alike([s.period for s in moving if s.period is not None], "s"))
+            raise SimulationError(f"The periods of {periods} are not multiples of each other.")
     return period
 
 
@@ -134,6 +134,6 @@ def _repeat_period(
 def _steady_state_warning(found: PeriodicState) -> Status:
     message = (
         f"periodic steady state not reached after {found.periods} periods: relative change of state per period "
-        f"{found.mismatch:.1e}"
+        f"{format_number(found.mismatch, 2)}"
     )
     return Status(StatusKind.INACCURATE, message)

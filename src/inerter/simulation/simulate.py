@@ -9,6 +9,7 @@ from typing import Any, Literal, Unpack
 import numpy as np
 
 from inerter.errors import SimulationError
+from inerter.formatting import format_alike
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven, time_stepping_run
 from inerter.simulation.event_driven import check_elements
@@ -159,9 +160,8 @@ def _length(duration: float | None, period: float | None, periodic: bool) -> flo
         assert period is not None
         return period
     if periodic and period is not None and abs(duration - period) > 1e-9 * period:
-        raise SimulationError(
-            f"A periodic steady state is recorded over one period, {period:g} s; got duration = {duration:g} s."
-        )
+        one, asked = format_alike([period, duration], "s")
+        raise SimulationError(f"A periodic steady state is recorded over one period, {one}; got duration = {asked}.")
     return duration
 
 
@@ -174,8 +174,10 @@ def _check_memory(system: PiecewiseSystem, steps: int, every: int, limit: float)
     channels = len(system.mechanism.roads) + len(system.mechanism.forces)
     needed = 8.0 * (steps * (2 + 6 * channels) + steps / every * (system.order + 3 * channels + 4))
     if not is_number(limit) or needed > limit:
+        size, most = format_alike([needed / 2**30, limit / 2**30 if is_number(limit) else limit], "GiB", 3)
         raise SimulationError(
-            f"The run needs about {needed / 2**30:.3g} GiB for {steps} steps, more than the limit of "
-            f"{limit / 2**30 if is_number(limit) else limit:.3g} GiB. Take a longer step, a shorter duration, "
-            f"every = {2 * every} or more, simulate_many(...) for mean squares alone, or a higher memory_limit."
+            f"The run needs about {size} for {steps} steps, more than the limit of {most}. "
+            f"Take a longer step, a shorter "
+            f"duration, every = {2 * every} or more, simulate_many(...) for mean squares alone, or a higher "
+            f"memory_limit."
         )

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, SimulationError, Status, StatusKind
+from inerter.formatting import format_alike, format_quantity
 from inerter.kernels.stepping import DONE, INFINITE, SIDE, SPEED, STUCK, Scratch, Step, Stretch, march
 from inerter.simulation.parts import SAME, Parts, check_gaps, parts_of, range_and_null, unit_rows
 from inerter.simulation.scheme import Scheme, scheme_of
@@ -192,9 +193,10 @@ def _touching(parts: Parts, elongation: Matrix) -> Matrix:
         least, inside = (SAME * np.abs([reaction.lower, reaction.upper])).tolist()
         if reaction.gap and not reaction.lower - least - 1e-12 <= at <= reaction.upper + inside + 1e-12:
             branch = parts.branches[reaction.branch]
+            start, *ends = format_alike([at, *filter(isfinite, (reaction.lower, reaction.upper))], "m")
             raise SimulationError(
-                f"{branch.element.key.capitalize()} {branch.label!r} starts at {at:g} m, beyond where it is met, at "
-                f"{' and '.join(f'{end:g} m' for end in (reaction.lower, reaction.upper) if isfinite(end))}."
+                f"{branch.element.key.capitalize()} {branch.label!r} starts at {start}, beyond where it is met, at "
+                f"{' and '.join(ends)}."
             )
         if reaction.acts if not reaction.gap else not reaction.lower + least < at < reaction.upper - inside:
             rows.append(reaction.nodes[None])
@@ -248,7 +250,10 @@ def _histories(
     n, status = parts.nodes, OK
     if ended != DONE:
         samples[-(-reached // every) :] = np.nan
-        status = Status(StatusKind.FAILED, f"At t = {table.time[reached]:g} s {_ENDED[ended]}; what follows is nan.")
+        status = Status(
+            StatusKind.FAILED,
+            f"At t = {format_quantity(table.time[reached], 's', 6)} {_ENDED[ended]}; what follows is nan.",
+        )
     acceleration = samples[:, 2 * n : 3 * n]
     acceleration[0, parts.massless] = 0.0
     if (table.time.size - 1) % every == 0:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError
+from inerter.formatting import format_complex
 from inerter.systems.linear import LinearSystem
 from inerter.systems.polynomials import Polynomial
 
@@ -52,7 +53,8 @@ class Filter:
             poles = np.roots(np.array(self.denominator, dtype=float))
             worst = complex(poles[np.argmax(poles.real)])
             raise LinearSystemError(
-                f"The poles of a filter lie in the open left half plane; of these one lies near {worst:.4g} rad/s."
+                f"The poles of a filter lie in the open left half plane; of these one lies near "
+                f"{format_complex(worst)} rad/s."
             )
         try:
             _ = self.scaled_coefficients

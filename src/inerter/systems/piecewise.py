@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
+from inerter.formatting import format_range
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import RowBlocks
@@ -133,7 +134,7 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
             raise DesignError(f"Unknown element or coordinate {label!r}; available: {listed}.")
         if not is_number(value) or not (value > 0.0 if positive else value == 0.0):
             allowed = "any positive number" if positive else "nothing else"
-            raise DesignError(f"The value of {label!r} is {old:g} and can become {allowed} here, got {value!r}.")
+            raise DesignError(f"The value of {label!r} is {old!r} and can become {allowed} here, got {value!r}.")
         if label in elements:
             changed = elements[label].with_value(value)
             if changed.role != elements[label].role:
@@ -187,8 +188,8 @@ def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
         size = 1.0 / np.sqrt(np.diag(M))
         if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:
             raise MechanismError(
-                f"Inertias from {inertia.min():g} to {inertia.max():g} kg move together, and numbers of 16 digits "
-                "cannot resolve both. Leave out the smallest, or join the heaviest rigidly."
+                f"Inertias from {format_range(inertia.min(), inertia.max(), 'kg', 6)} move together, and numbers of 16 "
+                f"digits cannot resolve both. Leave out the smallest, or join the heaviest rigidly."
             )
 
 

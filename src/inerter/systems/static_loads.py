@@ -9,6 +9,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
+from inerter.formatting import format_number
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import full_graph
@@ -55,7 +56,7 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
     if load.min() <= 0.0:
         name = mechanism.tyres[int(np.argmin(load))].name
         raise MechanismError(f"The static tyre loads are not known: {name!r} would carry a negative load.")
-    return {tyre.name: float(f"{value:.15g}") for tyre, value in zip(mechanism.tyres, load, strict=True)}
+    return {tyre.name: float(format_number(value, 15)) for tyre, value in zip(mechanism.tyres, load, strict=True)}
 
 
 def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:

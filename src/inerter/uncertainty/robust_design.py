@@ -14,6 +14,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
+from inerter.formatting import format_share
 from inerter.indices.question import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, constituents_of
@@ -63,7 +64,7 @@ class Quantile(OfIndex):
     @property
     def title(self) -> str:
         """Title of the index with the probability."""
-        return f"{self.index.title}, {100.0 * self.share:g} % quantile"
+        return f"{self.index.title}, {format_share(self.share, 6)} quantile"
 
     @property
     def factors(self) -> Array:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from inerter.errors import DesignError, MechanismError
+from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import name_free_values, with_values
 from inerter.validation import check_positive, is_number
@@ -357,8 +358,9 @@ def check_values(mechanism: Mechanism) -> None:
 def _check_size(what: str, of: str, value: float, unit: str) -> None:
     if value != 0.0 and not _SMALLEST <= value <= _LARGEST:
         raise MechanismError(
-            f"The {what} of {of!r} is {value:g} {unit}; double precision supports {_SMALLEST:g} to {_LARGEST:g} "
-            f"{unit}. Omit such a small element, and replace such a stiff one by a rigid joint."
+            f"The {what} of {of!r} is {format_quantity(value, unit, 6)}; double precision supports "
+            f"{format_range(_SMALLEST, _LARGEST, unit)}. Omit such a small element, and replace "
+            f"such a stiff one by a rigid joint."
         )
 
 

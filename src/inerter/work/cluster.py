@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 from inerter.errors import WorkError
+from inerter.formatting import format_quantity
 from inerter.work.origin import VERSION, origin
 
 if TYPE_CHECKING:
@@ -114,8 +115,8 @@ def _wait_for_workers(client: Client) -> None:
         client.wait_for_workers(1, timeout=_FIRST)
     except TimeoutError:
         raise WorkError(
-            f"the scheduler has no workers, and none connected within {_FIRST:.0f} s. Start some, such as: "
-            f"dask worker {client.scheduler_info()['address']} --nthreads 1"
+            f"the scheduler has no workers, and none connected within {format_quantity(_FIRST, 's')}. Start some, "
+            f"such as: dask worker {client.scheduler_info()['address']} --nthreads 1"
         ) from None
 
 

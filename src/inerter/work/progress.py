@@ -15,6 +15,8 @@ from dataclasses import dataclass, replace
 from threading import Event, RLock, Thread
 from typing import Protocol
 
+from inerter.formatting import format_number
+
 LOGGER = logging.getLogger("inerter")
 _EVERY = 1.0  # seconds after which a listener is called, also without a new step
 _OFTEN = 0.1  # least seconds between two calls for the same step
@@ -44,7 +46,7 @@ class ProgressStep:
         """The step in one line, without the time."""
         count = f" {self.done} of {self.total}" if self.total else f" {self.done}" if self.done else ""
         evaluations = f", {self.evaluations} evaluations" if self.evaluations else ""
-        best = "" if self.best is None else f", lowest {self.best:.4g}"
+        best = "" if self.best is None else f", lowest {format_number(self.best, 4)}"
         return f"{': '.join((*self.within, self.what))}{count}{evaluations}{best}"
 
 

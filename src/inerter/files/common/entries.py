@@ -13,7 +13,7 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
-from inerter.formatting import format_quantity
+from inerter.formatting import format_number, format_quantity
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
@@ -395,7 +395,7 @@ def check_order(lower: Amount, upper: Amount) -> None:
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
     if lower.value > 0.0 and upper.value > _WIDEST * lower.value:
         ends = " to ".join(format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
-        expected = f"an upper bound of at most {_WIDEST:g} times the lower one"
+        expected = f"an upper bound of at most {format_number(_WIDEST)} times the lower one"
         raise EntryError(got=ends, fault="wider than a search can cover", expected=expected)
 
 

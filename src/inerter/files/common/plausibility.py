@@ -7,7 +7,7 @@ from typing import Any
 
 from inerter.field_metadata import Field, fields_of
 from inerter.files.common.vehicle_tables import SEAT
-from inerter.formatting import format_number, format_quantity
+from inerter.formatting import format_alike, format_number
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole
 from inerter.signals.road import ROAD_CLASSES, Road
@@ -45,7 +45,7 @@ def road_warnings(road: Road) -> Iterator[str]:
     if letter in _ROUGHEST:
         yield (
             f"Warning: no public road is as rough as class {letter} of ISO 8608. The road has Gd(n0) = "
-            f"{_millionths(road)} m^3, class C {ROAD_CLASSES['C'].mean / 1e-6:.0f}e-6 m^3. Give Gd(n0) in m^3 "
+            f"{_millionths(road)} m^3, class C {round(ROAD_CLASSES['C'].mean / 1e-6)}e-6 m^3. Give Gd(n0) in m^3 "
             '(roughness = "256e-6 m^3"), kappa = Gd(n0) n0^2 / 2 in m^3/cycle, or class = "C".'
         )
     elif _density(road) < _SMOOTHEST:
@@ -55,8 +55,9 @@ def road_warnings(road: Road) -> Iterator[str]:
         )
     low, high = _SPEEDS
     if not low <= road.speed <= high:
-        side = f"slower than {low:g}" if road.speed < low else f"faster than {high:g}"
-        yield f"Warning: no vehicle drives at {road.speed:.4g} m/s, {side} m/s. Check the unit of the speed."
+        slow, driven, fast = format_alike([low, road.speed, high], "m/s")
+        side = f"slower than {slow}" if road.speed < low else f"faster than {fast}"
+        yield f"Warning: no vehicle drives at {driven}, {side}. Check the unit of the speed."
 
 
 def vehicle_warnings(model: str, values: Mapping[str, Any], elements: Iterable[tuple[str, Element]]) -> Iterator[str]:
@@ -81,8 +82,8 @@ def _beyond_usual(what: str, fields: Iterable[Field], values: Mapping[str, Any])
 def _beyond(what: str, value: float, unit: str, bounds: tuple[float, float]) -> Iterator[str]:
     low, high = bounds
     if not low <= value <= high:
-        side = f"less than {format_quantity(low, unit)}" if value < low else f"more than {format_quantity(high, unit)}"
-        yield f"Warning: {what} {format_quantity(value, unit)}, {side}. Check its unit."
+        given, limit = format_alike([value, low if value < low else high], unit)
+        yield f"Warning: {what} {given}, {'less' if value < low else 'more'} than {limit}. Check its unit."
 
 
 def _density(road: Road) -> float:

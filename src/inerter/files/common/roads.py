@@ -26,7 +26,7 @@ from inerter.files.common.codec import (
 from inerter.files.common.entries import TEXT, QuantityCodec, declaration_of, word
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import some
-from inerter.formatting import format_quantity
+from inerter.formatting import format_number, format_quantity, format_range, format_share
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
@@ -211,12 +211,12 @@ class MeasuredLine:
     def note(self) -> str:
         """Sentence on the fitted road: source, class, roughness, and the waviness and scatter of the free fit."""
         letter = Road(self.roughness, 1.0).iso8608_class.letter
-        own = f"its own line, through {self.bands} bands from {self.lowest:.3g} to {self.highest:.3g} cycle/m,"
+        own = f"its own line, through {self.bands} bands from {format_range(self.lowest, self.highest, 'cycle/m', 3)},"
         return (
             f"the road is the line of waviness 2 through {self.source}, of class {letter} of ISO 8608, with "
             f"the roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; {own} "
-            f"has the waviness {self.waviness:.2f} and "
-            f"a scatter by a factor of {self.scatter:.2f}{self._correction}"
+            f"has the waviness {format_number(self.waviness, 3)} and "
+            f"a scatter by a factor of {format_number(self.scatter, 3)}{self._correction}"
             + "".join(f". {said.rstrip('.')}" for said in self.reading)
         )
 
@@ -229,7 +229,7 @@ class MeasuredLine:
         what = "of points" if self.sampling == POINTS else "averages over an interval"
         return (
             f". Taken as heights {what}, which show waves too that are shorter than two intervals, the line is changed "
-            f'by {change:+.2g} %; if they were filtered before, say sampling = "filtered"'
+            f'by {format_share(0.01 * change, 2, "+")}; if they were filtered before, say sampling = "filtered"'
         )
 
     @property
@@ -238,13 +238,14 @@ class MeasuredLine:
         if not _WAVINESS <= self.waviness <= _TO:
             below, above = ("smoother", "rougher") if self.waviness > 2.0 else ("rougher", "smoother")
             yield (
-                f"Beware: {self.source} has a waviness of {self.waviness:.2f}, and the road that stands for it one of "
-                f"2: below {self._same:.2g} cycle/m it is {below} than the measured one, above {above}."
+                f"Beware: {self.source} has a waviness of {format_number(self.waviness, 3)}, and the road that stands "
+                f"for it one of 2: below {format_quantity(self._same, 'cycle/m', 2)} it is {below} than the measured "
+                f"one, above {above}."
             )
         if self.bands < _FEWEST:
             yield (
-                f"Beware: the road stands on {self.bands} bands of {self.source} alone, from {self.lowest:.2g} to "
-                f"{self.highest:.2g} cycle/m; measure a longer profile with closer points."
+                f"Beware: the road stands on {self.bands} bands of {self.source} alone, from "
+                f"{format_range(self.lowest, self.highest, 'cycle/m', 2)}; measure a longer profile with closer points."
             )
 
     @property

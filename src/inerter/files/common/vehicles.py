@@ -15,7 +15,7 @@ from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
-from inerter.formatting import format_quantity
+from inerter.formatting import format_number, format_quantity
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
 from inerter.vehicle.mechanism import (
@@ -240,10 +240,11 @@ def _port_problems(
             hint = nearest(name, (*known, *roads))
             yield at((*place, name), fault="not a coordinate", expected=f"one of {some((*known, *roads))}", hint=hint)
         elif known.get(name, False) and not isinstance(lever, Length):
-            expected = f'the lever as a length, such as "{lever:g} m"'
-            yield at((*place, name), got=f"{lever:g}", fault=f"{name} is an angle", expected=expected)
+            expected = f'the lever as a length, such as "{format_quantity(lever, "m")}"'
+            yield at((*place, name), got=format_number(lever), fault=f"{name} is an angle", expected=expected)
         elif not known.get(name, False) and isinstance(lever, Length):
-            yield at((*place, name), got=f'"{lever:g} m"', fault=f"{name} is no angle", expected="a number, such as 1")
+            got = f'"{format_quantity(lever, "m")}"'
+            yield at((*place, name), got=got, fault=f"{name} is no angle", expected="a number, such as 1")
 
 
 def _floats(port: Mapping[str, float]) -> Port:
@@ -260,4 +261,4 @@ def _place(port: Mapping[str, float]) -> str:
 
 
 def _times(lever: float, name: str) -> str:
-    return name if lever == 1.0 else f"{lever:g} × {name}"
+    return name if lever == 1.0 else f"{format_number(lever)} × {name}"

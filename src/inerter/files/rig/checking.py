@@ -9,6 +9,7 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.rig.loading import load_rig
+from inerter.formatting import format_quantity
 from inerter.networks.parser import format_expression
 
 
@@ -24,6 +25,6 @@ def check_lines(path: Path) -> Iterator[str]:
         raise refusal(path, [at(("rig",), str(error))]) from None
     device = format_expression(request.rig.device, [element.label for element in request.rig.device.elements()])
     yield (
-        f"{path}: ok. Virtual rig with {device}; {request.signal.input}: {request.signal.kind}; "
-        f"{samples} samples over {request.duration:.6g} s, at {request.rig.sampling:.6g} Hz."
+        f"{path}: ok. Virtual rig with {device}; {request.signal.input}: {request.signal.kind}; {samples} samples over "
+        f"{format_quantity(request.duration, 's', 6)}, at {format_quantity(request.rig.sampling, 'Hz', 6)}."
     )

@@ -30,8 +30,8 @@ def check_lines(path: Path) -> Iterator[str]:
     start = "steady state" if request.initial == "periodic" else f"from {request.initial}"
     yield (
         f"{path}: ok. Simulation of {request.model} with {request.layout} = {layout}; {request.signal.input}: "
-        f"{request.signal.kind}; {length:.6g} s, {steps} steps of {format_quantity(request.step, 's', 6)}, "
-        f"{request.integrator}, {start}."
+        f"{request.signal.kind}; {format_quantity(length, 's', 6)}, {steps} steps of "
+        f"{format_quantity(request.step, 's', 6)}, {request.integrator}, {start}."
     )
     if request.speed is not None and request.roughness is not None:
         road = Road(request.roughness, request.speed)

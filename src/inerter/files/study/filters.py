@@ -6,6 +6,7 @@ from typing import Any
 
 from inerter.files.common.codec import Declaration, Scalar, TableCodec
 from inerter.files.common.problem import EntryError
+from inerter.formatting import format_number
 from inerter.systems.filters import Filter
 from inerter.units import quote_value
 from inerter.validation import is_number
@@ -62,7 +63,7 @@ def _polynomial(coefficients: list[float]) -> str:
     text = ""
     for power, c in zip(reversed(range(len(coefficients))), coefficients, strict=True):
         s = ("", "s")[power] if power < 2 else f"s^{power}"
-        size = "" if s and abs(c) == 1.0 else f"{abs(c):.6g}"
+        size = "" if s and abs(c) == 1.0 else format_number(abs(c))
         sign = "-" if c < 0.0 else "+"
         text += f" {sign} {' '.join(filter(None, (size, s)))}" if c else ""
     return text.removeprefix(" + ") if text.startswith(" + ") else f"-{text.removeprefix(' - ')}"

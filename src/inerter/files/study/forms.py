@@ -26,6 +26,7 @@ from inerter.files.study.excitations import (
     in_words,
 )
 from inerter.files.study.filters import FILTER, in_s
+from inerter.formatting import format_number
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
 from inerter.units import PURE, quote_value
@@ -88,8 +89,7 @@ _OUTPUTS = NamesCodec(WeightCodec(_weight, lambda: _WEIGHT_SCHEMA), least=1)
 
 def _sum(weights: Mapping[str, float]) -> str:
     """Weighted sum of outputs as text."""
-    terms = (f"{in_words(name)}{'' if weight == 1.0 else f' x {weight:g}'}" for name, weight in weights.items())
-    return " + ".join(terms)
+    return " + ".join(in_words(name) + (f" x {format_number(w)}" if w != 1.0 else "") for name, w in weights.items())
 
 
 def _name(what: str) -> Form:

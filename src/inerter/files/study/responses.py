@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity
+from inerter.formatting import format_number, format_quantity
 from inerter.indices.question import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
@@ -91,7 +91,7 @@ def _output_label(output: OutputWeight, own: str, unit: str) -> str:
         return output.output
     if own and not unit:
         return f"{output.output} over {format_quantity(1.0 / output.weight, own)}"
-    return f"{output.output} x {output.weight:g}{' m' if own.startswith('rad') else ''}"
+    return f"{output.output} x {format_number(output.weight)}{' m' if own.startswith('rad') else ''}"
 
 
 def _frequencies(matrices: list[Array]) -> Array:

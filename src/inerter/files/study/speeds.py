@@ -9,6 +9,7 @@ import numpy as np
 from inerter.errors import InerterError
 from inerter.files.study.place import place_of
 from inerter.files.study.places import with_numbers
+from inerter.formatting import format_quantity
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.equivalent import has_friction
 from inerter.methods.equivalent_linear import has_play
@@ -64,10 +65,10 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
             return np.nan, "it takes more digits than double precision has"
         found = evaluate(vehicle, question, way)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
-        return np.nan, f"at {3.6 * speed:.4g} km/h there is no value ({str(error).rstrip('.')})"
+        return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no value ({str(error).rstrip('.')})"
     if not np.isfinite(found.value):
         reason = str(found.status) if not found.status.ok else "it is without bounds"
-        return np.nan, f"at {3.6 * speed:.4g} km/h there is no finite value ({reason.rstrip('.')})"
+        return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no finite value ({reason.rstrip('.')})"
     return found.value, "" if found.status.ok else str(found.status)
 
 

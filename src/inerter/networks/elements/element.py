@@ -9,6 +9,7 @@ import numpy as np
 
 from inerter.errors import DesignError, NetworkError
 from inerter.field_metadata import Field
+from inerter.formatting import format_quantity
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, SymbolLine
 from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
@@ -66,7 +67,7 @@ class Element(Network):
             return
         if number < 0.0 or (number == 0.0 and not self.may_vanish):
             raise NetworkError(
-                f"{what} must be positive, got {self.symbol} = {number:g} {self.unit}. "
+                f"{what} must be positive, got {self.symbol} = {format_quantity(number, self.unit)}. "
                 f"To leave the element out, drop its branch from the network."
             )
         object.__setattr__(self, self.quantity, float(number))

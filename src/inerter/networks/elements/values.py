@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import NetworkError
+from inerter.formatting import format_alike, format_number
 from inerter.validation import is_number
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -30,9 +31,11 @@ class Free:
             if not is_number(bound):
                 raise NetworkError(f"A bound of a free value must be a finite number, got {bound!r}.")
         if not 0.0 <= self.lower < self.upper:
+            lower, upper = format_alike([self.lower, self.upper], "")
             raise NetworkError(
-                f"The bounds of a free value must satisfy 0 <= lower < upper, got lower = {self.lower:g} and "
-                f"upper = {self.upper:g}. Swap them if they are reversed; to fix the value, give the number itself."
+                f"The bounds of a free value must satisfy 0 <= lower < upper, got lower = {lower} and upper = {upper}. "
+                f"Swap them if they are reversed; to fix the value, give the "
+                f"number itself."
             )
         check_name(self.name)
 
@@ -123,7 +126,7 @@ class Tied:
                 b, a = stack.pop(), stack.pop()
                 stack.append(f"({a} {x} {b})")
             else:
-                stack.append(x if isinstance(x, str) else f"{x:g}")
+                stack.append(x if isinstance(x, str) else format_number(x))
         return stack[0]
 
 

@@ -126,7 +126,7 @@ def test_text_says_all_in_80_columns(
     assert call(["identify", "bench.csv", "--config", "rig.toml", "--trim", "0:0.8", "--unit", "force=N"]) == 0
     assert given == [401]
     out, err = capsys.readouterr()
-    for words in ("501 samples", "Trimmed", "95 % interval", "goodness", "checked", "[elements]", "Status: ok"):
+    for words in ("501 samples", "Trimmed", "95 % interval", "Fit of each record", "check", "[elements]", "Status: ok"):
         assert words in out.replace("401 samples", "501 samples")
     assert max(map(len, out.splitlines())) <= 80
     assert out.isascii()

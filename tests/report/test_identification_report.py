@@ -187,7 +187,7 @@ def test_several_models_are_listed_best_first(found: IdentificationResult) -> No
     clear = Finding(FitFinding.NOT_REACHED, "warning", "ideal", {"other": "friction"})
     text = identification_text(replace(found, candidates=rows, choice=(clear,)))
     assert text.index("friction ") < text.index("custom (chosen) ") < text.index("ideal ")
-    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30            inaccurate", "ideal: not converged"):
+    for words in ("best", "0.010 +- 0.020, as good", "6.50 +- 0.30             inaccurate", "ideal: not converged"):
         assert words in text
     assert max(map(len, text.splitlines())) <= 80
 

@@ -96,8 +96,8 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text
     assert "Friction f, S3, ride comfort: better for every f." in text
-    assert "S3, J1 – equally good at 280.5 N and 900 N" in text
-    assert "S3 – J1: better for every f" in text
+    assert "S2, J1 – equally good at 280.5 N and 900 N" in text
+    assert "S3, J1 – better for every f" in text
     poor = replace(found, layout="S3", status="inaccurate", message="it sticks. Take expected-value")
     doubtful = Page(report(results, asked, tmp_path, [found, poor])).text.replace(SPACE, " ")
     assert "Not certain for friction f, S3, ride comfort: inaccurate: it sticks. Take expected-value." in doubtful

@@ -28,7 +28,8 @@ _TENTH = 0.1 * (1.0 + 1e-9)
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _POWER = re.compile(r"\^(-?\d)")
-_EXPONENT = re.compile(r"(?<=\d)e([+-])0*(\d+)")
+_EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-])0*(\d+)\b")  # of a number, not within a name
+_MICRO = re.compile(r"(?:^|(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
 _UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
 _QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -265,18 +266,21 @@ def label_with_unit(what: str, unit: str) -> str:
 
 
 def typeset(text: str) -> str:
-    """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs.
+    """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs; names are kept.
 
-    >>> typeset("5e-07 m^3/cycle")
-    '5 × 10⁻⁷ m³/cycle'
+    >>> typeset("5e-07 m^3/cycle"), typeset("S1e-3 with um at 3 um")
+    ('5 × 10⁻⁷ m³/cycle', 'S1e-3 with um at 3 µm')
     """
     text = text.replace(" +- ", " ± ")
     text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
-    text = _EXPONENT.sub(
-        lambda exponent: f" × 10{(exponent[1].strip('+') + exponent[2]).translate(_SUPERSCRIPT)}", text
-    )
+    text = _EXPONENT.sub(_power_of_ten, text)
     text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
-    return re.sub(r"\bu(?=[ms]\b)", "µ", re.sub(r"^-(?=[\d.i])", "−", text))
+    return _MICRO.sub("µ", re.sub(r"^-(?=[\d.i])", "−", text))
+
+
+def _power_of_ten(number: re.Match[str]) -> str:
+    mantissa, sign, exponent = number.groups()
+    return f"{mantissa} × 10{(sign.strip('+') + exponent).translate(_SUPERSCRIPT)}"
 
 
 def typeset_quantity(

@@ -69,11 +69,13 @@ class Cell:
 class Column:
     """Column of a table: its heading for people, and its key in data files; one without either is not shown there.
 
-    `prose` may wrap over several lines. A terminal lists several columns in one, with the heading `listed`.
+    Texts of `words` are aligned to the left; `prose`, of one column at most, may wrap over several lines too. A
+    terminal lists several columns in one, with the heading `listed`.
     """
 
     heading: str = ""
     key: str = ""
+    words: bool = False
     prose: bool = False
     listed: str = ""
     only_on_pages: bool = False

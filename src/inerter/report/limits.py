@@ -22,7 +22,7 @@ from inerter.figures.labels import (
 )
 from inerter.formatting import format_share
 from inerter.report.problem_statement import of_each
-from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
+from inerter.table import Column, Content, Quantity, Row, Table, cells
 
 _MOST_RANGES = 3  # of swept values, in a remark
 
@@ -47,10 +47,11 @@ def _table(results: xr.Dataset, index: str) -> Table:
             entry = _entry(results, name, index)
             rows.append(Row(cells(name, "all limits", *_describe_infeasible(entry))))
     caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
+    labels = [Column("Layout"), Column("Limit", words=True)]
     if swept:
-        heads = [*columns("Layout", "Limit", "Active"), Column("Where", prose=True)]
+        heads = [*labels, Column("Active", words=True), Column("Where", prose=True)]
         return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
-    return Table(caption, [*columns("Layout", "Limit", "Value"), Column("If it is active", prose=True)], rows)
+    return Table(caption, [*labels, Column("Value"), Column("If it is active", prose=True)], rows)
 
 
 def _limit_text(results: xr.Dataset, limit: str) -> str:

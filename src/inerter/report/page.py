@@ -145,7 +145,15 @@ def environment(*packages: str) -> Environment:
 
 
 def printed_text(text: str) -> str:
-    """Text in print: minus signs, powers, and no line break between a number, its error and its unit."""
+    """Text in print: minus signs, powers, and no line break between a number, its error and its unit.
+
+    What stands in quotes is to be typed, and remains as it is.
+    """
+    parts = text.split('"')
+    return '"'.join(_printed(part) if i % 2 == 0 else part for i, part in enumerate(parts))
+
+
+def _printed(text: str) -> str:
     text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
     text = re.sub(r" -(?=[\d.]|inf\b)", " −", text)
     return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))

@@ -155,7 +155,7 @@ class Budgets(Task[BudgetAnswer]):
     def table(self, results: TaskResults[BudgetAnswer]) -> Table:
         """One row per break-even value."""
         heads = [
-            *(Column("Design"), Column("Element", "parameter"), Column("Better", prose=True)),
+            *(Column("Design"), Column("Element", "parameter", words=True), Column("Better", prose=True)),
             *(Column(key=key) for key in _KEYS),
         ]
         rows = []

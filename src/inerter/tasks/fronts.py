@@ -145,7 +145,7 @@ class Fronts(Task[FrontAnswer]):
         names = [name for name in free if any(name in design for one in results.answers for design in one.parameters)]
         heads = [
             Column("Layout", "layout"),
-            Column("Design"),
+            Column("Design", words=True),
             Column(key="point"),
             *(Column(name, label_with_unit(name, study.unit(name))) for name in study.trade_off),
             *(Column(name, label_with_unit(name, free[name]), listed="Parameters") for name in names),

@@ -11,9 +11,8 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close, pull_back
 from inerter.kernels.decorators import kernel, part
+from inerter.kernels.dense import balancing_units, eigenvectors, in_units, solve, solve_transposed
 from inerter.kernels.gain import resolve
-from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve, solve_rows, solve_transposed
 
 Array = Any
 EXCESS = "Tuple((float64, float64, float64, Array(float64, 2, 'C', True)))"  # of `Excess.table`, which is read-only
@@ -62,26 +61,13 @@ def fill_phases(omega: float, arrivals: Array, phases: Array) -> None:
 def modes(A: Array, scale: Array) -> Any:
     """Poles, the matrix of modes, its inverse, and whether there is one."""
     n = A.shape[0]
-    scaled, largest = np.empty((n, n), np.complex128), 0.0
-    for i in range(n):
-        for j in range(n):
-            scaled[i, j] = A[i, j] * scale[j] / scale[i]
-            largest += abs(scaled[i, j])
-    inverse, pivots = np.zeros((n, n), np.complex128), np.empty(n, np.int64)
-    if not largest < np.inf:
-        return np.zeros(0, np.complex128), inverse, inverse, False
-    poles, vectors = np.linalg.eig(scaled)
-    LU = vectors.copy()
-    if not factor(LU, pivots):
-        return poles, inverse, inverse, False
-    for i in range(n):
-        inverse[i, i] = 1.0
-    solve_rows(LU, pivots, inverse)
-    for i in range(n):
-        for k in range(n):
-            vectors[i, k] *= scale[i]
-            inverse[k, i] /= scale[i]
-    return poles, vectors, inverse, True
+    poles, vectors, inverse, good = eigenvectors(in_units(A, scale))
+    if good:
+        for i in range(n):
+            for k in range(n):
+                vectors[i, k] *= scale[i]
+                inverse[k, i] /= scale[i]
+    return poles, vectors, inverse, good
 
 
 @part()
@@ -338,7 +324,7 @@ def corrections(points: Array, descriptor: Array, arrivals: Array, excess: Array
         n, m = B.shape
         room = np.empty((n, n), np.complex128), np.empty(n, np.int64)
         rows = np.empty(m, np.complex128), np.empty(n, np.complex128), np.empty(outputs, np.complex128)
-        system = A, B, C, D, units(A)
+        system = A, B, C, D, balancing_units(A)
         basis, vectors, inverse = basis_of(system, arrivals, room)
         design = system, basis, room, rows
         count = add_up(design, arrivals, excess, panels, total)

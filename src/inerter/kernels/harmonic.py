@@ -12,9 +12,8 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.gain import frequencies, largest_pole, resolve
-from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, merge, solve, sort
+from inerter.kernels.dense import balancing_units, factor, in_units, solve
+from inerter.kernels.gain import frequencies, largest_pole, merge, resolve, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -234,12 +233,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
         A, _, _, _, _, _, good = close(point, descriptor)
         if not good:
             continue
-        scale = units(A)
-        scaled = np.empty(A.shape, np.complex128)
-        for i in range(A.shape[0]):
-            for j in range(A.shape[0]):
-                scaled[i, j] = A[i, j] * scale[j] / scale[i]
-        poles = np.linalg.eigvals(scaled)
+        poles = np.linalg.eigvals(in_units(A, balancing_units(A)))
         size = largest_pole(poles)
         if not size < np.inf:
             continue
@@ -397,7 +391,7 @@ def gains(
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
         return np.zeros(0), np.zeros(0), False, np.inf
-    system = (A, B, C, D, units(A))
+    system = (A, B, C, D, balancing_units(A))
     G, third = np.empty((C.shape[0], B.shape[1]), np.complex128), np.empty((C.shape[0], B.shape[1]), np.complex128)
     work = (G, np.empty(limit.size, np.complex128), np.empty(limit.size))
     if omegas.size == 0:

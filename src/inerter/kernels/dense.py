@@ -215,8 +215,8 @@ def factor_within(A: Array, pivots: Array) -> bool:
 
 
 @part(borrowing=True)
-def solve(LU: Array, pivots: Array, b: Array) -> None:
-    """Solve A x = b; b becomes x."""
+def substitute_forward(LU: Array, pivots: Array, b: Array) -> None:
+    """Forward substitution: b becomes L^-1 P b."""
     n = LU.shape[0]
     for k in range(n):
         row = pivots[k]
@@ -227,6 +227,13 @@ def solve(LU: Array, pivots: Array, b: Array) -> None:
         for j in range(i):
             total -= LU[i, j] * b[j]
         b[i] = total
+
+
+@part(borrowing=True)
+def solve(LU: Array, pivots: Array, b: Array) -> None:
+    """Solve A x = b; b becomes x."""
+    n = LU.shape[0]
+    substitute_forward(LU, pivots, b)
     for i in range(n - 1, -1, -1):
         total = b[i]
         for j in range(i + 1, n):
@@ -303,15 +310,7 @@ def factor_by_quotients(A: Array, pivots: Array) -> None:
 def solve_by_quotients(LU: Array, pivots: Array, b: Array) -> None:
     """Solve A x = b from the factors of `factor_by_quotients`; b becomes x."""
     n = LU.shape[0]
-    for k in range(n):
-        row = pivots[k]
-        if row != k:
-            b[k], b[row] = b[row], b[k]
-    for i in range(n):
-        total = b[i]
-        for j in range(i):
-            total -= LU[i, j] * b[j]
-        b[i] = total
+    substitute_forward(LU, pivots, b)
     for i in range(n - 1, -1, -1):
         total = b[i]
         for j in range(i + 1, n):
@@ -465,6 +464,37 @@ def balance(A: Array, scale: Array, inverse: Array) -> None:
             if column > 0.0:
                 scale[i] = np.sqrt(row / column) if row > 0.0 else 1.0 / column
                 inverse[i] = 1.0 / scale[i]
+
+
+@part()
+def factor_resolvent(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bool:
+    """M becomes the factors of j omega - A, with the states in units of `scale`; False at a pole."""
+    n = A.shape[0]
+    for i in range(n):
+        for j in range(n):
+            M[i, j] = -A[i, j] * scale[j] / scale[i]
+        M[i, i] += 1j * omega
+    return factor(M, pivots)
+
+
+@part()
+def apply_resolvent(M: Array, pivots: Array, scale: Array, x: Array) -> None:
+    """Multiply: x becomes (j omega - A)^-1 x, by the factors of `factor_resolvent`."""
+    for i in range(x.size):
+        x[i] /= scale[i]
+    solve(M, pivots, x)
+    for i in range(x.size):
+        x[i] *= scale[i]
+
+
+@part()
+def apply_resolvent_transposed(M: Array, pivots: Array, scale: Array, x: Array) -> None:
+    """Multiply: x becomes (j omega - A)^-T x, without conjugation, by the factors of `factor_resolvent`."""
+    for i in range(x.size):
+        x[i] *= scale[i]
+    solve_transposed(M, pivots, x)
+    for i in range(x.size):
+        x[i] /= scale[i]
 
 
 @part()

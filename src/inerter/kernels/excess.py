@@ -11,8 +11,14 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close, pull_back
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.dense import balancing_units, eigenvectors, in_units, solve, solve_transposed
-from inerter.kernels.gain import resolve
+from inerter.kernels.dense import (
+    apply_resolvent,
+    apply_resolvent_transposed,
+    balancing_units,
+    eigenvectors,
+    factor_resolvent,
+    in_units,
+)
 
 Array = Any
 EXCESS = "Tuple((float64, float64, float64, Array(float64, 2, 'C', True)))"  # of `Excess.table`, which is read-only
@@ -85,13 +91,9 @@ def respond(system: Array, basis: Array, omega: float, phases: Array, state: Arr
         for k in range(n):
             state[k] /= 1j * omega - poles[k]
     else:
-        if not resolve(A, scale, omega, M, pivots):
+        if not factor_resolvent(A, scale, omega, M, pivots):
             return False
-        for i in range(n):
-            state[i] /= scale[i]
-        solve(M, pivots, state)
-        for i in range(n):
-            state[i] *= scale[i]
+        apply_resolvent(M, pivots, scale, state)
     for o in range(C.shape[0]):
         out[o] = 0j
         for c in range(m):
@@ -268,11 +270,7 @@ def slopes_in(
                 for i in range(n):
                     left[i] /= 1j * omega - poles[i]
             else:
-                for i in range(n):
-                    left[i] *= scale[i]
-                solve_transposed(M, pivots, left)
-                for i in range(n):
-                    left[i] /= scale[i]
+                apply_resolvent_transposed(M, pivots, scale, left)
             for i in range(n):
                 for j in range(n):
                     G_A[i, j] += left[i] * state[j]

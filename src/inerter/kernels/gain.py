@@ -8,7 +8,14 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_extended, extended_space, pull_back
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.dense import balancing_units, eigenvectors, factor, in_units, solve, solve_transposed
+from inerter.kernels.dense import (
+    apply_resolvent,
+    apply_resolvent_transposed,
+    balancing_units,
+    eigenvectors,
+    factor_resolvent,
+    in_units,
+)
 from inerter.kernels.double_double import add_product
 
 Array = Any
@@ -17,17 +24,6 @@ _ACCURATE = 1e-9  # relative error of a gain up to which it counts as known
 _SMALL = 1e-7  # relative size of the terms of a correction at first order up to which higher orders are far below that
 _KNOWN = 1e-5  # error of a pole over its distance from the axis up to which a peak is known to the square of that
 _EPS = 2.2e-16
-
-
-@part()
-def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bool:
-    """M becomes the factors of j omega - A, with the states in units of `scale`."""
-    n = A.shape[0]
-    for i in range(n):
-        for j in range(n):
-            M[i, j] = -A[i, j] * scale[j] / scale[i]
-        M[i, i] += 1j * omega
-    return factor(M, pivots)
 
 
 @part()
@@ -43,14 +39,11 @@ def gain_at(system: Array, remainders: Array, scale: Array, omega: float) -> flo
     M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
     r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
     for i in range(n):
-        r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
-    if not resolve(A, scale, omega, M, pivots):
+        r[i], left[i] = B[i, 0], C[0, i]
+    if not factor_resolvent(A, scale, omega, M, pivots):
         return np.inf
-    solve(M, pivots, r)
-    solve_transposed(M, pivots, left)
-    for i in range(n):
-        r[i] *= scale[i]
-        left[i] /= scale[i]
+    apply_resolvent(M, pivots, scale, r)
+    apply_resolvent_transposed(M, pivots, scale, left)
     G, size, unsure = D[0, 0] + remainder_D[0, 0] + 0j, 0.0, 0.0
     for i in range(n):
         real, fine = add_product(B[i, 0], remainder_B[i, 0], omega, r[i].imag)
@@ -83,16 +76,14 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     scale = balancing_units(A)
     for k in range(count):
         for i in range(n):
-            r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
-        if not resolve(A, scale, omegas[k], M, pivots):
+            r[i], left[i] = B[i, 0], C[0, i]
+        if not factor_resolvent(A, scale, omegas[k], M, pivots):
             values[k] = np.inf
             continue
-        solve(M, pivots, r)
-        solve_transposed(M, pivots, left)
+        apply_resolvent(M, pivots, scale, r)
+        apply_resolvent_transposed(M, pivots, scale, left)
         G = D[0, 0] + 0j
         for i in range(n):
-            r[i] *= scale[i]
-            left[i] /= scale[i]
             G += C[0, i] * r[i]
         values[k] = abs(G)
         h = np.conj(G) / values[k] if values[k] > 0.0 else 0j

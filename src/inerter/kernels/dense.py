@@ -1,8 +1,8 @@
 """Dense linear algebra on small matrices: products, elimination, null spaces, eigenvectors, the exponential.
 
 Every operation is here once, for compiled code and as plain Python. Below order 20 loops are faster than a library.
-What thousands of designs or steps need works in place; what is built once per mode returns its result. The latter are
-called, not copied into what calls them, so that what is built from many of them compiles in a second.
+What thousands of designs or steps need works in place; what is built once for each mode returns its result, and is
+called (`apart`), not copied into what calls it, so that modes compile in a second.
 """
 
 from __future__ import annotations

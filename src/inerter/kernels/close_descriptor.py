@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from inerter.kernels.decorators import part
+from inerter.kernels.dense import copy, equilibrate_rows, factor, solve_rows, solve_transposed
 from inerter.kernels.double_double import add_multiple
-from inerter.kernels.linalg import copy, factor, solve, solve_rows, solve_transposed
 
 Array = Any
 DESCRIPTOR = f"Tuple(({3 * 'float64[:,:,::1], '}{3 * 'float64[:,::1], '}{3 * 'float64[:,:,::1], '}))"  # its type
@@ -28,21 +28,6 @@ def contract(p: Array, stack: Array, out: Array) -> None:
             out[i, j] = total
 
 
-@part(borrowing=True)
-def even_out(S: Array, T: Array, size: Array) -> None:
-    """Divide each equation by its largest coefficient: inertia, damping and stiffness differ by their units."""
-    for i in range(S.shape[0]):
-        largest = 0.0
-        for j in range(S.shape[1]):
-            largest = max(largest, abs(S[i, j]))
-        size[i] = largest
-        if largest > 0.0:
-            for j in range(S.shape[1]):
-                S[i, j] /= largest
-            for j in range(T.shape[1]):
-                T[i, j] /= largest
-
-
 @part()
 def closing_space(descriptor: Array) -> Any:
     """Room for `close_in`: allocation would cost as much as the arithmetic."""
@@ -50,7 +35,7 @@ def closing_space(descriptor: Array) -> Any:
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
     A, B, C, D = np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), np.empty((o, m))
     T, LU, pivots, size = np.empty((e, n + m)), np.empty((e, e)), np.empty(e, np.int64), np.empty(e)
-    return A, B, C, D, T, (LU, pivots, size), np.empty((o, e)), np.empty(e)
+    return A, B, C, D, T, (LU, pivots, size), np.empty((o, e))
 
 
 @part()
@@ -68,27 +53,27 @@ def split_up(values: Array, e: int, n: int, m: int, o: int) -> Any:
 
 @part()
 def extended_space(descriptor: Array) -> Any:
-    """Room for `close_extended`: that of `close_in`, what rounding takes from A, B, C, D, and sums in two numbers."""
+    """Room for `close_extended`: that of `close_in`, remainders of A, B, C, D, and sums in double-double."""
     S, R, F, _, _, _, _, Y_x, _ = descriptor
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
     count = e * e + e * (n + m) + o * e + o * (n + m)
     high, low = np.empty(count), np.empty(count)
-    lost = np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), np.empty((o, m))
-    both = split_up(high, e, n, m, o), split_up(low, e, n, m, o)
-    return closing_space(descriptor), lost, high, low, both, np.empty((2, n + m))
+    remainders = np.empty((n, n)), np.empty((n, m)), np.empty((o, n)), np.empty((o, m))
+    split = split_up(high, e, n, m, o), split_up(low, e, n, m, o)
+    return closing_space(descriptor), remainders, high, low, split, np.empty((2, n + m))
 
 
 @part(borrowing=True)
 def close_extended(room: Array, p: Array, descriptor: Array, extended: Array) -> bool:
-    """Fill A, B, C and D as `close_in` does, and the rounding errors of their entries; False if S is singular.
+    """Fill A, B, C and D as `close_in` does, and their remainders: A + remainder_A is A before rounding, and so on.
 
-    `extended` holds S, [R F], Y_eta and [Y_x Y_u] in a row, as a stack (1 + values, entries), and what rounding has
-    taken from that: an array without entries where it is nothing.
+    `extended` holds S, [R F], Y_eta and [Y_x Y_u] in a row, as a stack (1 + values, entries), and the remainders of
+    that, an array without entries where they are zero. False if S is singular.
     """
-    space, (lost_A, lost_B, lost_C, lost_D), high, low, (whole, rest), (sum_high, sum_low) = room
+    space, (remainder_A, remainder_B, remainder_C, remainder_D), high, low, split, (sum_high, sum_low) = room
     _, _, _, X_eta, X_x, X_u, _, _, _ = descriptor
-    A, B, C, D, T, (LU, pivots, size), _, _ = space
-    (S, right, Y, over), (S_low, right_low, Y_low, over_low) = whole, rest
+    A, B, C, D, T, (LU, pivots, size), _ = space
+    (S, right, Y, over), (S_low, right_low, Y_low, over_low) = split
     stack, fine = extended
     e, n, m, o = S.shape[0], A.shape[0], B.shape[1], C.shape[0]
     for q in range(high.size):
@@ -102,11 +87,11 @@ def close_extended(room: Array, p: Array, descriptor: Array, extended: Array) ->
                 low[q] += p[k] * fine[k + 1, q]
     copy(S, LU)
     copy(right, T)
-    even_out(LU, T, size)
+    equilibrate_rows(LU, T, size)
     if not factor(LU, pivots):
         return False
     solve_rows(LU, pivots, T)
-    for i in range(e):  # what T leaves of its equation takes the place of its right-hand side, then what T lacks
+    for i in range(e):  # the residual of T takes the place of its right-hand side, then the correction of T
         for k in range(e):
             if S[i, k] != 0.0:
                 add_multiple(right[i], right_low[i], -S[i, k], T[k], n + m)
@@ -126,9 +111,9 @@ def close_extended(room: Array, p: Array, descriptor: Array, extended: Array) ->
                 for j in range(n + m):
                     sum_low[j] += X_eta[i, k] * right[k, j]
         for j in range(n):
-            A[i, j], lost_A[i, j] = sum_high[j], sum_low[j]
+            A[i, j], remainder_A[i, j] = sum_high[j], sum_low[j]
         for j in range(m):
-            B[i, j], lost_B[i, j] = sum_high[n + j], sum_low[n + j]
+            B[i, j], remainder_B[i, j] = sum_high[n + j], sum_low[n + j]
     for i in range(o):
         for k in range(e):
             if Y[i, k] != 0.0:
@@ -136,9 +121,9 @@ def close_extended(room: Array, p: Array, descriptor: Array, extended: Array) ->
                 for j in range(n + m):
                     over_low[i, j] += Y_low[i, k] * T[k, j] + Y[i, k] * right[k, j]
         for j in range(n):
-            C[i, j], lost_C[i, j] = over[i, j], over_low[i, j]
+            C[i, j], remainder_C[i, j] = over[i, j], over_low[i, j]
         for j in range(m):
-            D[i, j], lost_D[i, j] = over[i, n + j], over_low[i, n + j]
+            D[i, j], remainder_D[i, j] = over[i, n + j], over_low[i, n + j]
     return True
 
 
@@ -147,7 +132,7 @@ def close(p: Array, descriptor: Array) -> Any:
     """A, B, C, D, the solution T = S^-1 [R F], the factors of S, and whether all went well."""
     space = closing_space(descriptor)
     good = close_in(space, p, descriptor)
-    A, B, C, D, T, factors, _, _ = space
+    A, B, C, D, T, factors, _ = space
     return A, B, C, D, T, factors, good
 
 
@@ -155,7 +140,7 @@ def close(p: Array, descriptor: Array) -> Any:
 def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     """Fill `space` with what `close` returns; False if S is singular."""
     S, R, F, X_eta, X_x, X_u, Y_eta, Y_x, Y_u = descriptor
-    A, B, C, D, T, factors, Y, column = space
+    A, B, C, D, T, factors, Y = space
     LU, pivots, size = factors
     e, n, m, o = S.shape[1], R.shape[2], F.shape[2], Y_x.shape[1]
     contract(p, S, LU)
@@ -166,15 +151,10 @@ def close_in(space: Array, p: Array, descriptor: Array) -> bool:
     contract(p, Y_u, D)
     copy(X_x, A)
     copy(X_u, B)
-    even_out(LU, T, size)
+    equilibrate_rows(LU, T, size)
     if not factor(LU, pivots):
         return False
-    for j in range(n + m):
-        for i in range(e):
-            column[i] = T[i, j]
-        solve(LU, pivots, column)
-        for i in range(e):
-            T[i, j] = column[i]
+    solve_rows(LU, pivots, T)
     for k in range(e):
         for i in range(n):
             x = X_eta[i, k]

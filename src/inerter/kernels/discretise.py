@@ -8,7 +8,7 @@ import numpy as np
 
 from inerter.kernels.arrays import SHARP, Ints, MapRows, Matrix, Sizes
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.matrices import add, block, exponential, product
+from inerter.kernels.dense import add_block, block, count_squarings, exponential, product
 
 
 class Channels(NamedTuple):
@@ -136,11 +136,11 @@ def discretise(sizes: Sizes, first: MapRows, used: Ints, maps: Matrix, steps: Ma
     over_chains(maps, first.guard, n, nr, moving.numbers, h, guards)
     over_chains(maps, first.output, n, nr, moving.numbers, h, outputs)
     chain = np.zeros((size, size))
-    add(chain, 0, 0, rate, h)
+    add_block(chain, 0, 0, rate, h)
     for c in range(moving.numbers.shape[0]):
         for j in range(3):
             chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
-    exact = exponential(chain)
+    exact = exponential(chain, count_squarings(chain))
     into_knots(block(exact, 0, n, 0, size), n, moving.used, steps, 0)
     into_knots(product(guards, exact), n, moving.used, steps, n)
     into_knots(guards, n, moving.used, steps, n + k)

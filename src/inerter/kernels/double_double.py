@@ -32,22 +32,17 @@ def fused_multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Any:
     return types.float64(types.float64, types.float64, types.float64), code
 
 
-@part(borrowing=True)
-def add_multiple(high: Array, low: Array, factor: float, row: Array, count: int) -> None:
-    """High + low + factor row, entry by entry."""
-    for j in range(count):
-        product = factor * row[j]
-        before = high[j]
-        total = before + product
-        came = total - before
-        low[j] += (before - (total - came)) + (product - came) + fused_multiply_add(factor, row[j], -product)
-        high[j] = total
-
-
-@part(borrowing=True)
+@part(borrowing=True, inside=True)
 def add_product(high: float, low: float, a: float, b: float) -> Any:
-    """High + low + a b."""
+    """(high, low) + a b."""
     product = a * b
     total = high + product
     came = total - high
     return total, low + ((high - (total - came)) + (product - came) + fused_multiply_add(a, b, -product))
+
+
+@part(borrowing=True)
+def add_multiple(high: Array, low: Array, factor: float, row: Array, count: int) -> None:
+    """Add `factor` times a row to (high, low), entry by entry."""
+    for j in range(count):
+        high[j], low[j] = add_product(high[j], low[j], factor, row[j])

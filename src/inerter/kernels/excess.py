@@ -11,9 +11,14 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close, pull_back
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.gain import resolve
-from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, solve, solve_rows, solve_transposed
+from inerter.kernels.dense import (
+    apply_resolvent,
+    apply_resolvent_transposed,
+    balancing_units,
+    eigenvectors,
+    factor_resolvent,
+    in_units,
+)
 
 Array = Any
 EXCESS = "Tuple((float64, float64, float64, Array(float64, 2, 'C', True)))"  # of `Excess.table`, which is read-only
@@ -62,26 +67,13 @@ def fill_phases(omega: float, arrivals: Array, phases: Array) -> None:
 def modes(A: Array, scale: Array) -> Any:
     """Poles, the matrix of modes, its inverse, and whether there is one."""
     n = A.shape[0]
-    scaled, largest = np.empty((n, n), np.complex128), 0.0
-    for i in range(n):
-        for j in range(n):
-            scaled[i, j] = A[i, j] * scale[j] / scale[i]
-            largest += abs(scaled[i, j])
-    inverse, pivots = np.zeros((n, n), np.complex128), np.empty(n, np.int64)
-    if not largest < np.inf:
-        return np.zeros(0, np.complex128), inverse, inverse, False
-    poles, vectors = np.linalg.eig(scaled)
-    LU = vectors.copy()
-    if not factor(LU, pivots):
-        return poles, inverse, inverse, False
-    for i in range(n):
-        inverse[i, i] = 1.0
-    solve_rows(LU, pivots, inverse)
-    for i in range(n):
-        for k in range(n):
-            vectors[i, k] *= scale[i]
-            inverse[k, i] /= scale[i]
-    return poles, vectors, inverse, True
+    poles, vectors, inverse, good = eigenvectors(in_units(A, scale))
+    if good:
+        for i in range(n):
+            for k in range(n):
+                vectors[i, k] *= scale[i]
+                inverse[k, i] /= scale[i]
+    return poles, vectors, inverse, good
 
 
 @part()
@@ -99,13 +91,9 @@ def respond(system: Array, basis: Array, omega: float, phases: Array, state: Arr
         for k in range(n):
             state[k] /= 1j * omega - poles[k]
     else:
-        if not resolve(A, scale, omega, M, pivots):
+        if not factor_resolvent(A, scale, omega, M, pivots):
             return False
-        for i in range(n):
-            state[i] /= scale[i]
-        solve(M, pivots, state)
-        for i in range(n):
-            state[i] *= scale[i]
+        apply_resolvent(M, pivots, scale, state)
     for o in range(C.shape[0]):
         out[o] = 0j
         for c in range(m):
@@ -282,11 +270,7 @@ def slopes_in(
                 for i in range(n):
                     left[i] /= 1j * omega - poles[i]
             else:
-                for i in range(n):
-                    left[i] *= scale[i]
-                solve_transposed(M, pivots, left)
-                for i in range(n):
-                    left[i] /= scale[i]
+                apply_resolvent_transposed(M, pivots, scale, left)
             for i in range(n):
                 for j in range(n):
                     G_A[i, j] += left[i] * state[j]
@@ -338,7 +322,7 @@ def corrections(points: Array, descriptor: Array, arrivals: Array, excess: Array
         n, m = B.shape
         room = np.empty((n, n), np.complex128), np.empty(n, np.int64)
         rows = np.empty(m, np.complex128), np.empty(n, np.complex128), np.empty(outputs, np.complex128)
-        system = A, B, C, D, units(A)
+        system = A, B, C, D, balancing_units(A)
         basis, vectors, inverse = basis_of(system, arrivals, room)
         design = system, basis, room, rows
         count = add_up(design, arrivals, excess, panels, total)

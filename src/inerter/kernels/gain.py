@@ -8,61 +8,53 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close, close_extended, extended_space, pull_back
 from inerter.kernels.decorators import kernel, part
+from inerter.kernels.dense import (
+    apply_resolvent,
+    apply_resolvent_transposed,
+    balancing_units,
+    eigenvectors,
+    factor_resolvent,
+    in_units,
+)
 from inerter.kernels.double_double import add_product
-from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, merge, solve, solve_rows, solve_transposed, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
-_ACCURATE = 1e-9  # relative error of a gain up to which it is believed
-_SMALL = 1e-7  # relative size of the terms of a correction at first order up to which the rest is far below that
+_ACCURATE = 1e-9  # relative error of a gain up to which it counts as known
+_SMALL = 1e-7  # relative size of the terms of a correction at first order up to which higher orders are far below that
 _KNOWN = 1e-5  # error of a pole over its distance from the axis up to which a peak is known to the square of that
 _EPS = 2.2e-16
 
 
 @part()
-def resolve(A: Array, scale: Array, omega: float, M: Array, pivots: Array) -> bool:
-    """M becomes the factors of j omega - A, with the states in units of `scale`."""
-    n = A.shape[0]
-    for i in range(n):
-        for j in range(n):
-            M[i, j] = -A[i, j] * scale[j] / scale[i]
-        M[i, i] += 1j * omega
-    return factor(M, pivots)
-
-
-@part()
-def gain_at(system: Array, lost: Array, scale: Array, omega: float) -> float:
+def gain_at(system: Array, remainders: Array, scale: Array, omega: float) -> float:
     """|G(j omega)|, infinite at a pole, and nan where it may be off by more than `_ACCURATE`.
 
-    What the state leaves of its equation, with A and B as they were before rounding, corrects it at first order; that
-    is believed while it is small.
+    The residual of the equation of the state, with A + remainder_A and B + remainder_B, those before rounding, corrects
+    it at first order; the gain counts as known while that is small.
     """
     A, B, C, D = system
-    lost_A, lost_B, lost_C, lost_D = lost
+    remainder_A, remainder_B, remainder_C, remainder_D = remainders
     n = A.shape[0]
     M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
     r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
     for i in range(n):
-        r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
-    if not resolve(A, scale, omega, M, pivots):
+        r[i], left[i] = B[i, 0], C[0, i]
+    if not factor_resolvent(A, scale, omega, M, pivots):
         return np.inf
-    solve(M, pivots, r)
-    solve_transposed(M, pivots, left)
+    apply_resolvent(M, pivots, scale, r)
+    apply_resolvent_transposed(M, pivots, scale, left)
+    G, size, unsure = D[0, 0] + remainder_D[0, 0] + 0j, 0.0, 0.0
     for i in range(n):
-        r[i] *= scale[i]
-        left[i] /= scale[i]
-    G, size, unsure = D[0, 0] + lost_D[0, 0] + 0j, 0.0, 0.0
-    for i in range(n):
-        real, fine = add_product(B[i, 0], lost_B[i, 0], omega, r[i].imag)
+        real, fine = add_product(B[i, 0], remainder_B[i, 0], omega, r[i].imag)
         imag, fine_imag = add_product(0.0, 0.0, -omega, r[i].real)
         for j in range(n):
             if A[i, j] != 0.0:
                 real, fine = add_product(real, fine, A[i, j], r[j].real)
                 imag, fine_imag = add_product(imag, fine_imag, A[i, j], r[j].imag)
-            fine += lost_A[i, j] * r[j].real
-            fine_imag += lost_A[i, j] * r[j].imag
-        change = left[i] * ((real + fine) + 1j * (imag + fine_imag)) + lost_C[0, i] * r[i]
+            fine += remainder_A[i, j] * r[j].real
+            fine_imag += remainder_A[i, j] * r[j].imag
+        change = left[i] * ((real + fine) + 1j * (imag + fine_imag)) + remainder_C[0, i] * r[i]
         G += C[0, i] * r[i] + change
         size += abs(change)
         unsure += n * _EPS * abs(C[0, i] * r[i])
@@ -81,19 +73,17 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
     M, pivots = np.empty((n, n), np.complex128), np.empty(n, np.int64)
     r, left = np.empty(n, np.complex128), np.empty(n, np.complex128)
     G_A, G_B, G_C, G_D = np.empty((n, n)), np.empty((n, 1)), np.empty((1, n)), np.empty((1, 1))
-    scale = units(A)
+    scale = balancing_units(A)
     for k in range(count):
         for i in range(n):
-            r[i], left[i] = B[i, 0] / scale[i], C[0, i] * scale[i]
-        if not resolve(A, scale, omegas[k], M, pivots):
+            r[i], left[i] = B[i, 0], C[0, i]
+        if not factor_resolvent(A, scale, omegas[k], M, pivots):
             values[k] = np.inf
             continue
-        solve(M, pivots, r)
-        solve_transposed(M, pivots, left)
+        apply_resolvent(M, pivots, scale, r)
+        apply_resolvent_transposed(M, pivots, scale, left)
         G = D[0, 0] + 0j
         for i in range(n):
-            r[i] *= scale[i]
-            left[i] /= scale[i]
             G += C[0, i] * r[i]
         values[k] = abs(G)
         h = np.conj(G) / values[k] if values[k] > 0.0 else 0j
@@ -109,35 +99,23 @@ def gains(p: Array, descriptor: Array, omegas: Array) -> Any:
 
 
 @part()
-def partial_fractions(system: Array, lost_A: Array, scale: Array) -> Any:
+def partial_fractions(system: Array, remainder_A: Array, scale: Array) -> Any:
     """Poles and residues of C (s - A)^-1 B, and whether all poles are known beyond their distance from the axis."""
     A, B, C, _ = system
-    n = A.shape[0]
-    scaled, largest = np.empty((n, n), np.complex128), 0.0
-    for i in range(n):
-        for j in range(n):
-            scaled[i, j] = A[i, j] * scale[j] / scale[i]
-            largest += abs(scaled[i, j])
-    if not largest < np.inf:
-        return np.zeros(0, np.complex128), np.zeros(0, np.complex128), False
-    poles, vectors = np.linalg.eig(scaled)
-    LU, pivots, inverse = vectors.copy(), np.empty(n, np.int64), np.empty((n, n), np.complex128)
+    n, scaled = A.shape[0], in_units(A, scale)
     residues = np.zeros(n, np.complex128)
-    if not factor(LU, pivots):
+    poles, vectors, inverse, good = eigenvectors(scaled)
+    if not good:
         return poles, residues, False
-    for i in range(n):
-        for j in range(n):
-            inverse[i, j] = 1.0 if i == j else 0.0
-    solve_rows(LU, pivots, inverse)
     for k in range(n):
         seen, excited, error = 0j, 0j, 0.0
         for i in range(n):
             seen += C[0, i] * scale[i] * vectors[i, k]
             excited += inverse[k, i] * (B[i, 0] / scale[i])
-            rest = -poles[k] * vectors[i, k]
+            residual = -poles[k] * vectors[i, k]
             for j in range(n):
-                rest += (scaled[i, j] + lost_A[i, j] * scale[j] / scale[i]) * vectors[j, k]
-            error += abs(inverse[k, i] * rest)
+                residual += (scaled[i, j] + remainder_A[i, j] * scale[j] / scale[i]) * vectors[j, k]
+            error += abs(inverse[k, i] * residual)
         residues[k] = seen * excited
         if not error < _KNOWN * abs(poles[k].real):
             return poles, residues, False
@@ -163,6 +141,30 @@ def largest_pole(poles: Array) -> float:
             return np.inf
         size = max(size, here)
     return size
+
+
+@part()
+def sort(values: Array) -> None:
+    """Sort a short list in its place, by insertion: the library's sort would compile for a second."""
+    for i in range(1, values.size):
+        value, at = values[i], i
+        while at > 0 and values[at - 1] > value:
+            values[at] = values[at - 1]
+            at -= 1
+        values[at] = value
+
+
+@part()
+def merge(first: Array, second: Array) -> Array:
+    """Two sorted lists as one."""
+    together, i = np.empty(first.size + second.size), 0
+    for k in range(first.size + 1):
+        while i < second.size and (k == first.size or second[i] < first[k]):
+            together[k + i] = second[i]
+            i += 1
+        if k < first.size:
+            together[k + i] = first[k]
+    return together
 
 
 @part()
@@ -213,7 +215,7 @@ def top(poles: Array, residues: Array, direct: float, low: float, high: float) -
 
 
 @part()
-def peaks(system: Array, lost: Array) -> Any:
+def peaks(system: Array, remainders: Array) -> Any:
     """Frequencies and values of the local maxima of the gain, found in partial fractions, valued by a direct solve.
 
     Partial fractions cost little at each frequency; where they lose digits (nearly equal poles) only the place of a
@@ -221,8 +223,8 @@ def peaks(system: Array, lost: Array) -> Any:
     differ; no peak is found where a resonance is narrower than the error of its pole.
     """
     A, _, _, D = system
-    scale, direct = units(A), D[0, 0]
-    poles, residues, good = partial_fractions(system, lost[0], scale)
+    scale, direct = balancing_units(A), D[0, 0]
+    poles, residues, good = partial_fractions(system, remainders[0], scale)
     if not good or not largest_pole(poles) < np.inf:
         return np.zeros(0), np.zeros(0)
     grid = frequencies(poles)
@@ -240,7 +242,7 @@ def peaks(system: Array, lost: Array) -> Any:
         above_next = count == 1 or values[k] > values[k + 1]
         if above_last and above_next:
             omegas[number] = 0.0 if k == 0 else top(poles, residues, direct, grid[k - 1], grid[k + 1])
-            found[number] = gain_at(system, lost, scale, omegas[number])
+            found[number] = gain_at(system, remainders, scale, omegas[number])
             if not abs(found[number] - modal_gain(poles, residues, direct, omegas[number])) <= 1e-6 * found[number]:
                 found[number] = np.nan
             number += 1
@@ -257,7 +259,7 @@ def peaks_of(points: Array, descriptor: Array, extended: Array) -> Any:
     places = descriptor[1].shape[2] + 2
     omegas, values = np.full((points.shape[0], places), np.nan), np.full((points.shape[0], places), np.nan)
     room = extended_space(descriptor)
-    A, B, C, D, _, _, _, _ = room[0]
+    A, B, C, D, _, _, _ = room[0]
     for i in range(points.shape[0]):
         if not close_extended(room, points[i], descriptor, extended):
             continue

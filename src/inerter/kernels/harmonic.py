@@ -12,9 +12,8 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.gain import frequencies, largest_pole, resolve
-from inerter.kernels.h2 import units
-from inerter.kernels.linalg import factor, merge, solve, sort
+from inerter.kernels.dense import balancing_units, factor, factor_resolvent, in_units, solve, solve_rows
+from inerter.kernels.gain import frequencies, largest_pole, merge, sort
 
 Array = Any
 _GOLDEN = 0.6180339887498949
@@ -22,8 +21,8 @@ _SWEEPS = 100
 _REFLECTIONS = 2000
 _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pushes included
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
-_STICKS = 4.0 / np.pi  # first harmonic of friction over the force through it if held, from which on it sticks
-_WEAK = 0.6  # the same up to which its velocity may be near a sine
+FIRST_HARMONIC = 4.0 / np.pi  # amplitude of the first harmonic of a square wave over its height
+_WEAK = 0.6  # first harmonic of friction over the force through it if held, up to which its velocity is near a sine
 _LOCK = 1e9  # a damper that holds, over that of reference
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
@@ -33,7 +32,7 @@ def transfer(A: Array, B: Array, C: Array, D: Array, scale: Array, omega: float,
     """G becomes the frequency response; False at a pole."""
     n, m, o = A.shape[0], B.shape[1], C.shape[0]
     M, pivots, x = np.empty((n, n), np.complex128), np.empty(n, np.int64), np.empty(n, np.complex128)
-    if not resolve(A, scale, omega, M, pivots):
+    if not factor_resolvent(A, scale, omega, M, pivots):
         return False
     for j in range(m):
         for i in range(n):
@@ -114,8 +113,7 @@ def balance(work: Array, limit: Array, amplitude: float, reference: float) -> An
         for k in range(count):
             if abs(velocity[k]) > 0.0:
                 damper[k] = limit[k] / abs(velocity[k])
-        M, column = np.empty((count, count), np.complex128), np.empty(count, np.complex128)
-        pivots = np.empty(count, np.int64)
+        M, pivots = np.empty((count, count), np.complex128), np.empty(count, np.int64)
         for j in range(count):
             for k in range(count):
                 M[j, k] = Z[j, k] * (damper[k] - reference)
@@ -123,12 +121,7 @@ def balance(work: Array, limit: Array, amplitude: float, reference: float) -> An
         if not factor(M, pivots):
             return np.nan, False
         solve(M, pivots, velocity)
-        for k in range(count):
-            for j in range(count):
-                column[j] = Z[j, k]
-            solve(M, pivots, column)
-            for j in range(count):
-                Z[j, k] = column[j]
+        solve_rows(M, pivots, Z)
     extra = np.zeros(count, np.complex128)  # force of each friction beyond that of its damper
     settled = count == 0
     for _ in range(_SWEEPS):
@@ -175,7 +168,7 @@ def distortion(work: Array, third: Array, limit: Array, reference: float, respon
     count = limit.size
     damper, moved = np.empty(count), np.zeros(count)
     for j in range(count):
-        if hold[j] >= _STICKS:
+        if hold[j] >= FIRST_HARMONIC:
             damper[j] = _LOCK * reference
         elif hold[j] <= _WEAK:
             damper[j] = limit[j] / abs(slipping[j]) - reference
@@ -192,7 +185,7 @@ def distortion(work: Array, third: Array, limit: Array, reference: float, respon
         if not factor(M, pivots):
             return np.inf
         for j in range(count):
-            if hold[j] >= _STICKS:
+            if hold[j] >= FIRST_HARMONIC:
                 continue
             for k in range(count):
                 column[k] = response_of[1 + k, 1 + j]
@@ -205,7 +198,7 @@ def distortion(work: Array, third: Array, limit: Array, reference: float, respon
                 influence[j] = abs(total) * limit[j] / response
     unsure = 0.0
     for j in range(count):
-        if hold[j] < _STICKS:
+        if hold[j] < FIRST_HARMONIC:
             unsure += influence[j] * min(moved[j] / abs(slipping[j]), 1.0)
     return unsure
 
@@ -234,12 +227,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
         A, _, _, _, _, _, good = close(point, descriptor)
         if not good:
             continue
-        scale = units(A)
-        scaled = np.empty(A.shape, np.complex128)
-        for i in range(A.shape[0]):
-            for j in range(A.shape[0]):
-                scaled[i, j] = A[i, j] * scale[j] / scale[i]
-        poles = np.linalg.eigvals(scaled)
+        poles = np.linalg.eigvals(in_units(A, balancing_units(A)))
         size = largest_pole(poles)
         if not size < np.inf:
             continue
@@ -397,7 +385,7 @@ def gains(
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
         return np.zeros(0), np.zeros(0), False, np.inf
-    system = (A, B, C, D, units(A))
+    system = (A, B, C, D, balancing_units(A))
     G, third = np.empty((C.shape[0], B.shape[1]), np.complex128), np.empty((C.shape[0], B.shape[1]), np.complex128)
     work = (G, np.empty(limit.size, np.complex128), np.empty(limit.size))
     if omegas.size == 0:

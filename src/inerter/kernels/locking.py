@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import FRICTION, Flags, Floats, Ints, Matrix, Sizes
+from inerter.kernels.arrays import FRICTION, Flags, Ints, Matrix, Sizes
 from inerter.kernels.decorators import part
-from inerter.kernels.matrices import RANK_TOLERANCE, block, null_space, product, transpose
+from inerter.kernels.dense import block, is_independent, null_space, product, transpose
 
 
 class Rates(NamedTuple):
@@ -61,18 +61,18 @@ def locks_of(sizes: Sizes, kind: Ints, locks: Matrix, state: Ints) -> Locks:
     """
     k, na, nv, width = sizes.elements, sizes.inertial, sizes.inertial + sizes.massless, locks.shape[1]
     moving = block(locks, 0, k, 0, nv)
-    basis, rest = np.zeros((k, nv)), np.zeros(nv)
+    basis, residual = np.zeros((k, nv)), np.zeros(nv)
     chosen, still = np.zeros(k, np.int64), np.zeros(k, np.bool_)
     count = 0
     for e in range(k):
-        if is_locked(kind[e], state[e]) and adds_to(moving[e], basis, count, rest):
+        if is_locked(kind[e], state[e]) and is_independent(moving[e], basis, count, residual):
             for j in range(nv):
-                basis[count, j] = rest[j]
+                basis[count, j] = residual[j]
             chosen[count] = e
             count += 1
     H = np.zeros((count, width))
     for e in range(k):
-        still[e] = not adds_to(moving[e], basis, count, rest)
+        still[e] = not is_independent(moving[e], basis, count, residual)
     for i in range(count):
         for j in range(width):
             H[i, j] = locks[chosen[i], j]
@@ -103,29 +103,6 @@ def limit_of(limits: Matrix, e: int, state: int) -> float:
     if state == 0:
         return 0.0
     return float(limits[e, 1] if state > 0 else limits[e, 0])
-
-
-@part(typed=True, apart=True)
-def adds_to(row: Floats, basis: Matrix, count: int, rest: Floats) -> bool:
-    """Whether a row is independent of the first `count` orthonormal ones; `rest` is then the unit vector it adds."""
-    size, left = 0.0, 0.0
-    for j in range(rest.shape[0]):
-        rest[j] = row[j]
-        size += row[j] ** 2
-    for _ in range(2):  # twice is enough for Gram-Schmidt
-        for i in range(count):
-            along = 0.0
-            for j in range(rest.shape[0]):
-                along += basis[i, j] * rest[j]
-            for j in range(rest.shape[0]):
-                rest[j] -= along * basis[i, j]
-    for j in range(rest.shape[0]):
-        left += rest[j] ** 2
-    if left <= RANK_TOLERANCE**2 * size:
-        return False
-    for j in range(rest.shape[0]):
-        rest[j] /= np.sqrt(left)
-    return True
 
 
 @part(typed=True, apart=True)

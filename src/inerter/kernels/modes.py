@@ -22,19 +22,21 @@ import numpy as np
 
 from inerter.kernels.arrays import FRICTION, GAP, Flags, Ints, MapRows, Matrix, Mechanics, Mode, Sizes
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.locking import Bases, Locks, Rates, bases_of, can_be_in, is_locked, limit_of, locks_of, rates_of
-from inerter.kernels.matrices import (
-    add,
+from inerter.kernels.dense import (
+    absolute,
+    add_block,
     block,
     drop_rounding,
+    identity,
     inner,
-    is_zero,
+    is_zero_row,
     product,
-    sizes_of,
+    set_rows,
+    set_to_zero,
     solve_scaled,
     transpose,
-    unit,
 )
+from inerter.kernels.locking import Bases, Locks, Rates, bases_of, can_be_in, is_locked, limit_of, locks_of, rates_of
 
 
 class Balance(NamedTuple):
@@ -66,7 +68,7 @@ def build(mechanics: Mechanics, mode: Mode) -> bool:
     solution = solve_balance(sizes, mechanics.balance, balance, locks, bases)
     if not solution.regular:
         return False
-    clear(mode.maps)
+    set_to_zero(mode.maps)
     fill_rates(sizes, rates.positions, solution, mode.maps)
     fill_eta(sizes, rows.eta, locks.held, solution, mode.maps)
     fill_guards(mechanics, mode, rates.locks, locks.still, solution)
@@ -91,7 +93,7 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
             for j in range(nv):
                 sides[j, sides.shape[1] - 1] -= limit_of(mechanics.limits, e, state[e]) * rates.locks[e, j]
     spring_rate = product(inner(bases.sprung, block(sides, na, nv, na, n)), rates.positions)
-    add(spring_rate, 0, nv, inner(bases.sprung, block(sides, na, nv, n, n + nr)), 1.0)
+    add_block(spring_rate, 0, nv, inner(bases.sprung, block(sides, na, nv, n, n + nr)), 1.0)
     on_w = block(sides, na, nv, 0, sides.shape[1])
     velocity, road_velocity = lock_velocities(bases.inertial, locks.on_a), lock_velocities(bases.inertial, locks.on_z)
     return Balance(sides, on_w, spring_rate, velocity, road_velocity)
@@ -101,7 +103,7 @@ def balance_of(mechanics: Mechanics, state: Ints, rates: Rates, locks: Locks, ba
 def lock_velocities(forces: Matrix, locks: Matrix) -> Matrix:
     """Velocities across locks, with rounding set to zero, which at rest would look like a motion."""
     found = inner(forces, locks)
-    drop_rounding(found, inner(sizes_of(forces), sizes_of(locks)))
+    drop_rounding(found, inner(absolute(forces), absolute(locks)))
     return found
 
 
@@ -112,13 +114,13 @@ def solve_balance(sizes: Sizes, inertia: Matrix, balance: Balance, locks: Locks,
     S, right = np.zeros((nv + nl, nv + nl)), np.zeros((nv + nl, width))
     fill_equations(sizes, inertia, balance, locks, bases, S, right)
     solved = np.zeros((nv + nl, width + nv + nl))
-    add(solved, 0, 0, right, 1.0)
-    add(solved, 0, width, unit(nv + nl), 1.0)
+    add_block(solved, 0, 0, right, 1.0)
+    add_block(solved, 0, width, identity(nv + nl), 1.0)
     if not solve_scaled(S, solved):
         return Solution(right, right, False)
-    eta, bound = block(solved, 0, nv + nl, 0, width), sizes_of(right)  # of the residual that elimination leaves
-    add(bound, 0, 0, product(S, sizes_of(eta)), 1.0)
-    bound = product(sizes_of(block(solved, 0, nv + nl, width, width + nv + nl)), bound)
+    eta, bound = block(solved, 0, nv + nl, 0, width), absolute(right)  # of the residual that elimination leaves
+    add_block(bound, 0, 0, product(S, absolute(eta)), 1.0)
+    bound = product(absolute(block(solved, 0, nv + nl, width, width + nv + nl)), bound)
     drop_rounding(eta, bound)
     return Solution(eta, bound, True)
 
@@ -129,47 +131,31 @@ def fill_equations(
 ) -> None:
     """Fill S and `right` with all balances, then with the loose motions and the locks."""
     na, n, nr, nv = sizes.inertial, sizes.states, sizes.roads, balance.sides.shape[0]
-    add(S, 0, 0, block(inertia, 0, na, 0, nv), 1.0)
-    add(S, 0, nv, transpose(locks.on_a), 1.0)
-    add(right, 0, 0, block(balance.sides, 0, na, 0, right.shape[1]), 1.0)
+    add_block(S, 0, 0, block(inertia, 0, na, 0, nv), 1.0)
+    add_block(S, 0, nv, transpose(locks.on_a), 1.0)
+    add_block(right, 0, 0, block(balance.sides, 0, na, 0, right.shape[1]), 1.0)
     row = na
     # balances of massless motions that something damps or locks
-    add(S, row, na, inner(bases.others, block(inertia, na, nv, na, nv)), 1.0)
-    add(S, row, nv, inner(bases.others, transpose(locks.on_w)), 1.0)
-    add(right, row, 0, inner(bases.others, balance.on_w), 1.0)
+    add_block(S, row, na, inner(bases.others, block(inertia, na, nv, na, nv)), 1.0)
+    add_block(S, row, nv, inner(bases.others, transpose(locks.on_w)), 1.0)
+    add_block(right, row, 0, inner(bases.others, balance.on_w), 1.0)
     row += bases.others.shape[1]
     # the rate of the springs' balance
     nz, rate = bases.sprung.shape[1], balance.spring_rate
-    add(S, row, na, block(rate, 0, nz, na, nv), -1.0)
-    add(right, row, 0, block(rate, 0, nz, 0, na), 1.0)
-    add(right, row, n + nr, block(rate, 0, nz, nv, rate.shape[1]), 1.0)
+    add_block(S, row, na, block(rate, 0, nz, na, nv), -1.0)
+    add_block(right, row, 0, block(rate, 0, nz, 0, na), 1.0)
+    add_block(right, row, n + nr, block(rate, 0, nz, nv, rate.shape[1]), 1.0)
     row += nz
     # loose motions
-    add(S, row, na, transpose(bases.loose), 1.0)
+    add_block(S, row, na, transpose(bases.loose), 1.0)
     row += bases.loose.shape[1]
     # locks that massless motions meet at once, and locks between inertial motions
-    add(S, row, na, inner(bases.at_once, locks.on_w), 1.0)
-    add(right, row, 0, inner(bases.at_once, locks.on_a), -1.0)
-    add(right, row, n + nr, inner(bases.at_once, locks.on_z), -1.0)
+    add_block(S, row, na, inner(bases.at_once, locks.on_w), 1.0)
+    add_block(right, row, 0, inner(bases.at_once, locks.on_a), -1.0)
+    add_block(right, row, n + nr, inner(bases.at_once, locks.on_z), -1.0)
     row += bases.at_once.shape[1]
-    add(S, row, 0, balance.velocity, 1.0)
-    add(right, row, n + 2 * nr, balance.road_velocity, -1.0)
-
-
-@part(typed=True, apart=True)
-def clear(A: Matrix) -> None:
-    """Set to zero."""
-    for i in range(A.shape[0]):
-        for j in range(A.shape[1]):
-            A[i, j] = 0.0
-
-
-@part(typed=True, apart=True)
-def put(A: Matrix, top: int, rows: Matrix) -> None:
-    """Replace the rows of A from `top` on."""
-    for i in range(rows.shape[0]):
-        for j in range(rows.shape[1]):
-            A[top + i, j] = rows[i, j]
+    add_block(S, row, 0, balance.velocity, 1.0)
+    add_block(right, row, n + 2 * nr, balance.road_velocity, -1.0)
 
 
 @part(typed=True, apart=True)
@@ -178,24 +164,24 @@ def fill_rates(sizes: Sizes, positions: Matrix, solution: Solution, maps: Matrix
     na, n, nr, width = sizes.inertial, sizes.states, sizes.roads, maps.shape[1]
     ng, nv = n - na, na + sizes.massless
     on_w = block(positions, 0, ng, na, nv)
-    add(maps, 0, 0, block(solution.eta, 0, na, 0, width), 1.0)
-    add(maps, na, 0, product(on_w, block(solution.eta, na, nv, 0, width)), 1.0)
-    add(maps, na, 0, block(positions, 0, ng, 0, na), 1.0)
-    add(maps, na, n + nr, block(positions, 0, ng, nv, positions.shape[1]), 1.0)
+    add_block(maps, 0, 0, block(solution.eta, 0, na, 0, width), 1.0)
+    add_block(maps, na, 0, product(on_w, block(solution.eta, na, nv, 0, width)), 1.0)
+    add_block(maps, na, 0, block(positions, 0, ng, 0, na), 1.0)
+    add_block(maps, na, n + nr, block(positions, 0, ng, nv, positions.shape[1]), 1.0)
     grown = block(maps, na, n, 0, width)
-    bound = sizes_of(grown)
-    add(bound, 0, 0, product(sizes_of(on_w), block(solution.bound, na, nv, 0, width)), 1.0)
+    bound = absolute(grown)
+    add_block(bound, 0, 0, product(absolute(on_w), block(solution.bound, na, nv, 0, width)), 1.0)
     drop_rounding(grown, bound)
-    put(maps, na, grown)
+    set_rows(maps, na, grown)
 
 
 @part(typed=True, apart=True)
 def fill_eta(sizes: Sizes, eta: int, held: Ints, solution: Solution, maps: Matrix) -> None:
     """Rows from `eta` on: a', w, and the forces of what is locked."""
     nv, width = sizes.inertial + sizes.massless, maps.shape[1]
-    add(maps, eta, 0, block(solution.eta, 0, nv, 0, width), 1.0)
+    add_block(maps, eta, 0, block(solution.eta, 0, nv, 0, width), 1.0)
     for i in range(held.shape[0]):
-        add(maps, eta + nv + held[i], 0, block(solution.eta, nv + i, nv + i + 1, 0, width), 1.0)
+        add_block(maps, eta + nv + held[i], 0, block(solution.eta, nv + i, nv + i + 1, 0, width), 1.0)
 
 
 @part(typed=True, apart=True)
@@ -213,11 +199,11 @@ def fill_guards(mechanics: Mechanics, mode: Mode, locks: Matrix, still: Flags, s
         if mechanics.kind[e] == FRICTION:
             maps[force, width - 1] += limit_of(mechanics.limits, e, state)
         if is_locked(mechanics.kind[e], state):  # its force
-            add(maps, row, 0, block(maps, force, force + 1, 0, width), 1.0)
+            add_block(maps, row, 0, block(maps, force, force + 1, 0, width), 1.0)
         elif mechanics.kind[e] == GAP:  # open: its elongation
-            add(maps, row, na, block(mechanics.lengths, e, e + 1, 0, mechanics.lengths.shape[1]), 1.0)
+            add_block(maps, row, na, block(mechanics.lengths, e, e + 1, 0, mechanics.lengths.shape[1]), 1.0)
         elif not still[e]:
-            put(maps, row, slip_of(sizes, block(locks, e, e + 1, 0, locks.shape[1]), solution))
+            set_rows(maps, row, slip_of(sizes, block(locks, e, e + 1, 0, locks.shape[1]), solution))
 
 
 @part(typed=True, apart=True)
@@ -225,11 +211,11 @@ def slip_of(sizes: Sizes, lock: Matrix, solution: Solution) -> Matrix:
     """The velocity across an element, from its row of rates."""
     na, nv, width = sizes.inertial, sizes.inertial + sizes.massless, solution.eta.shape[1]
     on_w, slip = block(lock, 0, 1, na, nv), np.zeros((1, width))
-    add(slip, 0, 0, block(lock, 0, 1, 0, na), 1.0)
-    add(slip, 0, sizes.states + sizes.roads, block(lock, 0, 1, nv, lock.shape[1]), 1.0)
-    add(slip, 0, 0, product(on_w, block(solution.eta, na, nv, 0, width)), 1.0)
-    bound = sizes_of(slip)
-    add(bound, 0, 0, product(sizes_of(on_w), block(solution.bound, na, nv, 0, width)), 1.0)
+    add_block(slip, 0, 0, block(lock, 0, 1, 0, na), 1.0)
+    add_block(slip, 0, sizes.states + sizes.roads, block(lock, 0, 1, nv, lock.shape[1]), 1.0)
+    add_block(slip, 0, 0, product(on_w, block(solution.eta, na, nv, 0, width)), 1.0)
+    bound = absolute(slip)
+    add_block(bound, 0, 0, product(absolute(on_w), block(solution.bound, na, nv, 0, width)), 1.0)
     drop_rounding(slip, bound)
     return slip
 
@@ -247,9 +233,9 @@ def limit_guard(guards: Matrix, e: int, state: int, limits: Matrix) -> None:
 def fill_outputs(first: MapRows, over: Matrix, maps: Matrix) -> None:
     """Outputs over the state and inputs, by what they are over these and (a', w, F)."""
     inputs = maps.shape[1] - 1
-    add(maps, first.output, 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
+    add_block(maps, first.output, 0, block(over, 0, over.shape[0], 0, inputs), 1.0)
     on_eta = block(over, 0, over.shape[0], inputs, over.shape[1])
-    add(maps, first.output, 0, product(on_eta, block(maps, first.eta, first.entry, 0, maps.shape[1])), 1.0)
+    add_block(maps, first.output, 0, product(on_eta, block(maps, first.eta, first.entry, 0, maps.shape[1])), 1.0)
 
 
 @part(typed=True, apart=True)
@@ -257,10 +243,10 @@ def fill_entry(sizes: Sizes, first: int, balance: Balance, bases: Bases, mode: M
     """Conditions on entry: velocities across locks, balance of springs, balance of what is loose."""
     nc, nz = bases.inertial.shape[1], bases.sprung.shape[1]
     mode.conditions[0], mode.conditions[1], mode.conditions[2] = nc, nz, bases.loose.shape[1]
-    add(mode.maps, first, 0, balance.velocity, 1.0)
-    add(mode.maps, first, sizes.states + sizes.roads, balance.road_velocity, 1.0)
-    add(mode.maps, first + nc, 0, inner(bases.sprung, balance.on_w), 1.0)
-    add(mode.maps, first + nc + nz, 0, inner(bases.loose, balance.on_w), 1.0)
+    add_block(mode.maps, first, 0, balance.velocity, 1.0)
+    add_block(mode.maps, first, sizes.states + sizes.roads, balance.road_velocity, 1.0)
+    add_block(mode.maps, first + nc, 0, inner(bases.sprung, balance.on_w), 1.0)
+    add_block(mode.maps, first + nc + nz, 0, inner(bases.loose, balance.on_w), 1.0)
 
 
 @part(typed=True, apart=True)
@@ -268,26 +254,26 @@ def fill_reaction(
     sizes: Sizes, inertia: Matrix, rates: Rates, locks: Locks, bases: Bases, balance: Balance, reaction: Matrix
 ) -> bool:
     """Jumps that fulfil the conditions, and their impulses on the elements; False if there are none."""
-    clear(reaction)
+    set_to_zero(reaction)
     na, n, nv, ng = sizes.inertial, sizes.states, sizes.inertial + sizes.massless, sizes.states - sizes.inertial
     nc, nz = bases.inertial.shape[1], bases.sprung.shape[1]
     locks_w = block(rates.locks, 0, sizes.elements, na, nv)
-    impulse, inverse = transpose(balance.velocity), unit(nc)
+    impulse, inverse = transpose(balance.velocity), identity(nc)
     if not solve_scaled(block(inertia, 0, na, 0, na), impulse):
         return False
     if not solve_scaled(product(balance.velocity, impulse), inverse):
         return False
-    add(reaction, 0, 0, product(impulse, inverse), -1.0)
+    add_block(reaction, 0, 0, product(impulse, inverse), -1.0)
     forces = product(bases.inertial, inverse)
     for i in range(locks.held.shape[0]):
-        add(reaction, n + locks.held[i], 0, block(forces, i, i + 1, 0, nc), 1.0)
-    inverse = unit(nz)
+        add_block(reaction, n + locks.held[i], 0, block(forces, i, i + 1, 0, nc), 1.0)
+    inverse = identity(nz)
     if not solve_scaled(product(block(balance.spring_rate, 0, nz, na, nv), bases.sprung), inverse):
         return False
     moved = product(bases.sprung, inverse)
-    add(reaction, na, nc, product(block(rates.positions, 0, ng, na, nv), moved), -1.0)
-    add(reaction, n, nc, product(locks_w, moved), -1.0)
-    add(reaction, n, nc + nz, product(locks_w, bases.loose), 1.0)
+    add_block(reaction, na, nc, product(block(rates.positions, 0, ng, na, nv), moved), -1.0)
+    add_block(reaction, n, nc, product(locks_w, moved), -1.0)
+    add_block(reaction, n, nc + nz, product(locks_w, bases.loose), 1.0)
     return True
 
 
@@ -296,16 +282,16 @@ def project_onto_entry(sizes: Sizes, first: MapRows, mode: Mode) -> None:
     """Project the state in all rows onto the conditions on entry, so that drift off them has no effect."""
     n, entry, conditions = sizes.states, first.entry, mode.conditions[0] + mode.conditions[1]
     maps, width = mode.maps, mode.maps.shape[1]
-    add(maps, first.projected_state, 0, unit(n), 1.0)
+    add_block(maps, first.projected_state, 0, identity(n), 1.0)
     if conditions == 0:
         return
     mended = block(mode.reaction, 0, n, 0, conditions)
-    asked, bound, rows = block(maps, entry, entry + conditions, 0, width), sizes_of(maps), maps.shape[0]
-    add(bound, 0, 0, product(product(block(bound, 0, rows, 0, n), sizes_of(mended)), sizes_of(asked)), 1.0)
+    asked, bound, rows = block(maps, entry, entry + conditions, 0, width), absolute(maps), maps.shape[0]
+    add_block(bound, 0, 0, product(product(block(bound, 0, rows, 0, n), absolute(mended)), absolute(asked)), 1.0)
     for _ in range(2):  # what rounding of the first time leaves, the second removes
-        add(maps, 0, 0, product(product(block(maps, 0, rows, 0, n), mended), asked), 1.0)
+        add_block(maps, 0, 0, product(product(block(maps, 0, rows, 0, n), mended), asked), 1.0)
     drop_rounding(maps, bound)
-    put(maps, entry, asked)
+    set_rows(maps, entry, asked)
 
 
 @part(typed=True, apart=True)
@@ -318,14 +304,14 @@ def set_entry_limits(mechanics: Mechanics, mode: Mode, still: Flags) -> None:
     limits, width = mode.limits, maps.shape[1]
     guards, rates = block(maps, guard, guard + k, 0, n), block(maps, 0, n, 0, width)
     change = product(guards, rates)
-    drop_rounding(change, product(sizes_of(guards), sizes_of(rates)))
+    drop_rounding(change, product(absolute(guards), absolute(rates)))
     for e in range(k):
         state = mode.state[e]
         slips = mechanics.kind[e] == FRICTION and state != 0 and not still[e] and can_be_in(mechanics.limits, e, 0)
-        if slips and is_zero(maps, guard + e):
+        if slips and is_zero_row(maps, guard + e):
             limits[e, 0 if state > 0 else 1] = state
         mode.entry_limits[e, 0], mode.entry_limits[e, 1] = limits[e, 0], limits[e, 1]
-        moves = not is_zero(change, e)
+        moves = not is_zero_row(change, e)
         for j in range(n, width - 1):
             moves = moves or maps[guard + e, j] != 0.0
         if not moves:

@@ -9,8 +9,7 @@ reactions; the reactions of frictions and gaps then follow from a small compleme
     a tied reaction has rate = aim + upper, whatever its force;
     a constant one has force = upper, whatever its rate.
 
-All that is about reactions stands in one array with a column each, because a call costs time for each array. It is
-cheap if the function has one loop nest only and no loop under a condition; others count references at each call.
+All that is about reactions stands in one array with a column each, because a call costs time for each array.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from inerter.kernels.decorators import kernel, part
+from inerter.kernels.dense import factor_by_quotients, multiply_vector, solve_by_quotients
 
 Array = Any  # compiled code is typed when it is compiled
 
@@ -68,17 +68,7 @@ class Stretch(NamedTuple):
     every: int
 
 
-@part()
-def times(A: Array, x: Array, out: Array) -> None:
-    """Multiply: out = A x."""
-    for i in range(A.shape[0]):
-        total = 0.0
-        for j in range(A.shape[1]):
-            total += A[i, j] * x[j]
-        out[i] = total
-
-
-@part()
+@part(borrowing=True)
 def observe(rows: Array, known: Array, weight: float, out: Array, at: int) -> None:
     """Add `weight` times the observed quantities to one sample."""
     for i in range(rows.shape[0]):
@@ -88,53 +78,7 @@ def observe(rows: Array, known: Array, weight: float, out: Array, at: int) -> No
         out[at, i] += weight * total
 
 
-@part()
-def eliminate(changed: bool, A: Array, pivots: Array) -> bool:
-    """LU factors in place of A if it is `changed`, with partial pivoting; False if it is singular."""
-    n = A.shape[0] if changed else 0
-    regular = True
-    for k in range(n):
-        best, row = abs(A[k, k]), k
-        for i in range(k + 1, n):
-            if abs(A[i, k]) > best:
-                best, row = abs(A[i, k]), i
-        regular = regular and best > 0.0
-        pivots[k] = row
-        for j in range(k, n):
-            A[k, j], A[row, j] = A[row, j], A[k, j]
-        for i in range(k + 1, n):
-            ratio = A[i, k] / A[k, k]
-            A[i, k] = ratio
-            for j in range(k + 1, n):
-                A[i, j] -= ratio * A[k, j]
-    return regular
-
-
-@part()
-def forward(LU: Array, pivots: Array, b: Array) -> None:
-    """Forward substitution: b becomes L^-1 P b."""
-    n = LU.shape[0]
-    for k in range(n):
-        here = b[pivots[k]]
-        b[pivots[k]] = b[k]
-        b[k] = here
-        for i in range(k + 1, n):
-            b[i] -= LU[i, k] * here
-
-
-@part()
-def backward(LU: Array, b: Array) -> None:
-    """Backward substitution: b becomes U^-1 b."""
-    n = LU.shape[0]
-    for k in range(n):
-        i = n - 1 - k
-        total = b[i]
-        for j in range(i + 1, n):
-            total -= LU[i, j] * b[j]
-        b[i] = total / LU[i, i]
-
-
-@part()
+@part(borrowing=True)
 def set_weights(law: Array, weight: Array) -> None:
     """Fill `weight` with the share of each reaction in a rate that inertia gives to several: its sliding speed.
 
@@ -153,7 +97,7 @@ def set_weights(law: Array, weight: Array) -> None:
             weight[i] = weight[i] / largest + 1e-9
 
 
-@part()
+@part(borrowing=True)
 def fill_share_equations(Z: Array, guess: Array, at: int, weight: Array, Q: Array, taken: Array) -> None:
     """Fill the equations for the shares a of the reactions and multipliers m: a = weight Z' m and Z a = rates."""
     count, size = Z.shape
@@ -169,7 +113,7 @@ def fill_share_equations(Z: Array, guess: Array, at: int, weight: Array, Q: Arra
             Q[i, j] = Z[i - size, j]
 
 
-@part()
+@part(borrowing=True)
 def shift_aims(weight: Array, taken: Array, law: Array) -> None:
     """Add the shares of frictions to their aims."""
     for i in range(weight.shape[0]):
@@ -177,7 +121,7 @@ def shift_aims(weight: Array, taken: Array, law: Array) -> None:
             law[AIM, i] += taken[i]
 
 
-@part()
+@part(borrowing=True)
 def set_forces(law: Array, force: Array) -> bool:
     """Set up the forces for the present sides: right sides where a reaction holds, and the force itself where not.
 
@@ -205,16 +149,16 @@ def set_forces(law: Array, force: Array) -> bool:
     return changed
 
 
-@part()
-def fill_force_equations(changed: bool, G: Array, law: Array, LU: Array) -> None:
-    """Fill the equations of the forces, if they are `changed`."""
-    for i in range(G.shape[0] if changed else 0):
+@part(borrowing=True)
+def fill_force_equations(G: Array, law: Array, LU: Array) -> None:
+    """Fill the equations of the forces."""
+    for i in range(G.shape[0]):
         for j in range(G.shape[0]):
             LU[i, j] = G[i, j] * law[HELD, i]
         LU[i, i] += 1.0 - law[HELD, i]
 
 
-@part()
+@part(borrowing=True)
 def count_misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
     """Number of reactions that do not fit their side, and the last of them; records the side of each that fits."""
     count, last = 0, -1
@@ -247,14 +191,14 @@ def count_misfits(G: Array, law: Array, force: Array, slack: float) -> Any:
     return count, last
 
 
-@part()
+@part(borrowing=True)
 def fill_inputs(inputs: Array, step: int, known: Array, at: int) -> None:
     """Copy the inputs of a step into `known`."""
     for j in range(inputs.shape[1]):
         known[at + j] = inputs[step, j]
 
 
-@part()
+@part(borrowing=True)
 def set_free_rates(guess: Array, at: int, law: Array) -> float:
     """Copy the rates and aims without reactions; returns the rate below which a sign is rounding."""
     count, largest = law.shape[1], 0.0
@@ -265,14 +209,14 @@ def set_free_rates(guess: Array, at: int, law: Array) -> float:
     return ROUNDING * largest
 
 
-@part()
+@part(borrowing=True)
 def change_sides(law: Array, least: int) -> None:
     """Move reactions from number `least` upwards to the side that fits."""
     for i in range(least, law.shape[1]):
         law[SIDE, i] = law[BETTER, i]
 
 
-@part()
+@part(borrowing=True)
 def set_means(guess: Array, pull: Array, force: Array, known: Array, at: int) -> float:
     """Copy mean velocities and forces of the step into `known`; returns their sum, finite if all are numbers."""
     n, count = pull.shape
@@ -287,7 +231,7 @@ def set_means(guess: Array, pull: Array, force: Array, known: Array, at: int) ->
     return total
 
 
-@part()
+@part(borrowing=True)
 def advance_motion(inertia: Array, moved: Array, h: float, known: Array, at: int) -> None:
     """Advance displacements and momenta from the start of the step to its end."""
     n = inertia.shape[0]
@@ -308,7 +252,7 @@ def _types(types: Any) -> Any:
     return step, matrix, types.NamedUniTuple(types.int64, 3, Stretch), vector, matrix, scratch, matrix
 
 
-@kernel("time stepping", _types)
+@kernel("time stepping", _types, borrowing=True)
 def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array, scratch: Scratch, out: Array) -> Any:
     """Step through `inputs`, a row each; `known` and `law` are kept for the next ones. Samples are added to `out`.
 
@@ -329,22 +273,21 @@ def march(step: Step, inputs: Array, stretch: Stretch, known: Array, law: Array,
     sample, left = (first + every - 1) // every, -first % every  # the next one, and the steps until then
     for now in range(first, first + inputs.shape[0]):
         fill_inputs(inputs, now - first, known, 2 * n)
-        times(predict, known, guess)
+        multiply_vector(predict, known, guess)
         slack = set_free_rates(guess, n, law)
         for _ in range(min(Z.shape[0], 1)):
             set_weights(law, weight)
             fill_share_equations(Z, guess, n + 2 * count, weight, Q, taken)
-            eliminate(True, Q, order)
-            forward(Q, order, taken)
-            backward(Q, taken)
+            factor_by_quotients(Q, order)
+            solve_by_quotients(Q, order, taken)
             shift_aims(weight, taken, law)
         wrong, fewest, patience, tried = 1, count + 1, PATIENCE, 0
         while wrong > 0 and tried < LIMIT:
             changed = set_forces(law, force)
-            fill_force_equations(changed, G, law, LU)
-            eliminate(changed, LU, pivots)
-            forward(LU, pivots, force)
-            backward(LU, force)
+            if changed:
+                fill_force_equations(G, law, LU)
+                factor_by_quotients(LU, pivots)
+            solve_by_quotients(LU, pivots, force)
             wrong, last = count_misfits(G, law, force, slack)
             tried, patience = tried + 1, patience - 1
             if wrong < fewest:

@@ -38,7 +38,7 @@ _ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked 
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
-_DOUBTFUL = 1e-10  # doubt from which on the error bound of a norm behind a filter may be exceeded
+_UNCERTAIN = 1e-10  # error estimate from which on the error bound of a norm behind a filter may be exceeded
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -82,9 +82,9 @@ class CompiledQuestion:
         """States that only the road moves, and their covariance; none where that is infinite."""
         d = self.problem.descriptor
         moves = np.any(d.X_eta, axis=1) | np.any(d.X_x, axis=1)
-        drifts = np.flatnonzero(~moves)
-        walks = drift_covariance(d.X_u[drifts], self.problem.delays, self.problem.sources)
-        return (drifts, walks) if walks is not None else (drifts[:0], np.zeros((0, 0)))
+        drifting = np.flatnonzero(~moves)
+        covariance = drift_covariance(d.X_u[drifting], self.problem.delays, self.problem.sources)
+        return (drifting, covariance) if covariance is not None else (drifting[:0], np.zeros((0, 0)))
 
     @cached_property
     def single_source_questions(self) -> tuple[CompiledQuestion, ...]:
@@ -206,26 +206,26 @@ class CompiledQuestion:
                     self.problem.part(self.supported_outputs)
                 )._compiled_norms(points)
             return result
-        norms, _, doubts = self._with_gradients(points, np.empty(0))
-        norms[~self._sure(points, norms, doubts)] = np.nan
+        norms, _, errors = self._with_gradients(points, np.empty(0))
+        norms[~self._sure(points, norms, errors)] = np.nan
         return norms
 
     def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients of their sum with `weights`, none without, and doubts of the norms, by compiled code.
+        """Norms, gradients of their sum with `weights`, none without, and error estimates, by compiled code.
 
         Over several sources, squares are added up for the outputs that each one excites.
         """
         if not self.single_source_questions and np.all(self.reachable_outputs) and self._excess is None:
-            norms, gradients, doubts = h2_kernels.norms(points, *self.arguments, weights)
-            return np.asarray(norms), np.asarray(gradients), np.asarray(doubts)
-        squares, doubts = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
+            norms, gradients, errors = h2_kernels.norms(points, *self.arguments, weights)
+            return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
+        squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
         for seen, one in self.per_source_questions:
             own = np.ascontiguousarray(points[:, self._columns(one)])
             norms, behind, of_one = one._of_one_source(own)
             squares[:, seen] += norms**2
             found.append((norms, behind))
-            doubts = np.maximum(doubts, of_one)
+            errors = np.maximum(errors, of_one)
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
@@ -234,7 +234,7 @@ class CompiledQuestion:
                 columns = self._columns(one)
                 own = np.ascontiguousarray(points[row, columns])
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
-        return total, gradients, doubts
+        return total, gradients, errors
 
     @cached_property
     def _excess(self) -> Excess | None:
@@ -242,14 +242,14 @@ class CompiledQuestion:
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
     def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms over a source that excites all outputs, norms for its filter alone, and doubts (designs,)."""
-        found, _, doubts = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
+        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,)."""
+        found, _, errors = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
         if self._excess is None:
-            return found, found, doubts
+            return found, found, errors
         own = (self.descriptor, self.arrivals, self._excess.table)
         squares = found**2 + excess_kernels.corrections(points, *own, np.empty(0))[0]
         norms = np.sqrt(np.maximum(squares, 0.0))
-        return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, doubts)
+        return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, errors)
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
@@ -259,15 +259,15 @@ class CompiledQuestion:
         slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
-    def _sure(self, points: Array, norms: Array, doubts: Array) -> NDArray[np.bool_]:
+    def _sure(self, points: Array, norms: Array, errors: Array) -> NDArray[np.bool_]:
         """True for designs whose norms are accurate (designs,).
 
-        Doubtful norms behind filters beyond first order count as accurate if steps of rounding size do not change them.
+        Uncertain norms behind filters beyond first order count as accurate if steps of rounding size leave them alone.
         Under light damping the states of such a filter cancel in its output, and the error bound of compiled code
         may then be exceeded a little.
         """
-        sure = np.isfinite(doubts)
-        asked = np.flatnonzero(sure & (doubts > _DOUBTFUL) & (self.problem.highest_filter >= 2))
+        sure = np.isfinite(errors)
+        asked = np.flatnonzero(sure & (errors > _UNCERTAIN) & (self.problem.highest_filter >= 2))
         if asked.size:
             shifted_value = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
             again = self._with_gradients(shifted_value, np.empty(0))[0].reshape(len(_MOVED), asked.size, -1)
@@ -284,9 +284,9 @@ class CompiledQuestion:
         """
         if not np.all(self.supported_outputs):
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, doubts = self._with_slopes(point[None])
+        norms, gradients, errors = self._with_slopes(point[None])
         found = value = float(self._combine(norms)[0])
-        if not self._sure(point[None], norms, doubts)[0]:
+        if not self._sure(point[None], norms, errors)[0]:
             value = self._exact_index(point)
         if abs(found - value) <= _SAME * value and self._gradient_agrees(point, value, gradients[0]):
             return value, gradients[0]
@@ -297,7 +297,7 @@ class CompiledQuestion:
         return self.problem.question.combine(norms, self.problem.weights)
 
     def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradient of the index, and doubts of the norms, at one point."""
+        """Norms, gradient of the index, and error estimates of the norms, at one point."""
         question, weights = self.problem.question, self.problem.weights
         if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
             return self._with_gradients(points, weights)

@@ -1,6 +1,7 @@
 """Harmonic balance of dry friction in one harmonic: a peak gain under a sinusoidal force.
 
-A Coulomb friction f across which the velocity has the amplitude V acts as a damper of 4 f / (pi V) on that harmonic.
+A Coulomb friction f across which the velocity has the amplitude V acts on that harmonic as a damper of 4 f / (pi V),
+see `equivalent_damper`.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, Statu
 from inerter.indices.question import IndexDefinition
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly_represented
+from inerter.methods.equivalent_damper import SINUSOIDAL
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import check_peak_gain
 from inerter.methods.method import Estimate
@@ -79,7 +81,7 @@ class HarmonicBalance:
         """Values for the descriptor, and amplitudes of the friction forces."""
         dampers = np.full((points.shape[0], len(self.parts.dampers)), self.parts.scale)
         rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
-        return np.ascontiguousarray(rows), np.ascontiguousarray(4.0 / math.pi * self.parts.limits(points))
+        return np.ascontiguousarray(rows), np.ascontiguousarray(SINUSOIDAL.force(self.parts.limits(points)))
 
     def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, float]]:
         """Frequencies and gains at `omegas` or at the peaks, for each row of `points`.

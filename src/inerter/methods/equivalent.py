@@ -30,7 +30,6 @@ from inerter.systems.outputs import force_of, stroke_of, velocity_of
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
-GAUSSIAN = math.sqrt(2.0 / math.pi)  # mean size over r.m.s. value: r.m.s. force of the nearest damper over friction
 PROMISE = 0.03  # relative error of a value that is ok, what stands in for its excitation apart
 POORLY = "is poorly represented by one damper: the error may exceed 3 %"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too

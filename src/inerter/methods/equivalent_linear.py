@@ -1,9 +1,8 @@
 """Equivalent linear model of a simulated motion: each friction a damper of the force and r.m.s. velocity found.
 
-A friction f across which the velocity has the r.m.s. value sigma is nearest to the damper sqrt(2/pi) f / sigma, as in
-statistical linearisation; here sigma is that of the simulated motion, so that no assumption decides what sticks. Gaps
-are closed. The counterpart tells what a road holds beyond the lines of a multisine, and for how long a design remembers
-it.
+The dampers are those of statistical linearisation (see `equivalent_damper`), for the r.m.s. velocity of the simulated
+motion, so that no assumption decides what sticks. Gaps are closed. The model gives the response between the lines of a
+multisine, and the time for which a design remembers its input.
 """
 
 from __future__ import annotations
@@ -15,7 +14,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.indices.question import IndexDefinition
-from inerter.methods.equivalent import GAUSSIAN, Equivalent, equivalent, slipping_freely
+from inerter.methods.equivalent import Equivalent, equivalent, slipping_freely
+from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
 from inerter.norms.stability import balance
@@ -79,9 +79,9 @@ class EquivalentLinearModel:
         return self.problem.question.drive.excited_mechanism(self.parts.mechanism)
 
     def _dampers(self, speeds: Array) -> dict[str, float]:
-        forces = GAUSSIAN * np.array(self.parts.forces, dtype=float)
-        slowest = forces / (_STUCK * self.parts.scale)
-        dampings = forces / np.maximum(speeds[list(self.parts.numbers)], slowest)
+        frictions = np.array(self.parts.forces, dtype=float)
+        slowest = GAUSSIAN.force(frictions) / (_STUCK * self.parts.scale)
+        dampings = GAUSSIAN.damping(frictions, np.maximum(speeds[list(self.parts.numbers)], slowest))
         return dict(zip(self.parts.dampers, dampings.tolist(), strict=True))
 
     def unlike(self, speeds: Array, norms: Array) -> float:

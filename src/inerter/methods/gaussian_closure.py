@@ -1,7 +1,7 @@
 """Statistical linearisation of dry friction: equivalent dampers for a Gaussian motion, and the index with them.
 
-With a Gaussian velocity of r.m.s. sigma across it, the damper nearest to a Coulomb friction f in the mean square is
-c = sqrt(2/pi) f / sigma (Caughey 1963; Roberts and Spanos 1990), and sigma follows from c by one Lyapunov equation.
+With a Gaussian velocity of r.m.s. sigma across it, a Coulomb friction f has the equivalent damper sqrt(2/pi) f / sigma
+(see `equivalent_damper`), and sigma follows from the dampers by one Lyapunov equation.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from inerter.formatting import format_number
 from inerter.indices.question import IndexDefinition
 from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import (
-    GAUSSIAN,
     PROMISE,
     STIFFEST,
     Equivalent,
@@ -28,6 +27,7 @@ from inerter.methods.equivalent import (
     poorly_represented,
     slipping_freely,
 )
+from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
@@ -95,7 +95,7 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck
-        unlike[left], share[left] = _off_by(own, GAUSSIAN * ratio, stuck)
+        unlike[left], share[left] = _off_by(own, GAUSSIAN.force_ratio * ratio, stuck)
         factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
         rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
         damping[left] *= np.where(settled[:, None], rigid, factor)
@@ -174,7 +174,7 @@ class Pattern:
         if not start.shape[1]:
             none = np.zeros(start.shape, dtype=bool)
             return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
-        return solve_dampers(speeds, GAUSSIAN * self.parts.limits(points), start, held)
+        return solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
 
     def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""

@@ -93,7 +93,11 @@ def propagate(
 
 
 def _exponential(X: Matrix) -> tuple[Matrix, int]:
-    """exp(X) by a Taylor series of a small part of X, squared; how often."""
+    """exp(X) by a Taylor series of X halved repeatedly, then squared as often; that number too.
+
+    Apart from `kernels.dense.exponential`, which it checks: a norm of one design needs no compiled code, and loops in
+    plain Python would take as long as the rest of the norm.
+    """
     squarings = max(0, math.frexp(float(np.abs(X).sum(axis=1).max(initial=0.0)))[1] - 1)
     X = X * 0.5**squarings
     power = term = np.eye(X.shape[0])

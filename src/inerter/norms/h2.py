@@ -19,13 +19,13 @@ from inerter.systems.linear import ExtendedMatrices, LinearSystem, check_system
 Matrix = NDArray[np.float64]
 _LOST = Status(StatusKind.INACCURATE, "damping lost to rounding: some motions are much slower than others")
 _EPS = float(np.finfo(float).eps)
-_SOLVED = 1e-3  # share of its terms that the equation for the variance of an excited state may leave over
+_RESIDUAL = 1e-3  # largest residual of the equation for the variance of an excited state, over its terms
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
 _LONG = float(np.finfo(np.longdouble).eps)
 _AT_ZERO = 16.0 * _EPS  # size of a pole relative to A that may be rounding
-_SMALL = 1e-6  # relative size of the terms of a correction at first order up to which the rest is below 1e-9
+_SMALL = 1e-6  # relative size of the terms of a correction at first order up to which higher orders are below 1e-9
 _SECOND_ORDER = 1e-3  # share of the terms of a correction by which it may be off
-ACCURATE = 1e-9  # relative error of a mean square up to which it is believed
+ACCURATE = 1e-9  # relative error of a mean square up to which it counts as known
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,38 +141,38 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
 
     The covariance P of the state solves A P + P A' + W = 0 (Bartels and Stewart), where W adds to B B' the covariance
     of each delayed arrival with the state that its earlier arrivals have left: exp(A dt) Bi Bj' and its transpose.
-    With the solution Q of A' Q + Q A + C' C = 0 for one output, what P leaves of the first equation changes the square
-    by tr(Q rest). With the matrices before they were rounded that corrects all rounding at first order, and is
-    believed while it is small. What rounding has done to those matrices themselves counts as an error, and so does a
-    small part of the correction, by which it may be off at second order.
+    With the solution Q of A' Q + Q A + C' C = 0 for one output, the residual R of the first equation changes the square
+    by tr(Q R). With the matrices before rounding that corrects all rounding errors at first order; the result
+    counts as known while the correction is small. Rounding errors of those matrices themselves count as an error, and
+    so does a small part of the correction, for its second order.
     """
     A, scale = balance(system.A)
     row = scale[:, None]
     fine_A, fine_B, fine_C = fine.matrices[0] / row * scale, fine.matrices[1] / row, fine.matrices[2] * scale
     EA, EB, EC = fine.errors[0] / row * scale, fine.errors[1] / row, fine.errors[2] * scale
-    drift = _drifting(EA + np.abs(A))
-    walks = drift_covariance(fine_B[drift], system.delays, system.sources)
-    if walks is None:
+    drifting = _drifting(EA + np.abs(A))
+    covariance = drift_covariance(fine_B[drifting], system.delays, system.sources)
+    if covariance is None:
         return None
     moved = EA + np.abs(fine_A - A).astype(float)
     W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
     try:
-        solver = _Lyapunov(A[np.ix_(~drift, ~drift)])
-        P, rest, solved = _covariance(solver, A, (fine_A, W), (drift, walks.astype(float)))
+        solver = _Lyapunov(A[np.ix_(~drifting, ~drifting)])
+        P, residual, solved = _covariance(solver, A, (fine_A, W), (drifting, covariance.astype(float)))
         size, C = np.abs(P), fine_C.astype(float)
         seen = np.abs(C) @ size
         squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
         goals = np.where(np.sum(seen * np.abs(C), axis=1) > 0.0, squares, np.inf).astype(float)
         if not np.all(goals > 0.0):
             return None
-        Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
+        Q = [_adjoint(solver, A, row, drifting) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
-    change = np.array([np.sum(one * rest) for one in Q])
+    change = np.array([np.sum(one * residual) for one in Q])
     together = np.abs(Q).sum(axis=0)
     unsure = np.sum(together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size)))
     unsure += np.sum(seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None])
-    terms = float(np.sum(together * np.abs(rest)))
+    terms = float(np.sum(together * np.abs(residual)))
     if not (unsure <= ACCURATE and terms <= _SMALL and solved):
         return None
     error = float(unsure) + _SECOND_ORDER * terms + len(A) * _EPS
@@ -182,30 +182,30 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
 def _covariance(
     solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix], known: tuple[NDArray[np.bool_], Matrix]
 ) -> tuple[Matrix, Matrix, bool]:
-    """P, what it leaves of its equation, and whether that is little of the noise that enters each state.
+    """P, the residual of its equation, and whether that is small against the noise that enters each state.
 
     Of states that only drift the covariance is known, and the others follow them.
     """
-    (fine_A, W), (drift, walks) = fine, known
+    (fine_A, W), (drifting, covariance) = fine, known
     P = np.zeros_like(A)
-    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     follow, noise = A[dw], W.astype(float)
-    P[np.ix_(w, w)] = walks
-    P[dw] = _solve_or_empty(A[d], -(follow @ walks + noise[dw]))
+    P[np.ix_(w, w)] = covariance
+    P[dw] = _solve_or_empty(A[d], -(follow @ covariance + noise[dw]))
     P[np.ix_(w, decays)] = P[dw].T
     P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
-    rest = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
-    rest[np.ix_(w, w)] = 8.0 * _EPS * walks
+    residual = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
+    residual[np.ix_(w, w)] = 8.0 * _EPS * covariance
     enters = np.diag(noise)
     terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
-    return P, rest, not np.any((enters > 0.0) & (np.abs(np.diag(rest)) > _SOLVED * terms))
+    return P, residual, not np.any((enters > 0.0) & (np.abs(np.diag(residual)) > _RESIDUAL * terms))
 
 
-def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: NDArray[np.bool_]) -> Matrix:
+def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drifting: NDArray[np.bool_]) -> Matrix:
     """Q of `_squares` for one output."""
     Q, goal = np.zeros_like(A), np.outer(row, row)
-    decays, w = np.flatnonzero(~drift), np.flatnonzero(drift)
+    decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     Q[d] = solver.solve(goal[d], adjoint=True)
     Q[dw] = _solve_or_empty(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
@@ -266,14 +266,14 @@ def _excitation(
     W, EW = B @ B.T, _add_transpose(EB @ size.T) + 2.0 * _LONG * size @ size.T
     for source in dict.fromkeys(system.sources):
         arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
-        met = unsure = np.zeros((B.shape[0], 0))
+        delayed = unsure = np.zeros((B.shape[0], 0))
         for before, now in pairwise(arrivals):
-            met, unsure = np.hstack([met, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
+            delayed, unsure = np.hstack([delayed, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
             time = float(system.delays[now] - system.delays[before])
-            met, unsure = propagate(A, EA, met.astype(float), unsure + _EPS * np.abs(met), time, pade_order)
-            W = W + _add_transpose(np.outer(met.sum(axis=1), B[:, now]))
+            delayed, unsure = propagate(A, EA, delayed.astype(float), unsure + _EPS * np.abs(delayed), time, pade_order)
+            W = W + _add_transpose(np.outer(delayed.sum(axis=1), B[:, now]))
             EW = EW + _add_transpose(
-                np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(met).sum(axis=1), EB[:, now])
+                np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(delayed).sum(axis=1), EB[:, now])
             )
     return W, EW
 

@@ -98,7 +98,10 @@ def stability(system: LinearSystem) -> Status:
 
 
 def balance(A: Matrix) -> tuple[Matrix, Matrix]:
-    """A after a diagonal change of units by powers of two, and the units: A_new = A / scale[:, None] * scale."""
+    """A after a diagonal change of units by powers of two, and the units: A_new = A / scale[:, None] * scale.
+
+    Apart from `kernels.dense.balance`, whose units are no powers of two: here a change of units must not round.
+    """
     if A.shape[0] == 0:
         return A, np.ones(0)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -28,4 +28,4 @@ def test_flat_optima_show_their_range() -> None:
     entry = data.sel(layout="S2", index="J1", parameter="c")
     assert flat_range(entry) == ""
     wide = entry.assign(parameter_low=3000.0, parameter_high=40e3)
-    assert flat_range(wide) == "3 to 40 kN s/m"
+    assert flat_range(wide) == "3 kN s/m to 40 kN s/m"

@@ -13,7 +13,7 @@ from inerter.formatting import (
     Scale,
     choose_scale,
     format_percent,
-    format_range,
+    format_quantity,
     is_prefixed,
     label_with_unit,
     typeset,
@@ -197,7 +197,7 @@ def flat_range(entry: xr.Dataset) -> str:
     """Range of a parameter over equally good optima as text; empty if less than 1 % wide."""
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
-    return format_range(low, high, unit) if high > WIDE_RANGE * low else ""
+    return f"{format_quantity(low, unit)} to {format_quantity(high, unit)}" if high > WIDE_RANGE * low else ""
 
 
 def format_list(words: Sequence[str]) -> str:

@@ -22,6 +22,7 @@ from inerter.formatting import (
     format_range,
     format_share,
     format_uncertain,
+    format_with_error,
     format_with_interval,
     join_units,
     shown_decimals,
@@ -69,6 +70,10 @@ def test_formatted_text_reads_back_to_its_digits(value, unit, digits):
         (2.5e6, "N/m", "2.5 MN/m"),
         (5e-7, "m^3/cycle", "5e-07 m^3/cycle"),
         (-3200.0, "N s/m", "-3.2 kN s/m"),
+        (2e-3, "s", "2 ms"),
+        (3e-6, "s", "3 us"),
+        (5e12, "N/m", "5e+12 N/m"),
+        (1e-12, "m", "1e-12 m"),
     ],
 )
 def test_format_chooses_prefix_and_digits(value, unit, text):
@@ -233,6 +238,7 @@ def test_functions_of_several_numbers_accept_any(value):
     assert format_range(5.0, math.inf, "N") == "5 N to inf"
     assert all(format_with_interval(value, value, 2.0 * value, "N"))
     assert " +- " in format_uncertain(value, 1.0)
+    assert all(format_with_error(value, 1.0, "N"))
     assert format_entry(value)
     assert significant_digits(value) >= 1
     assert (shown_decimals(value, 1.0, 0.0, 4) is None) == (not math.isfinite(value))
@@ -254,6 +260,14 @@ def test_a_range_is_read_back(low, ratio, unit):
     first = first if " " in first else f"{first} {second.partition(' ')[2]}"
     assert parse_quantity(first, unit) == pytest.approx(low, rel=6e-4)
     assert parse_quantity(second, unit) == pytest.approx(low * ratio, rel=6e-4)
+
+
+@given(SIZES, st.floats(1e-5, 1.0), st.sampled_from(["N", "m", "s", "kg"]))
+def test_a_value_and_its_error_are_in_one_unit_with_as_many_decimals(value, relative, unit):
+    first, second = format_with_error(value, relative * value, unit)
+    assert first.partition(" ")[2] == second.partition(" ")[2]
+    assert parse_quantity(first, unit) == pytest.approx(value, abs=0.06 * relative * value)
+    assert parse_quantity(second, unit) == pytest.approx(relative * value, rel=0.06)
 
 
 SOURCE = Path(inerter.__file__).parent

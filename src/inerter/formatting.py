@@ -156,15 +156,28 @@ def format_with_interval(value: float, low: float, high: float, unit: str) -> tu
     return _with_unit(f"{value:.{decimals}f}", own.unit), _with_unit(ends, own.unit)
 
 
+def format_with_error(value: float, error: float, unit: str) -> tuple[str, str]:
+    """Texts of `value` and its standard error [`unit`]: in one unit, with two digits of the error.
+
+    >>> format_with_error(0.0012345, 3.21e-5, "s"), format_with_error(5.0, 0.0, "N")
+    (('1.234 ms', '0.032 ms'), ('5 N', '0 N'))
+    """
+    if not shows_error(value, error):
+        return format_quantity(value, unit), format_quantity(error, unit, 2)
+    own = _scale(value, unit)
+    first, _, second = format_uncertain(value * own.factor, error * own.factor).partition(" +- ")
+    return _with_unit(first, own.unit), _with_unit(second, own.unit)
+
+
 def format_uncertain(value: float, error: float, bound: float = math.nan, sign: str = "") -> str:
     """A number of a relative error `bound`, and its standard error; `sign` is "+" to show it always.
 
     >>> format_uncertain(2.50911, 0.00047), format_uncertain(2.50911, 0.00047, 1e-4)
     ('2.50911 +- 0.00047', '2.5091 +- 0.0005')
     """
-    if not _SMALLEST < error < _LARGEST:
-        return f"{value:{sign}.4g} +- {error:.2g}"
     decimals = decimal_places(value, bound * abs(value), error)
+    if not _SMALLEST < error < _LARGEST:
+        return f"{value:{sign}.{max(decimals + 1 + _exponent(value), 1)}g} +- {error:.2g}"
     shown = max(decimals, 0)
     return f"{round(value, decimals):{sign}.{shown}f} +- {round(error, decimals):.{shown}f}"
 

@@ -198,7 +198,7 @@ def test_a_start_beyond_a_stop_is_refused():
     still = {"forces": {"force": pushed(0.0)}, "duration": 0.1}
     start = np.zeros(simulate(car, **still).final_state.size)
     start[1:] = -0.05
-    with pytest.raises(SimulationError, match=r"Stop 's' starts at -0\.05 m, beyond where it is met, at -0\.01 m\."):
+    with pytest.raises(SimulationError, match=r"Stop 's' starts at -50 mm, beyond where it is met, at -10 mm\."):
         simulate(car, **still, initial=start, integrator="time-stepping")
 
 

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
-from inerter.formatting import format_number
+from inerter.formatting import format_share
 from inerter.indices.question import IndexDefinition
 from inerter.methods.compiled_norm import CompiledQuestion
 from inerter.methods.equivalent import (
@@ -354,7 +354,7 @@ class GaussianClosure:
             return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
         result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:
-            message = f"the equivalent dampers are known to {format_number(dampers.error[0], 2)} only"
+            message = f"the equivalent dampers are known to {format_share(dampers.error[0], 2)} only"
             result = replace(result, status=Status(StatusKind.INACCURATE, message))
         bound = float(self.off_by(np.zeros((1, 0)), solved, promise=0.0)[0])
         if result.status.ok and not bound <= PROMISE:

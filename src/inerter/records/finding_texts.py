@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from enum import StrEnum
 
-from inerter.formatting import format_alike, format_number, format_quantity, format_share
+from inerter.formatting import (
+    format_alike,
+    format_number,
+    format_quantity,
+    format_share,
+    format_with_error,
+    significant_digits,
+)
 from inerter.records.finding import Finding
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
@@ -151,11 +158,12 @@ def _hidden_jitter_text(f: Finding) -> Text:
 
 def _clock_drift_text(f: Finding) -> Text:
     n = f.numbers
-    growth = f"{format_quantity(abs(n['growth']), 's', 3)} {'later' if n['growth'] > 0.0 else 'earlier'}"
+    late, error = format_with_error(abs(n["growth"]), n["standard_error"], "s")
+    rate = format_number(1e6 * abs(n["rate"]), significant_digits(n["rate"], n["standard_error"] / abs(n["growth"]), 3))
     return (
-        f"The phase between force and displacement drifts: the force is {growth} at the end than at the start "
-        f"(standard error {format_quantity(n['standard_error'], 's', 2)}). The clocks of the channels differ by "
-        f"{format_number(1e6 * abs(n['rate']), 3)} ppm, or the losses of the device change. Sample both channels with "
+        f"The phase between force and displacement drifts: the force is {late} "
+        f"{'later' if n['growth'] > 0.0 else 'earlier'} at the end than at the start (standard error {error}). The "
+        f"clocks of the channels differ by {rate} ppm, or the losses of the device change. Sample both channels with "
         f"one clock.",
     )
 
@@ -280,16 +288,18 @@ def _delay_text(f: Finding) -> Text:
             f"A delay between force and displacement cannot be identified from this record alone: {_WHY[f.about]}. "
             f"Record a sweep or multisine, or an acceleration, or leave the delay free when the model is fitted.",
         )
-    late, margin = n["delay"], f"(standard error {format_quantity(n['standard_error'], 's', 2)})"
+    late, error = n["delay"], n["standard_error"]
     if f.severity == "info":
-        return (f"No significant delay between force and motion {margin}.",)
-    how = f"{format_quantity(abs(late), 's', 3)} {'later' if late >= 0.0 else 'earlier'} than the displacement"
+        known = format_quantity(error, "s", 2)
+        return (f"No significant delay between force and motion (standard error {known}).",)
+    size, known = format_with_error(abs(late), error, "s")
+    how = f"{size} {'later' if late >= 0.0 else 'earlier'} than the displacement"
     said = (
         f"The measured acceleration is {how}, so presumably is the force"
         if f.about == "acceleration"
         else f"The force is {how}, if the device is inertia, losses and elasticity below resonance"
     )
-    return (f"{said} {margin}. ", Remedy(Action.SHIFT_FORCE, late), " removes it.")
+    return (f"{said} (standard error {known}). ", Remedy(Action.SHIFT_FORCE, late), " removes it.")
 
 
 def _bandwidth_text(f: Finding) -> Text:

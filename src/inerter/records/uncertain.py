@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass
 
 from inerter.errors import UnitError
-from inerter.formatting import format_number, format_quantity, format_share
+from inerter.formatting import format_alike, format_number, format_share
 from inerter.units import parse_quantity, quote_value
 from inerter.validation import is_number
 
@@ -46,7 +46,7 @@ class Uncertain:
 
     def __str__(self) -> str:
         if self.unit:
-            return f"{format_quantity(self.value, self.unit)} +- {format_quantity(self.uncertainty, self.unit, 3)}"
+            return " +- ".join(format_alike([self.value, self.uncertainty], self.unit))
         return f"{format_number(self.value)} +- {format_share(self.relative)}"
 
 

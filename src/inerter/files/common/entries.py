@@ -13,7 +13,7 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
-from inerter.formatting import format_number, format_quantity
+from inerter.formatting import format_alike, format_number, format_range
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
@@ -390,11 +390,11 @@ def check_order(lower: Amount, upper: Amount) -> None:
     if lower.value >= upper.value:
         equal = lower.value == upper.value
         how, remedy = ("equal", "Write a single value without from and to.") if equal else ("reversed", "Swap them.")
-        first, last = (format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
+        first, last = format_alike([lower.value, upper.value], lower.unit, 12)
         ends = f'{how} ends, from = "{first}" and to = "{last}"'
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
     if lower.value > 0.0 and upper.value > _WIDEST * lower.value:
-        ends = " to ".join(format_quantity(end.value, end.unit, digits=12) for end in (lower, upper))
+        ends = format_range(lower.value, upper.value, lower.unit, 12)
         expected = f"an upper bound of at most {format_number(_WIDEST)} times the lower one"
         raise EntryError(got=ends, fault="wider than a search can cover", expected=expected)
 

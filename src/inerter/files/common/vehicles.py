@@ -15,7 +15,7 @@ from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
-from inerter.formatting import format_number, format_quantity
+from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
 from inerter.vehicle.mechanism import (
@@ -150,8 +150,7 @@ class _Model:
         for field in fields_of(VEHICLES[self.model]):
             value = values[field.key]
             if isinstance(value, Free):
-                ends = (format_quantity(end, field.unit, digits=12) for end in (value.lower, value.upper))
-                yield field.in_words, None, f"free, {' to '.join(ends)}"
+                yield field.in_words, None, f"free, {format_range(value.lower, value.upper, field.unit, 12)}"
             elif value != 0.0:
                 yield field.in_words, value, field.unit
 

@@ -19,7 +19,7 @@ from inerter.files.study.place import Place, Sweep, element_at, place_of
 from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import SweepRange
 from inerter.files.study.study import Study, elements_used
-from inerter.formatting import format_quantity
+from inerter.formatting import format_alike
 from inerter.networks.elements import Free, Tied
 from inerter.units import are_compatible, is_unit_for, parse_quantity, quote_value, unit_in
 
@@ -115,7 +115,7 @@ def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple
     """Values from one end to the other."""
     if low >= high:
         how, remedy = ("equal", "Give them apart.") if low == high else ("reversed", "Swap them.")
-        first, last = (format_quantity(end, number.unit, digits=12) for end in (low, high))
+        first, last = format_alike([low, high], number.unit, 12)
         ends = f'{how} ends, from = "{first}" and to = "{last}"'
         raise EntryError(got=ends, expected="from less than to", hint=remedy)
     if entry.spacing == "log" and low == 0.0:

@@ -104,7 +104,7 @@ def format_variance_share(explained: float) -> str:
     """
     missing = 100.0 * (1.0 - explained)
     decimals = min(max(1 - floor(log10(missing)), 1), 5) if 0.0 < missing < 100.0 else 1
-    return f"{100.0 * explained:.{decimals}f} %"
+    return f"{format_decimals(100.0 * explained, decimals)} %"
 
 
 def cause_texts(found: IdentificationResult) -> Iterator[tuple[str, str, str, str]]:

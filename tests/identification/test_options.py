@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 import inerter as it
 from inerter.errors import IdentificationError
-from inerter.identification.finding_texts import _TEXTS, FitFinding
-from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.options import FitOptions, OptionChanges
-from inerter.identification.possible_causes import _REMEDIES, _SENTENCES, Suspect
+from inerter.identification.statements.causes import _REMEDIES, _SENTENCES, Suspect
+from inerter.identification.statements.findings import _TEXTS, FitFinding
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.records.finding_texts import _TEXTS as OF_RECORDS
 from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy

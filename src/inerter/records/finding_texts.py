@@ -9,6 +9,7 @@ from inerter.formatting import format_alike, format_number, format_quantity, for
 from inerter.records.finding import Finding
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
+from inerter.statements import Severity
 
 COARSE = 20.0  # resolution steps over the range of a channel, below which its resolution is coarse
 LARGE = 0.5  # of the amplitude: a mean that may be an offset
@@ -281,7 +282,7 @@ def _delay_text(f: Finding) -> Text:
             f"Record a sweep or multisine, or an acceleration, or leave the delay free when the model is fitted.",
         )
     late, margin = n["delay"], f"(standard error {format_quantity(n['standard_error'], 's', 2)})"
-    if f.severity == "info":
+    if f.severity is Severity.INFO:
         return (f"No significant delay between force and motion {margin}.",)
     how = f"{format_quantity(abs(late), 's', 3)} {'later' if late >= 0.0 else 'earlier'} than the displacement"
     said = (

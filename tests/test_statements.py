@@ -99,6 +99,13 @@ def test_groups_keep_the_order_and_the_most_severe_come_first(severities: list[S
     assert exit_code(found) == max(codes, default=0)
 
 
+@given(st.sampled_from(Severity), st.sampled_from(Severity))
+def test_severities_compare_in_their_order(one: Severity, other: Severity) -> None:
+    i, j = (list(Severity).index(severity) for severity in (one, other))
+    assert (one < other, one <= other, one > other, one >= other) == (i < j, i <= j, i > j, i >= j)
+    assert list(Severity) == ["info", "warning", "error"]
+
+
 def test_every_kind_of_status_has_a_severity() -> None:
     for kind in StatusKind:
         assert (kind.severity is Severity.INFO) == Status(kind).ok

@@ -12,11 +12,27 @@ from typing import TypeVar
 
 
 class Severity(StrEnum):
-    """Severity of a statement, in ascending order."""
+    """Severity of a statement, in ascending order; comparisons follow it and not the alphabet."""
 
     INFO = "info"  # no action required
     WARNING = "warning"  # a result is, or may be, unreliable or missing
     ERROR = "error"  # the input cannot be used
+
+    def __lt__(self, other: str) -> bool:
+        return _EXIT_CODES[self] < _EXIT_CODES[Severity(other)]
+
+    def __le__(self, other: str) -> bool:
+        return _EXIT_CODES[self] <= _EXIT_CODES[Severity(other)]
+
+    def __gt__(self, other: str) -> bool:
+        return _EXIT_CODES[self] > _EXIT_CODES[Severity(other)]
+
+    def __ge__(self, other: str) -> bool:
+        return _EXIT_CODES[self] >= _EXIT_CODES[Severity(other)]
+
+
+_EXIT_CODES = {Severity.INFO: 0, Severity.WARNING: 1, Severity.ERROR: 2}
+INTERRUPTED = 130  # exit code that shells give a command ended by Ctrl-C
 
 
 class Statement:
@@ -44,16 +60,14 @@ class Statement:
 
 
 S = TypeVar("S", bound=Statement)
-INTERRUPTED = 130  # exit code that shells give a command ended by Ctrl-C
-_EXIT_CODES = {Severity.INFO: 0, Severity.WARNING: 1, Severity.ERROR: 2}
 
 
 def by_severity(statements: Iterable[S]) -> dict[Severity, list[S]]:
     """Statements by severity, the most severe first; only severities that occur."""
-    groups: dict[Severity, list[S]] = {severity: [] for severity in reversed(Severity)}
+    groups: dict[Severity, list[S]] = {}
     for statement in statements:
-        groups[statement.severity].append(statement)
-    return {severity: group for severity, group in groups.items() if group}
+        groups.setdefault(statement.severity, []).append(statement)
+    return {severity: groups[severity] for severity in sorted(groups, reverse=True)}
 
 
 def exit_code(statements: Iterable[Statement]) -> int:
@@ -61,4 +75,4 @@ def exit_code(statements: Iterable[Statement]) -> int:
 
     0 if the result is reliable, 1 if it is unreliable or missing, 2 if the input cannot be used.
     """
-    return max((_EXIT_CODES[statement.severity] for statement in statements), default=_EXIT_CODES[Severity.INFO])
+    return _EXIT_CODES[max((statement.severity for statement in statements), default=Severity.INFO)]

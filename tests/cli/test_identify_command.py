@@ -17,7 +17,7 @@ from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
 from inerter.files.identification.loading import load_identification
 from inerter.identification import diagnosis
-from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.records.uncertain import Uncertain
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)

@@ -26,10 +26,10 @@ from inerter.papers.wang_su_2008 import between, beyond, curves, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimPart,
     ClaimVerdict,
     EstimatedQuantity,
     Evidence,
-    Statement,
     combined_verdict,
     everywhere,
     somewhere_above,
@@ -343,7 +343,7 @@ def test_a_claim_is_as_good_as_its_worst_statement() -> None:
     assert combined_verdict([SHOWN, UNDETERMINED]) is UNDETERMINED
     assert combined_verdict([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
     mixed = Claim(
-        0, "", (Statement("this", SHOWN, CONTRADICTED), Statement("that", UNDETERMINED, None, "1 %")), "N. B."
+        0, "", (ClaimPart("this", SHOWN, CONTRADICTED), ClaimPart("that", UNDETERMINED, None, "1 %")), "N. B."
     )
     assert mixed.headline == "undetermined in 1 of 2 statements; printed numbers contradicted"
     assert mixed.evidence == "this [shown; printed number contradicted]; that [undetermined; detectable: 1 %]. N. B."

@@ -77,7 +77,7 @@ class ParseNetwork(Body):
     elements: dict[str, Any] | list[str] | None = None
 
 
-class Quantity(Body):
+class QuantityBody(Body):
     """A text that is to be read, in `unit` if it is given; or a value in `unit` that is to be written."""
 
     text: str | None = None
@@ -89,7 +89,7 @@ class Quantity(Body):
 class Quantities(Body):
     """Several of them."""
 
-    items: Annotated[list[Quantity], Field(max_length=10_000)]
+    items: Annotated[list[QuantityBody], Field(max_length=10_000)]
 
 
 class OfDesigns(Body):

@@ -84,7 +84,8 @@ def doubt_of(results: xr.Dataset, index: str) -> str:
     _, message = Status.parts(next(iter(unsure.values()))[0])
     many = len(next(iter(texts.values())))
     of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
-    decided = decisive_method_clause(methods(results)[0], message) if len(methods(results)) == 1 else ""
+    unsure_status = Status(StatusKind.INACCURATE, message)
+    decided = decisive_method_clause(methods(results)[0], unsure_status) if len(methods(results)) == 1 else ""
     return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}{decided}). "
 
 

@@ -82,7 +82,7 @@ class Equivalent:
 
 def poorly_represented(what: str, bound: float) -> Status:
     """Status inaccurate because of `what`, with the error bound if below 1."""
-    most = f", by {100.0 * bound:.2g} % at most" if bound < 1.0 else ""
+    most = f", but not {100.0 * bound:.2g} %" if bound < 1.0 else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 

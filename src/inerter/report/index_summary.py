@@ -96,7 +96,8 @@ def best_layout(results: xr.Dataset, index: str) -> str | None:
 
 def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    row = one_method(results).sel(index=index).squeeze()
+    row = one_method(results).sel(index=index)
+    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name != "layout"])
     values = np.atleast_1d(row["value"].values).tolist()
     least = equally_least(values)
     if not least:

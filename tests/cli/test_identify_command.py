@@ -352,7 +352,7 @@ def test_what_is_wrong_in_a_configuration_is_said(
 
 
 SCALES = {
-    ("--force-scale", "one"): 'Got "one"; expected a value and its standard uncertainty, such as "1 +- 1 %".',
+    ("--force-scale", "one"): 'alone or with its standard uncertainty, such as "1" or "1 +- 1 %".',
     ("--displacement-scale", "1 +- 80 %"): "expected an uncertainty below half of the value.",
     ("--fixture-mass", "2 kg +- "): "--fixture-mass: ",
 }

@@ -5,8 +5,8 @@ import { Lost, Refusal } from "./api.js";
 import { questions, soughtOf } from "./questions.js";
 import { isSettled } from "./state/answers.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store, State } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 const AGAIN = 1000; // [ms] until a lost server is asked again
 
@@ -90,7 +90,7 @@ export function keepAsking(store, api, client, found = async () => {}) {
 }
 
 /** Whether the free values of the study that is open are being chosen: questions about its designs come then.
- * @param {import("./state/store.js").State} state */
+ * @param {State} state */
 const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
 
 /** Asks what a button of a panel asks, with parameters of its form; the answer stands in the state. @param {Store} store @param {Api} api @param {string} panel @param {any} parameters */

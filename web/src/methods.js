@@ -1,6 +1,6 @@
 // The methods that the server knows, told apart by what their rows say of them, never by a name.
 
-/** @typedef {import("./state/store.js").State} State */
+/** @import { State } from "./state/store.js" */
 /** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean, averages: boolean}} Method */
 
 /** @param {Pick<State, "about">} state @returns {Method[]} */

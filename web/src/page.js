@@ -16,8 +16,8 @@ import { html, useEffect, useState } from "./parts/html.js";
 import { open } from "./remembering.js";
 import { openStudy } from "./working.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 /** What is below the strut and its answers: a tab a row. */
 const TABS = [

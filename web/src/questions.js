@@ -6,12 +6,12 @@ import { shownOf, soughtIn } from "./state/answers.js";
 import { isRange, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
-/** @typedef {import("./state/store.js").State} State */
-/** @typedef {import("./state/document.js").Document} Document */
+/** @import { State, Action } from "./state/store.js" */
+/** @import { Document, Study } from "./state/document.js" */
 /** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
  * tells.
  * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) =>
- * import("./state/store.js").Action}} Row */
+ * Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
@@ -31,7 +31,7 @@ export function shownDesigns(document) {
 }
 
 /** What can stand in the comparison: the layouts of the study, and the designs that were kept.
- * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout:
+ * @typedef {{key: string, name: string, kept: boolean, study: Study, design: {layout:
  * string, values: {[element: string]: string}, name: string}}} Choice */
 
 /** @param {Document} document @returns {Choice[]} */
@@ -209,7 +209,7 @@ function unitsOf(state, document) {
   const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
   if (asked.length === 0) return [];
   const items = asked.map(({ text, unit }) => ({ text, unit }));
-  /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
+  /** @param {{items: any[]}} value @returns {Action} */
   const learnt = (value) => ({
     type: "measured",
     quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])),

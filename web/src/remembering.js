@@ -4,11 +4,10 @@ import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
 import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./state/document.js").Document} Document */
-/** @typedef {import("./state/store.js").View} View */
+/** @import { Store, View } from "./state/store.js" */
+/** @import { Document } from "./state/document.js" */
+/** @import { Api } from "./api.js" */
 /** @typedef {{document: Document, view: Partial<View>}} Shared */
-/** @typedef {import("./api.js").Api} Api */
 
 const KEPT = "inerter.document";
 const LINK = "state";

@@ -7,8 +7,8 @@ import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { nextLayout, textOf } from "./state/document.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store, State } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const LOOK = 300; // [ms] between two looks at work that goes on
@@ -71,7 +71,7 @@ export function takeOptima(store, designs, gesture = null, of = null) {
 export const withSpeeds = (text, speeds) => [...(speeds?.doubts ?? []), text, ...(speeds?.others ?? [])].join(" ");
 
 /** Whether a layout has these values free.
- * @param {import("./state/store.js").State} state @param {string} layout @param {string[]} values */
+ * @param {State} state @param {string} layout @param {string[]} values */
 function isHere(state, layout, values) {
   const free = freeIn(state, layout);
   return values.every((name) => free.includes(name));
@@ -186,7 +186,7 @@ export const withheld = ({ parameters }) =>
   `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
 
 /** Parameters in SI units as texts that read back as the same numbers.
- * @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
+ * @param {State} state @param {{[name: string]: number}} parameters */
 const textsOf = (state, parameters) =>
   Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 

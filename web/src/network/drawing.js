@@ -1,8 +1,7 @@
 // Where everything in the drawing of a network is: the upper end at the top, parallel parts side by side between bars,
 // series parts in a column, as in the figures of reports. Lengths in points, y downwards.
 
-/** @typedef {import("./algebra.js").Tree} Tree */
-/** @typedef {import("./algebra.js").Path} Path */
+/** @import { Tree, Path } from "./algebra.js" */
 /** @typedef {[number, number]} Point */
 /** @typedef {{name: string, path: Path, x: number, y: number}} Placed  an element with the middle of its symbol */
 /** @typedef {{path: Path, left: number, right: number, top: number, bottom: number}} Box  what a part covers */

@@ -13,10 +13,10 @@ import { AskedPanel } from "./asked.js";
 import { otherProblems } from "./values.js";
 import { optimise } from "../working.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
-/** @param {{store: Store, api: import("../api.js").Api}} props */
+/** @param {{store: Store, api: Api}} props */
 export function AnswersPanel({ store, api }) {
   const state = store.get();
   const shown = answerOf(state, "indices");
@@ -165,7 +165,7 @@ const LIMIT_WORDS = { true: "kept", false: "broken", null: "not known" };
 /** @type {{[kept: string]: string}} */
 const LIMIT_CLASSES = { true: "good", false: "bad", null: "quiet" };
 
-/** @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+/** @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
 function Optimise({ store, api, indices }) {
   const state = store.get();
   const { study, layout } = state.history.present;
@@ -197,7 +197,7 @@ function Optimise({ store, api, indices }) {
 }
 
 /** How much of an element the design bears before the baseline is as good.
- * @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+ * @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
 function Budget({ store, api, indices }) {
   const state = store.get();
   const document = state.history.present;

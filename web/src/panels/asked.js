@@ -6,8 +6,7 @@ import { answerOf } from "../questions.js";
 import { entryAt } from "../state/document.js";
 import { Entry } from "./values.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
+/** @import { Store, State } from "../state/store.js" */
 /** @typedef {{path: string[], sense: string, value: string | number}} Limit  of what, as the keys of its table say
  * it */
 

@@ -8,15 +8,18 @@ import { unchosenIn } from "../library.js";
 import { answerOf, choicesOf, comparedOf } from "../questions.js";
 import { Measured, membersOf, percent } from "./answers.js";
 
+/** @import { Store, View, State } from "../state/store.js" */
+/** @import { Choice } from "../questions.js" */
+
 const [FEWEST, MOST] = [2, 4];
 
-/** @param {{store: import("../state/store.js").Store}} props */
+/** @param {{store: Store}} props */
 export function ComparePanel({ store }) {
   const state = store.get();
   const choices = choicesOf(state.history.present);
   const compared = comparedOf(state);
   const keys = compared.map(({ key }) => key);
-  /** @param {Partial<import("../state/store.js").View>} view */
+  /** @param {Partial<View>} view */
   const look = (view) => store.dispatch({ type: "viewed", view });
   /** @param {string} key */
   const toggle = (key) => look({ compared: keys.includes(key) ? keys.filter((each) => each !== key) : [...keys, key] });
@@ -42,11 +45,11 @@ export function ComparePanel({ store }) {
   </div>`;
 }
 
-/** @param {import("../questions.js").Choice[]} choices @param {string} key */
+/** @param {Choice[]} choices @param {string} key */
 const order = (choices, key) => choices.findIndex((choice) => choice.key === key);
 
-/** @param {{state: import("../state/store.js").State, answer: import("../state/answers.js").Shown,
- * compared: import("../questions.js").Choice[]}} props */
+/** @param {{state: State, answer: import("../state/answers.js").Shown,
+ * compared: Choice[]}} props */
 function Table({ state, answer, compared }) {
   const { value, sentence } = answer;
   // What is free in a design of another study, the answer alone tells.
@@ -107,7 +110,7 @@ function Difference({ result: { improvement_percent: better, improvement_error_p
 }
 
 /** Keeping the design that is edited under a name, and taking kept ones back.
- * @param {{store: import("../state/store.js").Store}} props */
+ * @param {{store: Store}} props */
 function Keep({ store }) {
   const document = store.get().history.present;
   const [name, setName] = useState("");

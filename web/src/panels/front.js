@@ -7,9 +7,11 @@ import { takeOptima } from "../working.js";
 import { indicesOf } from "./answers.js";
 import { Files } from "./files.js";
 
+/** @import { State, Store, Job } from "../state/store.js" */
+
 const [WIDTH, HEIGHT, EDGE] = [640, 300, 56];
 
-/** @param {{state: import("../state/store.js").State}} props */
+/** @param {{state: State}} props */
 export function FrontForm({ state }) {
   const indices = indicesOf(state);
   if (indices.length < 2) return html`<span class="quiet">The study has only one index.</span>`;
@@ -18,10 +20,10 @@ export function FrontForm({ state }) {
   return html`${choice("first", 0)} against ${choice("second", 1)} <label>points <input name="points" type="number" min="2" max="200" defaultValue="15" /></label>`;
 }
 
-/** @param {import("../state/store.js").State} _ @param {FormData} form */
+/** @param {State} _ @param {FormData} form */
 export const frontBody = (_, form) => ({ indices: [form.get("first"), form.get("second")], points: Number(form.get("points")) });
 
-/** @param {{store: import("../state/store.js").Store, api: import("../api.js").Api, job: import("../state/store.js").Job}} props */
+/** @param {{store: Store, api: import("../api.js").Api, job: Job}} props */
 export function FrontResult({ store, api, job }) {
   const { indices, fronts } = job.result;
   const [first, second] = indices.map((/** @type {any} */ { index }) => index);

@@ -6,8 +6,8 @@ import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
 import { begin, openStudy } from "../working.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 /** @param {{store: Store, api: Api}} props */
 export function Menu({ store, api }) {

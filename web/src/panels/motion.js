@@ -4,7 +4,7 @@ import { drawing } from "../network/drawing.js";
 import { kindOf, numbersOf } from "../library.js";
 import { html, useEffect, useRef, useState } from "../parts/html.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
+/** @import { Store } from "../state/store.js" */
 /** @typedef {{time: number[], coordinates: {[name: string]: number[]}, roads: {[name: string]: number[]}}} Motions */
 /** @typedef {{[name: string]: number}} Pose  of coordinates and roads, at one time */
 

@@ -19,12 +19,10 @@ import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../api.js").Api} Api */
-/** @typedef {import("../network/algebra.js").Tree} Tree */
-/** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {import("../network/algebra.js").Joint} Joint */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
+/** @import { Tree, Path, Joint } from "../network/algebra.js" */
+/** @import { Placed, Box } from "../network/drawing.js" */
 
 const MARGIN = 14;
 const TERMINAL = 1.6;
@@ -339,7 +337,7 @@ function Schematic({ editing, tree, path, stale }) {
   </div>`;
 }
 
-/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, entrance: boolean, store:
+/** @param {{one: Placed, state: State, chosen: boolean, entrance: boolean, store:
  * Store, drag: (event: PointerEvent, path: Path) => void}} props */
 function Symbol({ one, state, chosen, entrance, store, drag }) {
   const kind = kindOf(state, one.name);
@@ -427,7 +425,7 @@ function targetAt(x, y) {
   return { path, kind, before: kind === "series" ? dy < 0 : dx < 0 };
 }
 
-/** A line where a part would come to lie. @param {import("../network/drawing.js").Box} box
+/** A line where a part would come to lie. @param {Box} box
  * @param {{kind: Joint, before: boolean}} over */
 function landing(box, { kind, before }) {
   const y = before ? box.top : box.bottom;

@@ -9,8 +9,8 @@ import { Files } from "./files.js";
 import { begin, stop, takeFitted, withheld } from "../working.js";
 import { Progress } from "./work.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store, Job } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 /** @param {{store: Store, api: Api}} props */
 export function RigPanel({ store, api }) {
@@ -83,7 +83,7 @@ async function takeIn(store, api, fit) {
   store.dispatch({ type: "said", about: "device", text });
 }
 
-/** @param {{store: Store, api: Api, job: import("../state/store.js").Job}} props */
+/** @param {{store: Store, api: Api, job: Job}} props */
 function Fit({ store, api, job }) {
   const running = job.state === "waiting" || job.state === "running";
   const { result } = job;

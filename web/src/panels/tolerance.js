@@ -10,9 +10,8 @@ import { download } from "../remembering.js";
 import { shown, withUnit } from "../state/scale.js";
 import { indicesOf, percent } from "./answers.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 const USUAL = 10; // [%] that a value lies above or below its own at the most
 

@@ -8,10 +8,10 @@ import { answerOf, unitKey } from "../questions.js";
 import { entryAt, isRange } from "../state/document.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../state/document.js").Change} Change */
-/** @typedef {import("../library.js").NumberRow} NumberRow */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Change } from "../state/document.js" */
+/** @import { NumberRow } from "../library.js" */
+/** @import { Problem } from "../api.js" */
 
 const DECADE = 10;
 
@@ -238,7 +238,7 @@ export function Entry({ id, label, text, wrong = false, done }) {
 }
 
 /** The problems of the study that no field of the page tells. @param {State} state
- * @returns {import("../api.js").Problem[]} */
+ * @returns {Problem[]} */
 export function otherProblems(state) {
   const fields = numbersOf(state).map(({ path }) => path);
   return (answerOf(state, "check").value?.problems
@@ -247,7 +247,7 @@ export function otherProblems(state) {
 }
 
 /** The problems of the study at a place, or below it. @param {State} state @param {string[]} place
- * @returns {import("../api.js").Problem[]} */
+ * @returns {Problem[]} */
 export function problemsAt(state, place) {
   const problems = answerOf(state, "check").value?.problems ?? [];
   return problems.filter((/** @type {any} */ problem) => place.every((key, level) => problem.place[level] === key));

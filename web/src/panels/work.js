@@ -11,10 +11,8 @@ import { Doubts, isOk } from "../parts/doubts.js";
 import { answerOf } from "../questions.js";
 import { begin, membersOf, stop, takeOptima } from "../working.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../state/store.js").Job} Job */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store, State, Job } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 /** A kind of long work: what it needs beside the study, its form, and its result.
  * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object, Form?: any, Result?: any}} Kind */

@@ -6,13 +6,11 @@ import { after, empty, isChange } from "./document.js";
 import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
-/** @typedef {import("./document.js").Document} Document */
-/** @typedef {import("./document.js").Change} Change */
+/** @import { Document, Change, Study } from "./document.js" */
+/** @import { Path, Tree } from "../network/algebra.js" */
+/** @import { Parts } from "../library.js" */
+/** @import { Answers } from "./answers.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
-/** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {import("../network/algebra.js").Tree} Tree */
-/** @typedef {import("../library.js").Parts} Parts */
-/** @typedef {import("./answers.js").Answers} Answers */
 /** What the page has to say: `about` tells which message a newer one replaces.
  * @typedef {{about: string, text: string}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
@@ -27,7 +25,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
  * known, by their texts.
  * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
- * choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
+ * choosing: Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
  * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View,
  * about: any, connection: Connection, messages: Message[]}} State */
 
@@ -38,8 +36,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "refused", panel: string, question: string, sentence: string}
  *  | {type: "forgotten"}
  *  | {type: "sought", panel: string, parameters: any}
- *  | {type: "choosing", study: import("./document.js").Study}
- *  | {type: "chosen", study: import("./document.js").Study}
+ *  | {type: "choosing", study: Study}
+ *  | {type: "chosen", study: Study}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
  *  | {type: "parted", parts: Parts}
  *  | {type: "planted", text: string, tree: Tree}

@@ -2,7 +2,7 @@
 // nothing else changes anything.
 
 import { answered, asked, turned } from "./answers.js";
-import { after, empty, isChange } from "./document.js";
+import { after, empty, isChange, without } from "./document.js";
 import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
@@ -51,37 +51,19 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "said", text: string, about?: string}
  *  | {type: "closed", about: string}} Action */
 
-/** @typedef {{get: () => State, dispatch: (action: Action) => void, change: (change: Change, gesture?: string |
- * null) => void, subscribe: (told: () => void) => () => void}} Store */
+/** `change` changes the document, `look` what of it is shown; `say` gives a message.
+ * @typedef {{get: () => State, dispatch: (action: Action) => void, subscribe: (told: () => void) => () => void,
+ * change: (change: Change, gesture?: string | null) => void, look: (view: Partial<View>) => void,
+ * say: (text: string, about?: string) => void}} Store */
 
 /** @returns {State} */
 export const initial = () => ({
-  history: beginning(empty()),
-  answers: {},
-  sought: {},
-  choosing: null,
-  work: {},
-  quantities: {},
-  parts: null,
-  trees: {},
-  records: [],
+  history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
+  parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [],
   view: {
-    path: [],
-    tab: "response",
-    theme: "auto",
-    method: "",
-    index: "",
-    speed: 1,
-    playing: false,
-    compared: [],
-    against: "",
-    seconds: 10,
-    seed: 0,
-    across: false,
+    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false,
+    compared: [], against: "", seconds: 10, seed: 0, across: false,
   },
-  about: null,
-  connection: "connecting",
-  messages: [],
 });
 
 const MOST = 5; // messages that stand below each other
@@ -114,31 +96,24 @@ const STEPS = {
   parted: (state, { parts }) => ({ ...state, parts, trees: { ...treesIn(parts), ...state.trees } }),
   planted: (state, { text, tree }) => ({ ...state, trees: { ...state.trees, [text]: tree } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),
-  dropped: (state, { id }) => ({
-    ...state,
-    work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)),
-  }),
-  recorded: (state, { record }) => ({
-    ...state,
-    records: [...state.records.filter(({ id }) => id !== record.id), record],
-  }),
+  dropped: (state, { id }) => ({ ...state, work: without(state.work, id) }),
+  recorded: (state, { record }) =>
+    ({ ...state, records: [...state.records.filter(({ id }) => id !== record.id), record] }),
   unrecorded: (state, { id }) => ({ ...state, records: state.records.filter((each) => each.id !== id) }),
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text }) => ({
-    ...state,
-    messages: [...without(state.messages, about), { about, text }].slice(-MOST),
-  }),
-  closed: (state, { about }) => ({ ...state, messages: without(state.messages, about) }),
+  said: (state, { text, about = text }) =>
+    ({ ...state, messages: [...others(state, about), { about, text }].slice(-MOST) }),
+  closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
 };
 
 /** The trees of networks, by their texts. @param {Parts} parts @returns {{[text: string]: Tree}} */
 const treesIn = ({ networks }) =>
   Object.fromEntries(networks.flatMap(({ text, tree }) => (tree ? [[text, canonical(tree)]] : [])));
 
-/** @param {Message[]} messages @param {string} about */
-const without = (messages, about) => messages.filter((each) => each.about !== about);
+/** The messages about other things. @param {State} state @param {string} about */
+const others = ({ messages }, about) => messages.filter((each) => each.about !== about);
 
 /** @param {State} state @param {string} panel @param {Answers} those @returns {State} */
 const answers = (state, panel, those) => ({ ...state, answers: { ...state.answers, [panel]: those } });
@@ -163,6 +138,8 @@ export function createStore(state = initial()) {
     change: (change, gesture = null) => {
       if (isChange(change)) dispatch({ type: "changed", change, gesture });
     },
+    look: (view) => dispatch({ type: "viewed", view }),
+    say: (text, about) => dispatch({ type: "said", text, about }),
     subscribe: (told) => {
       listeners.add(told);
       return () => void listeners.delete(told);

@@ -13,8 +13,8 @@ import { Files } from "./files.js";
 /** @import { Api } from "../api.js" */
 /** @typedef {{status: string, message?: string}} Outcome */
 /** @typedef {Outcome & {values: {[index: string]: any}, texts: {[name: string]: string}}} Point */
-/** `knee`: the number of the point in its bend. @typedef {Outcome & {layout: string, knee: number, points: Point[]}}
- * Front */
+/** `knee`: the place of the knee among the points.
+ * @typedef {Outcome & {layout: string, knee: number, points: Point[]}} Front */
 
 const [WIDTH, HEIGHT, EDGE] = [640, 300, 56];
 

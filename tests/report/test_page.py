@@ -183,13 +183,20 @@ def test_figures_that_were_not_drawn_are_left_out(study, tmp_path):
     assert report(designs(), study, tmp_path).count("<figure>") == 3
 
 
-def test_the_same_results_give_the_same_page(study, tmp_path):
-    draw_study(designs(), tmp_path / "figures")
-    first = write_report(designs(), study, tmp_path / "figures", tmp_path / "1.html")
-    second = write_report(designs(), study, tmp_path / "figures", tmp_path / "2.html")
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory):
+    """The folder of the figures of the designs."""
+    folder = tmp_path_factory.mktemp("drawn")
+    draw_study(designs(), folder)
+    return folder
+
+
+def test_the_same_results_give_the_same_page(study, figures, tmp_path):
+    first = write_report(designs(), study, figures, tmp_path / "1.html")
+    second = write_report(designs(), study, figures, tmp_path / "2.html")
     assert first.read_bytes() == second.read_bytes()
-    assert str(tmp_path) not in first.read_text(encoding="utf-8")
-    assert str(EXAMPLES) not in first.read_text(encoding="utf-8")
+    for folder in (tmp_path, figures, EXAMPLES):
+        assert str(folder) not in first.read_text(encoding="utf-8")
 
 
 def test_values_that_are_not_ok_stand_with_their_sentence(study, sweep_study, tmp_path):
@@ -229,9 +236,8 @@ def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
     assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")
 
 
-def test_a_page_has_contents_that_lead_to_its_parts(study, tmp_path):
-    draw_study(designs(), tmp_path)
-    source = report(designs(), study, tmp_path)
+def test_a_page_has_contents_that_lead_to_its_parts(study, figures):
+    source = report(designs(), study, figures)
     contents = re.search(r'<nav class="contents".*?</nav>', source)
     assert contents
     links = re.findall(r'<a href="#(part-\d+)">(.*?)</a>', contents[0])

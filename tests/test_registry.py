@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from study_text import study_text
+from study_text import assert_survives, load_text, study_text
 
 import inerter as it
 from inerter import registry
@@ -215,12 +215,9 @@ def test_every_setting_of_an_index_is_a_key_of_study_files(tmp_path: Path) -> No
     asked = [symbol for symbol in it.INDICES if not needed_settings(symbol)]
     symbols = ", ".join(f'"{symbol}"' for symbol in asked)
     lines = "\n".join(f'{key} = "{f.example}"' for key, f in index_settings().items())
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = [{symbols}]\n{lines}\nevaluate = ["expected-value"]'), encoding="utf-8")
-    study = load_study(path)
+    study = load_text(tmp_path, study_text(f'indices = [{symbols}]\n{lines}\nevaluate = ["expected-value"]'))
     assert study.settings == {key: parse_quantity(f.example, f.unit) for key, f in index_settings().items()}
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    assert load_study(tmp_path / "again.toml") == study
+    assert_survives(study, tmp_path)
     for symbol in asked:
         kind, index = it.INDICES[symbol], study.index(symbol)
         assert type(index) is kind
@@ -311,8 +308,7 @@ def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added
     study, force, low_pass = load_study(path), it.WhiteForce("sprung_force", 3.0), it.Filter([2.0], [1.0, 2.0])
     assert study.index("noise") == Heard({"sprung_acceleration": 0.5}, "unsprung_velocity", force, low_pass)
     assert study.at([]).index("noise") in {study.index("noise")}
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    assert load_study(tmp_path / "again.toml") == study
+    assert_survives(study, tmp_path)
     parts = ({"sprung_acceleration": 0.5}, {"unsprung_velocity": 1.0})
     alone = [it.RandomResponse(part, force, low_pass) for part in parts]
     car = study.design("S1")
@@ -410,9 +406,7 @@ def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
 
 
 def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = ["J1"]\nseed = 3\nevaluate = {evaluate}\n{methods}'), encoding="utf-8")
-    return load_study(path)
+    return load_text(tmp_path, study_text(f'indices = ["J1"]\nseed = 3\nevaluate = {evaluate}\n{methods}'))
 
 
 @pytest.mark.usefixtures("of_its_own")

@@ -19,7 +19,7 @@ from combinations import CARS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
-from study_text import study_text
+from study_text import load_text, study_text
 
 import inerter as it
 from inerter.app import answers
@@ -106,9 +106,7 @@ def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
         elements='k = "25 kN/m"\nc = { from = "300 N s/m", to = "10 kN s/m" }\nb = "60 kg"',
         layouts="\n".join(f'{name} = "k | c{" - b | c" if name == "S3" else ""}"' for name in layouts),
     ).replace("quarter-car", "half-car")
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    study = it.load_study(path)
+    study = load_text(tmp_path, text)
     results = dataset(study, {case: run_case(study, case) for case in cases(study)})
     expected = asdict(speed_sentences(results))
     (sentence,) = expected["doubts"] + expected["others"]

@@ -13,14 +13,13 @@ import pytest
 import xarray as xr
 from campaigns import sampled
 from combinations import CARS
-from study_text import study_text
+from study_text import load_text, study_text
 
 import inerter as it
 from inerter.errors import DesignError, Status, StatusKind
 from inerter.files.common.entries import element_name
 from inerter.files.common.problem import EntryError
 from inerter.files.study.cases import Case, cases, run_case
-from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.methods.method import Estimate
@@ -59,14 +58,8 @@ S4 = "k | c | f"
 """
 
 
-def loaded(tmp_path, text):
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    return load_study(path)
-
-
 def found(tmp_path, text):
-    study = loaded(tmp_path, text)
+    study = load_text(tmp_path, text)
     results = dataset(study, {case: run_case(study, case) for case in cases(study)})
     return study, results
 
@@ -199,7 +192,7 @@ def test_what_cannot_be_computed_at_another_speed_is_said(why, factor, tmp_path,
         return result
 
     text = half_car(1)
-    own = loaded(tmp_path, text)
+    own = load_text(tmp_path, text)
     monkeypatch.setattr("inerter.files.study.speeds.evaluate", fails)
     study, results = found(tmp_path, text)
     sentence = conclusion_sentences(results, study)[0]

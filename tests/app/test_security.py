@@ -7,7 +7,7 @@ from itertools import product
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, LIMIT, PORT, RECORD_LIMIT, TOKEN
+from app.conftest import DOCUMENT, LIMIT, PORT, RECORD_LIMIT, TOKEN, ask
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -215,9 +215,9 @@ def test_markup_in_names_is_text(client: TestClient, markup: str) -> None:
     assert table.status_code == 200
     assert not table.text.splitlines()[1].lstrip('"').startswith(("=", "+", "-", "@"))
     spoilt = {**DOCUMENT, "layouts": {**DOCUMENT["layouts"], markup: "k | c"}}
-    assert client.post("/api/study/check", json={"study": spoilt}).json()["problems"]
+    assert ask(client, "study/check", study=spoilt)["problems"]
     spoilt = {**DOCUMENT, "elements": {**DOCUMENT["elements"], markup: "1 kg"}}
-    assert client.post("/api/study/check", json={"study": spoilt}).json()["problems"]
+    assert ask(client, "study/check", study=spoilt)["problems"]
 
 
 @pytest.mark.parametrize("path", ["/", "/api/about", "/api/nothing", "/nothing"])

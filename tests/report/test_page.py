@@ -4,12 +4,12 @@ import math
 import re
 from collections import Counter
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
+from report_pages import Page
 from synthetic import LONG, designs, judged, sweep, with_value
 
 import inerter as it
@@ -21,7 +21,6 @@ from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-VOID = {"meta", "wbr", "br"}
 SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -33,33 +32,6 @@ def study():
 @pytest.fixture(scope="session")
 def sweep_study():
     return load_study(EXAMPLES / "stiffness-sweep.toml")
-
-
-class Page(HTMLParser):
-    """The text of a page, its attributes, and whether every tag is closed in its turn."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.open, self.words, self.attributes, self.tags = [], [], [], []
-        self.feed(page)
-        assert self.open == []
-        self.text = re.sub(r"\s+", " ", "".join(self.words))
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append(tag)
-        self.attributes += attrs
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attrs):
-        self.attributes += attrs
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "style" not in self.open:
-            self.words.append(data)
 
 
 def test_the_answer_is_on_the_page(study, tmp_path):

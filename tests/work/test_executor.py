@@ -83,8 +83,7 @@ def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_
 
 
 def test_what_a_study_keeps_is_told_when_its_executor_has_ended(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    study, threads = it.load_study(tmp_path / "study.toml"), ThreadPoolExecutor(1)
+    study, threads = load_text(tmp_path, STUDY), ThreadPoolExecutor(1)
     threads.shutdown()
     with pytest.raises(WorkError, match=r"executor has ended, .* are kept; continue with --resume\.$"):
         it.run_study(study, tmp_path / "out", executor=threads)
@@ -99,9 +98,8 @@ def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:
 
 
 def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     with pytest.raises(it.InerterError, match="not empty"):
-        it.run_study(it.load_study(tmp_path / "study.toml"), tmp_path)
+        it.run_study(load_text(tmp_path, STUDY), tmp_path)
 
 
 def test_an_executor_that_is_given_does_all_and_goes_on() -> None:

@@ -201,10 +201,8 @@ def test_a_force_has_one_unit_and_one_that_a_signal_has(forces: dict[str, str], 
 def test_a_vehicle_has_no_quantity_named_as_the_key_that_names_it(added: Added, tmp_path: Path) -> None:
     given = ("model", float, field(metadata=it.quantity("kg", "A mass.", "1 kg")))
     added(it.VEHICLES, like_a_car("Named", given))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
     with pytest.raises(RegistryError, match=r"sled has a quantity 'model', a key that \[vehicle\] has already"):
-        load_study(path)
+        load_text(tmp_path, study_text('indices = ["J1"]'))
 
 
 # --- indices ---
@@ -268,10 +266,8 @@ def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
     setting: str, line: str, words: str, added: Added, tmp_path: Path
 ) -> None:
     added(it.INDICES, index_with(setting))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = ["J1"]\n{line}'), encoding="utf-8")
     with pytest.raises(RegistryError, match=words):
-        load_study(path)
+        load_text(tmp_path, study_text(f'indices = ["J1"]\n{line}'))
 
 
 @dataclass(frozen=True)
@@ -336,10 +332,8 @@ def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
     words_of_it = dict.fromkeys(("title", "unit", "response", "question"), "x")
     given: list[Any] = [("road", it.Road), ("by", Any, field(default=None, metadata=metadata))]
     added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
     with pytest.raises(RegistryError, match=words):
-        load_study(path)
+        load_text(tmp_path, study_text('indices = ["J1"]'))
 
 
 # --- methods ---
@@ -348,10 +342,8 @@ def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
 @pytest.mark.parametrize("name", it.METHODS)
 def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None:
     roads = "realisations = 3\n" if averages(name) else ""
-    path = tmp_path / "study.toml"
     settings = f'indices = ["J1"]\nevaluate = ["{name}"]\nseed = 7\nconventions = "paper2008"\n{roads}'
-    path.write_text(study_text(settings), encoding="utf-8")
-    method: Any = load_study(path).method(name, threads=2)
+    method: Any = load_text(tmp_path, study_text(settings)).method(name, threads=2)
     given = {"conventions": "paper2008", "seed": 7, "realisations": 3, "jobs": 2}
     taken = {key: value for key, value in given.items() if hasattr(method, key)}
     assert {key: getattr(method, key) for key in taken} == taken

@@ -140,13 +140,18 @@ def test_noise_in_the_displacement_does_not_bias_the_mean_over_periods():
     assert found.coherence.max() > 0.9
 
 
+def sine(frequency, line):
+    """A record of the device under the real part of a rotating line."""
+    time = np.arange(line.size) / RATE
+    return it.Record(time, line.real, (line * response_of(DEVICE, np.array([OMEGA * frequency]))).real)
+
+
 @settings(max_examples=30)
 @given(st.floats(0.31, 20.0), st.floats(1e-5, 1e-2), st.floats(-np.pi, np.pi), st.integers(0, 2**32 - 1))
 def test_a_sine_of_any_frequency_is_one_line(frequency, amplitude, phase, seed):
     time = np.arange(4000) / RATE
     line = amplitude * np.exp(1j * (OMEGA * frequency * time + phase))
-    record = it.Record(time, line.real, (line * response_of(DEVICE, np.array([OMEGA * frequency]))).real)
-    found = it.frequency_response(noisy(record, seed, 1e-9 * amplitude))
+    found = it.frequency_response(noisy(sine(frequency, line), seed, 1e-9 * amplitude))
     assert found.frequency == pytest.approx([frequency], rel=1e-5)
     assert found.value == pytest.approx(response_of(DEVICE, found.omega), rel=1e-4)
     assert "Sinusoidal excitation" in found.notes[-1]
@@ -178,10 +183,7 @@ def test_a_sine_tells_its_harmonics():
 def test_sines_of_several_frequencies_tell_one_response():
     frequencies = (1.0, 2.5, 7.0)
     time = np.arange(3000) / RATE
-    parts = []
-    for frequency in frequencies:
-        line = 1e-3 * np.exp(1j * OMEGA * frequency * time)
-        parts.append(it.Record(time, line.real, (line * response_of(DEVICE, np.array([OMEGA * frequency]))).real))
+    parts = [sine(frequency, 1e-3 * np.exp(1j * OMEGA * frequency * time)) for frequency in frequencies]
     found = it.frequency_response(parts[::-1])
     assert found.frequency == pytest.approx(frequencies, rel=1e-9)
     assert found.value == pytest.approx(response_of(DEVICE, found.omega), rel=1e-7)

@@ -87,7 +87,7 @@ def stiff_designs(count):
 
 def test_a_stiff_design_is_right_or_says_that_it_is_not():
     silent = 0
-    for c, b in stiff_designs(100):
+    for c, b in stiff_designs(150):
         car = paper_quarter_car(LAYOUTS["S3"](120e3, c, b))
         for index, norm in zip((J1, J3), quarter_car_norms(car), strict=True):
             estimate = evaluate(car, index, Norm())

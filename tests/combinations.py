@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from study_text import load_text
 
 import inerter as it
-from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
 
 Tables = dict[str, Any]
@@ -198,9 +198,7 @@ def _toml(value: Any) -> str:
 
 def opened(tables: Tables, folder: Path) -> Study:
     """The study of that file."""
-    path = folder / "study.toml"
-    path.write_text(written(tables), encoding="utf-8")
-    return load_study(path)
+    return load_text(folder, written(tables))
 
 
 class Plain:

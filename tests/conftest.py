@@ -43,6 +43,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands draw no figures, which takes longer than the work of a small study."""
+    for name in ("commands.draw_study", "commands.draw_layouts", "simulation.draw_simulation"):
+        monkeypatch.setattr(f"inerter.cli.{name}", lambda *given, **more: [])
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
     """What is loaded here stays to the end: to look through it for what can be freed takes long."""

@@ -1,6 +1,16 @@
-"""The text of a study file: a quarter car and what a test asks of it, as lines of its sections."""
+"""The text of a study file: a quarter car and what a test asks of it, as lines of its sections; and how it is read."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+
+from inerter.errors import StudyError
+from inerter.files.study.loading import load_study
+from inerter.files.study.quantity_texts import write_resolved
+from inerter.files.study.study import Study
 
 VEHICLE = 'sprung_mass = "250 kg"\nunsprung_mass = "35 kg"\ntyre_stiffness = "150 kN/m"'
 PAPER_CAR = 'sprung_mass = "181.75 kg"\nunsprung_mass = "25 kg"\ntyre_stiffness = "120 kN/m"'  # of Wang and Su (2008)
@@ -26,3 +36,29 @@ roughness = "5e-7 m^3/cycle"
 [study]
 {settings}
 """
+
+
+def load_text(folder: Path, text: str, name: str = "study.toml") -> Study:
+    """The study of a file with this text in `folder`."""
+    (folder / name).write_text(text, encoding="utf-8")
+    return load_study(folder / name)
+
+
+def assert_survives(study: Study, folder: Path) -> Study:
+    """The study as it is read from a file that it was written to: the same."""
+    again = load_text(folder, write_resolved(study), "copy.toml")
+    assert again == study
+    assert again.to_tables() == study.to_tables()
+    assert (list(again.layouts), list(again.elements)) == (list(study.layouts), list(study.elements))
+    return again
+
+
+def assert_refused(load: Callable[[], object], place: str, words: Sequence[str], *, alone: bool = True) -> str:
+    """The line about a place of study.toml, which has these words, and is the only one if it is `alone`."""
+    with pytest.raises(StudyError) as caught:
+        load()
+    lines = str(caught.value).splitlines()
+    (line,) = lines if alone else [line for line in lines if line.startswith(f"study.toml: {place}: ")]
+    assert line.startswith(f"study.toml: {place}: "), line
+    assert [word for word in words if word not in line] == [], line
+    return line

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from study_text import study_text
+from study_text import assert_survives, load_text, study_text
 
 import inerter as it
 from inerter import registry
@@ -201,10 +201,8 @@ def test_a_force_has_one_unit_and_one_that_a_signal_has(forces: dict[str, str], 
 def test_a_vehicle_has_no_quantity_named_as_the_key_that_names_it(added: Added, tmp_path: Path) -> None:
     given = ("model", float, field(metadata=it.quantity("kg", "A mass.", "1 kg")))
     added(it.VEHICLES, like_a_car("Named", given))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
     with pytest.raises(RegistryError, match=r"sled has a quantity 'model', a key that \[vehicle\] has already"):
-        load_study(path)
+        load_text(tmp_path, study_text('indices = ["J1"]'))
 
 
 # --- indices ---
@@ -215,12 +213,9 @@ def test_every_setting_of_an_index_is_a_key_of_study_files(tmp_path: Path) -> No
     asked = [symbol for symbol in it.INDICES if not needed_settings(symbol)]
     symbols = ", ".join(f'"{symbol}"' for symbol in asked)
     lines = "\n".join(f'{key} = "{f.example}"' for key, f in index_settings().items())
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = [{symbols}]\n{lines}\nevaluate = ["expected-value"]'), encoding="utf-8")
-    study = load_study(path)
+    study = load_text(tmp_path, study_text(f'indices = [{symbols}]\n{lines}\nevaluate = ["expected-value"]'))
     assert study.settings == {key: parse_quantity(f.example, f.unit) for key, f in index_settings().items()}
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    assert load_study(tmp_path / "again.toml") == study
+    assert_survives(study, tmp_path)
     for symbol in asked:
         kind, index = it.INDICES[symbol], study.index(symbol)
         assert type(index) is kind
@@ -271,10 +266,8 @@ def test_a_setting_has_a_key_of_its_own_or_the_unit_of_its_namesake(
     setting: str, line: str, words: str, added: Added, tmp_path: Path
 ) -> None:
     added(it.INDICES, index_with(setting))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = ["J1"]\n{line}'), encoding="utf-8")
     with pytest.raises(RegistryError, match=words):
-        load_study(path)
+        load_text(tmp_path, study_text(f'indices = ["J1"]\n{line}'))
 
 
 @dataclass(frozen=True)
@@ -311,8 +304,7 @@ def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added
     study, force, low_pass = load_study(path), it.WhiteForce("sprung_force", 3.0), it.Filter([2.0], [1.0, 2.0])
     assert study.index("noise") == Heard({"sprung_acceleration": 0.5}, "unsprung_velocity", force, low_pass)
     assert study.at([]).index("noise") in {study.index("noise")}
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    assert load_study(tmp_path / "again.toml") == study
+    assert_survives(study, tmp_path)
     parts = ({"sprung_acceleration": 0.5}, {"unsprung_velocity": 1.0})
     alone = [it.RandomResponse(part, force, low_pass) for part in parts]
     car = study.design("S1")
@@ -340,10 +332,8 @@ def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
     words_of_it = dict.fromkeys(("title", "unit", "response", "question"), "x")
     given: list[Any] = [("road", it.Road), ("by", Any, field(default=None, metadata=metadata))]
     added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
-    path = tmp_path / "study.toml"
-    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
     with pytest.raises(RegistryError, match=words):
-        load_study(path)
+        load_text(tmp_path, study_text('indices = ["J1"]'))
 
 
 # --- methods ---
@@ -352,10 +342,8 @@ def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
 @pytest.mark.parametrize("name", it.METHODS)
 def test_a_study_gives_a_method_what_it_takes(name: str, tmp_path: Path) -> None:
     roads = "realisations = 3\n" if averages(name) else ""
-    path = tmp_path / "study.toml"
     settings = f'indices = ["J1"]\nevaluate = ["{name}"]\nseed = 7\nconventions = "paper2008"\n{roads}'
-    path.write_text(study_text(settings), encoding="utf-8")
-    method: Any = load_study(path).method(name, threads=2)
+    method: Any = load_text(tmp_path, study_text(settings)).method(name, threads=2)
     given = {"conventions": "paper2008", "seed": 7, "realisations": 3, "jobs": 2}
     taken = {key: value for key, value in given.items() if hasattr(method, key)}
     assert {key: getattr(method, key) for key in taken} == taken
@@ -410,9 +398,7 @@ def test_a_method_of_the_previous_version_is_added_with_a_warning() -> None:
 
 
 def loaded(tmp_path: Path, methods: str, evaluate: str = '["norm", "of-its-own"]') -> Study:
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = ["J1"]\nseed = 3\nevaluate = {evaluate}\n{methods}'), encoding="utf-8")
-    return load_study(path)
+    return load_text(tmp_path, study_text(f'indices = ["J1"]\nseed = 3\nevaluate = {evaluate}\n{methods}'))
 
 
 @pytest.mark.usefixtures("of_its_own")

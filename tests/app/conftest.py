@@ -53,6 +53,11 @@ def client(server: Server) -> Iterator[TestClient]:
         yield client
 
 
+def ask(client: TestClient, path: str, /, **body: Any) -> Any:
+    """The answer to a request."""
+    return client.post(f"/api/{path}", json=body).json()
+
+
 def changed(**tables: Any) -> dict[str, Any]:
     """The document with some keys of its tables changed."""
     return {**DOCUMENT, **{name: {**DOCUMENT[name], **table} for name, table in tables.items()}}

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, changed
+from app.conftest import DOCUMENT, EXAMPLES, ask, changed
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -73,11 +73,11 @@ def test_examples_are_studies(client: TestClient) -> None:
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_a_file_becomes_a_document_and_a_file_again(client: TestClient, path: Path) -> None:
-    first = client.post("/api/study/read", json={"text": path.read_text(encoding="utf-8")}).json()
-    text = client.post("/api/study/write", json={"study": first["study"]}).json()["text"]
-    again = client.post("/api/study/read", json={"text": text}).json()
+    first = ask(client, "study/read", text=path.read_text(encoding="utf-8"))
+    text = ask(client, "study/write", study=first["study"])["text"]
+    again = ask(client, "study/read", text=text)
     assert again == first
-    assert client.post("/api/study/read", json={"study": first["study"]}).json() == first
+    assert ask(client, "study/read", study=first["study"]) == first
 
 
 @pytest.mark.parametrize(
@@ -94,13 +94,13 @@ def test_a_file_becomes_a_document_and_a_file_again(client: TestClient, path: Pa
     ],
 )
 def test_a_problem_has_its_place(client: TestClient, tables: Any, place: list[str], words: str | None) -> None:
-    found = client.post("/api/study/read", json={"study": changed(**tables)}).json()["problems"]
+    found = ask(client, "study/read", study=changed(**tables))["problems"]
     if words is None:  # a spring that became a friction is no mistake of the file
         assert found == []
         return
     assert [problem["place"][: len(place)] for problem in found] == [place]
     assert words in found[0]["sentence"]
-    assert client.post("/api/study/check", json={"study": changed(**tables)}).json()["problems"] == found
+    assert ask(client, "study/check", study=changed(**tables))["problems"] == found
     refused = client.post("/api/panel/indices", json={"study": changed(**tables)})
     assert refused.status_code == 400
     assert refused.json()["problems"] == found
@@ -162,10 +162,10 @@ def test_parts_are_where_they_say(text: str) -> None:
     ],
 )
 def test_quantities(client: TestClient, asked: Any, expected: Any) -> None:
-    told = client.post("/api/quantity", json=asked).json()
+    told = ask(client, "quantity", **asked)
     assert told["value"] == pytest.approx(expected.pop("value", told["value"]), rel=1e-15)
     assert {key: told[key] for key in expected} == expected
-    assert client.post("/api/quantities", json={"items": [asked, {"text": "1 m/s/s/s"}]}).json()["items"][0] == told
+    assert ask(client, "quantities", items=[asked, {"text": "1 m/s/s/s"}])["items"][0] == told
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_quantities(client: TestClient, asked: Any, expected: Any) -> None:
     ],
 )
 def test_no_quantity_has_a_sentence(client: TestClient, asked: Any) -> None:
-    assert client.post("/api/quantity", json=asked).json()["sentence"].endswith(".")
+    assert ask(client, "quantity", **asked)["sentence"].endswith(".")
 
 
 BAD: list[Any] = [
@@ -285,16 +285,16 @@ def test_a_file_that_is_no_record_is_not_kept(client: TestClient, server: Any, n
 def test_several_designs_of_one_layout_have_names_of_their_own(client: TestClient) -> None:
     document = changed(layouts={"S1.2": "k | c | b"})
     designs = [{"layout": "S1", "values": {"c": c}} for c in (1e3, 2e3, 3e3)] + [{"layout": "S1.2"}]
-    told = client.post("/api/study/write", json={"study": document, "designs": designs}).json()["study"]
+    told = ask(client, "study/write", study=document, designs=designs)["study"]
     assert list(told["layouts"]) == ["S1", "S1.3", "S1.4", "S1.2"]
-    assert client.post("/api/study/check", json={"study": told}).json()["problems"] == []
+    assert ask(client, "study/check", study=told)["problems"] == []
 
 
 @pytest.mark.parametrize("name", ["limits", pytest.param("full-car", marks=pytest.mark.campaign)])
 def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> None:
     """What `places` offers a sweep takes, and it offers all that is fixed, in and beyond elements."""
     document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
-    told = client.post("/api/study/check", json={"study": document}).json()["places"]
+    told = ask(client, "study/check", study=document)["places"]
     assert [row["place"] for row in told if takes(document, **row)] == [row["place"] for row in told]
     offered = {row["place"] for row in told}
     assert {"road.speed", "vehicle.sprung_mass"} <= offered
@@ -317,7 +317,7 @@ def test_the_parts_of_a_document_are_those_of_its_study(client: TestClient, path
     if problems(document):
         return
     study = it.load_study(path)
-    told = client.post("/api/study/parts", json={"study": document}).json()
+    told = ask(client, "study/parts", study=document)
     known = places(study)
     for row in told["numbers"]:
         entry, number = entry_at(document, row["path"]), known[row["place"]]
@@ -378,7 +378,7 @@ def test_an_unfinished_document_has_parts(client: TestClient) -> None:
         layouts={"S9": "k | c - (", "S8": "k | zz"},
     )
     document["vehicle"] = {**document["vehicle"], "sprung_mass": "heavy"}
-    told = client.post("/api/study/parts", json={"study": document}).json()
+    told = ask(client, "study/parts", study=document)
     rows = {tuple(row["path"]): row for row in told["numbers"]}
     assert rows["elements", "k"]["value"] is None
     assert rows["elements", "c", "tied"]["value"] is None
@@ -415,10 +415,8 @@ def test_parts_of_a_spoilt_document(client: TestClient, data: st.DataObject) -> 
     assert told.status_code == 200
     for row in [*told.json()["numbers"], *told.json()["networks"]]:
         entry_at(document, row["path"])
-    renamed = client.post("/api/study/rename", json={"study": document, "names": {"k": "stiff"}}).json()["study"]
-    assert (
-        client.post("/api/study/rename", json={"study": renamed, "names": {"stiff": "k"}}).json()["study"] == document
-    )
+    renamed = ask(client, "study/rename", study=document, names={"k": "stiff"})["study"]
+    assert ask(client, "study/rename", study=renamed, names={"stiff": "k"})["study"] == document
 
 
 def test_elements_are_renamed_wherever_the_study_has_them(client: TestClient) -> None:
@@ -433,7 +431,7 @@ def test_elements_are_renamed_wherever_the_study_has_them(client: TestClient) ->
             "budgets": ["c", "k"],
         },
     }
-    told = client.post("/api/study/rename", json={"study": document, "names": {"k": "c", "c": "k"}}).json()["study"]
+    told = ask(client, "study/rename", study=document, names={"k": "c", "c": "k"})["study"]
     assert told == {
         "vehicle": {"model": "quarter-car", "seat": {"mass": "70 kg", "network": "c | cs"}},
         "elements": {"c": "1 kN/m", "cs": {"tied": "0.5 * k"}, "k": "1 N s/m"},

@@ -8,7 +8,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT
+from app.conftest import DOCUMENT, ask
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -135,7 +135,7 @@ def test_others_are_not_disturbed() -> None:
 def test_a_panel_tells_its_sequence(client: TestClient) -> None:
     for sequence in (3, 7):
         body = {"study": DOCUMENT, "client": "p", "sequence": sequence, "layouts": ["S1"]}
-        assert client.post("/api/panel/indices", json=body).json()["sequence"] == sequence
+        assert ask(client, "panel/indices", **body)["sequence"] == sequence
     late = client.post("/api/panel/indices", json={"study": DOCUMENT, "client": "p", "sequence": 5})
     assert late.status_code == 409
     assert late.json()["outdated"]

@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, changed
+from app.conftest import DOCUMENT, EXAMPLES, ask, changed
 from campaigns import sampled
 from combinations import CARS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
-from study_text import study_text
+from study_text import load_text, study_text
 
 import inerter as it
 from inerter.app import answers
@@ -56,7 +56,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 @pytest.mark.campaign
 def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None:
-    told = client.post("/api/work", json={"kind": "run", "study": DOCUMENT, "wait": 30}).json()
+    told = ask(client, "work", kind="run", study=DOCUMENT, wait=30)
     expected, result = ran
     assert told["state"] == "done"
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
@@ -69,9 +69,7 @@ def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None
 @pytest.mark.campaign
 def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 3}}
-    told = client.post(
-        "/api/work", json={"kind": "sweep", "study": DOCUMENT, "sweep": sweep, "indices": ["J1"], "wait": 30}
-    ).json()
+    told = ask(client, "work", kind="sweep", study=DOCUMENT, sweep=sweep, indices=["J1"], wait=30)
     expected, _ = run(changed(study={"sweep": sweep, "indices": ["J1"]}), tmp_path)
     assert {**told["result"], "title": ""} == {**expected, "title": ""}
 
@@ -80,10 +78,8 @@ def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
     """The panel, the work, and the texts of their values: all are the design that a run finds."""
     expected, _ = ran
     wanted = {(d["layout"], d["index"]): d for d in expected["designs"]}
-    panel = client.post("/api/panel/optimise", json={"study": DOCUMENT}).json()["designs"]
-    work = client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["result"][
-        "designs"
-    ]
+    panel = ask(client, "panel/optimise", study=DOCUMENT)["designs"]
+    work = ask(client, "work", kind="optimise", study=DOCUMENT, wait=30)["result"]["designs"]
     assert panel == work
     for found in panel:
         case = wanted[found["layout"], found["index"]]
@@ -91,7 +87,7 @@ def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
         assert found["parameters"] == case["parameters"]
         assert {n: float(t.split()[0]) for n, t in found["texts"].items()} == case["parameters"]
     values = {d["layout"]: d["texts"] for d in panel if d["index"] == "J1"}
-    answer = client.post("/api/panel/indices", json={"study": DOCUMENT, "values": values, "indices": ["J1"]}).json()
+    answer = ask(client, "panel/indices", study=DOCUMENT, values=values, indices=["J1"])
     for design in answer["designs"]:
         (result,), case = design["results"], wanted[design["layout"], "J1"]
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
@@ -108,17 +104,15 @@ def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
         elements='k = "25 kN/m"\nc = { from = "300 N s/m", to = "10 kN s/m" }\nb = "60 kg"',
         layouts="\n".join(f'{name} = "k | c{" - b | c" if name == "S3" else ""}"' for name in layouts),
     ).replace("quarter-car", "half-car")
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    study = it.load_study(path)
+    study = load_text(tmp_path, text)
     results = dataset(study, {case: run_case(study, case) for case in cases(study)})
     expected = asdict(speed_sentences(results))
     (sentence,) = expected["doubts"] + expected["others"]
     assert sentence.count("km/h") >= 3
     assert sentence in conclusion_sentences(results, study)
     document = tomllib.loads(text)
-    panel = client.post("/api/panel/optimise", json={"study": document}).json()
-    work = client.post("/api/work", json={"kind": "optimise", "study": document, "wait": 30}).json()["result"]
+    panel = ask(client, "panel/optimise", study=document)
+    work = ask(client, "work", kind="optimise", study=document, wait=30)["result"]
     assert panel["at_speeds"] == work["at_speeds"] == expected
 
 
@@ -129,8 +123,8 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
 ) -> None:
     """What is downloaded and run has the page's values, improvements and curves, whatever the sliders are at."""
     designs = [{"layout": "S1", "values": {"c": c1}}, {"layout": "S3", "values": {"c": c, "b": f"{b!r} kg"}}]
-    panel = client.post("/api/panel/indices", json={"study": DOCUMENT, "designs": designs}).json()
-    text = client.post("/api/study/write", json={"study": DOCUMENT, "designs": designs}).json()["text"]
+    panel = ask(client, "panel/indices", study=DOCUMENT, designs=designs)
+    text = ask(client, "study/write", study=DOCUMENT, designs=designs)["text"]
     folder = tmp_path_factory.mktemp("run")
     (folder / "study.toml").write_text(text, encoding="utf-8")
     data = it.run_study(it.load_study(folder / "study.toml"), folder / "results").data
@@ -139,7 +133,7 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
             there = data.sel({"layout": design["layout"], "index": row["index"], "method": "norm"})
             assert there.value.item() == row["value"]
             assert there.improvement.item() == row["improvement_percent"]
-    curves = client.post("/api/panel/response", json={"study": DOCUMENT, "designs": designs}).json()
+    curves = ask(client, "panel/response", study=DOCUMENT, designs=designs)
     assert curves["frequency"] == (data.omega.values / (2.0 * np.pi)).tolist()
     for curve in curves["curves"]:
         gains = data[f"gain_{curve['index']}"].sel(layout=curve["layout"])
@@ -183,7 +177,7 @@ def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
     values = [optimum, *({**optimum, "k": k, "c": c} for k in (2e4, 9e4) for c in (300.0, 3e3, 3e4))]
     designs = [{"layout": "S3", "values": each} for each in values]
     body = {"study": document, "designs": designs, "methods": [method], "indices": ["tyre-load"]}
-    told = [d["limits"] for d in client.post("/api/panel/indices", json=body).json()["designs"]]
+    told = [d["limits"] for d in ask(client, "panel/indices", **body)["designs"]]
     travel = [
         it.evaluate(study.design("S3").with_values(v), it.SuspensionTravel(study.road), it.Norm()) for v in values
     ]
@@ -201,7 +195,7 @@ def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
     document["elements"]["f"] = "20 N"
     document["layouts"] = {"S1": "k - f"}
     body = {"study": document, "methods": ["norm"], "indices": ["tyre-load"]}
-    travel, stiffness = client.post("/api/panel/indices", json=body).json()["designs"][0]["limits"]
+    travel, stiffness = ask(client, "panel/indices", **body)["designs"][0]["limits"]
     assert (travel["value"], travel["kept"]) == (None, None)
     assert "friction" in travel["message"]
     assert (stiffness["value"], stiffness["kept"]) == (0.0, False)
@@ -209,7 +203,7 @@ def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
 
 def test_a_history_is_that_of_python(client: TestClient) -> None:
     body = {"study": DOCUMENT, "layout": "S3", "values": {"S3": {"c": 3000.0, "b": 50.0}}, "seed": 3, "duration": 0.5}
-    told = client.post("/api/panel/history", json=body).json()
+    told = ask(client, "panel/history", **body)
     study = study_from(DOCUMENT)
     car = study.design("S3").with_values({"c": 3000.0, "b": 50.0})
     motion = it.simulate(car, road=it.multisine(study.road, seed=3), duration=0.5, step=told["step"])
@@ -239,7 +233,7 @@ def test_budgets_are_those_of_python(client: TestClient) -> None:
         "parameter": "f",
         "method": method,
     }
-    told = client.post("/api/panel/budget", json=body).json()
+    told = ask(client, "panel/budget", **body)
     study = study_from(DOCUMENT)
     first, second = (
         study.design(d["layout"]).with_values({k: float(v) for k, v in d["values"].items()}) for d in designs
@@ -300,14 +294,14 @@ def test_comparisons_are_those_of_python(client: TestClient, count: int, method:
         assert result["tie"] == (design["name"] in ("mine", "the same"))
     values = [design["results"][0]["value"] for design in told]
     assert [design["results"][0]["best"] for design in told] == [value == min(values) for value in values]
-    work = client.post("/api/work", json={"kind": "compare", **body, "wait": 30}).json()
+    work = ask(client, "work", kind="compare", **body, wait=30)
     assert (work["state"], work["result"]["designs"]) == ("done", told)
 
 
 def test_a_design_of_another_study_is_judged_on_the_road_of_this_one(client: TestClient) -> None:
     other = {**COMPARED[3], "study": changed(road={"speed": "50 m/s"}, vehicle={"unsprung_mass": "70 kg"})}
     body = {"study": DOCUMENT, "designs": [COMPARED[1], other], "indices": ["J3"]}
-    told = client.post("/api/panel/compare", json=body).json()["designs"][1]["results"][0]
+    told = ask(client, "panel/compare", **body)["designs"][1]["results"][0]
     heavy = it.evaluate(_car(DOCUMENT, other), study_from(DOCUMENT).index("J3"), it.Norm())
     assert told["value"] == heavy.value
     refused = client.post("/api/panel/response", json=body)
@@ -317,7 +311,7 @@ def test_a_design_of_another_study_is_judged_on_the_road_of_this_one(client: Tes
 
 def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
     body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
-    work = client.post("/api/work", json=body).json()
+    work = ask(client, "work", **body)
     told, study = work["result"], study_from(DOCUMENT)
     found = it.pareto_front(study.design("S3"), [study.index("J1"), study.index("J3")], it.Norm(), points=4, seed=0)
     (front,) = told["fronts"]
@@ -346,7 +340,7 @@ def test_a_design_that_nobody_has_chosen_is_no_answer(
             {"layout": name, "values": {k: v for k, v in own.items() if (name, k) != (layout, missing)}}
             for name, own in values.items()
         ]
-        told = client.post(f"/api/panel/{panel}", json={"study": DOCUMENT, "designs": designs}).json()["designs"]
+        told = ask(client, f"panel/{panel}", study=DOCUMENT, designs=designs)["designs"]
         assert [design["unchosen"] for design in told] == [[missing] if d["layout"] == layout else [] for d in told]
         base = {"indices": "S1", "compare": told[0]["layout"]}[panel]
         touched = {layout, *(values if layout == base else ())} if layout else set()
@@ -361,7 +355,7 @@ def test_a_comparison_is_no_better_than_the_worst_of_it(client: TestClient) -> N
     """Of friction that sticks for a part of the time, by statistical linearisation: no best, and doubtful per cents."""
     document = changed(elements={"f": "300 N"}, study={"evaluate": ["norm", "statistical-linearisation"]})
     body = {"study": document, "designs": COMPARED[:2], "methods": ["statistical-linearisation"]}
-    told = client.post("/api/panel/compare", json=body).json()["designs"]
+    told = ask(client, "panel/compare", **body)["designs"]
     statuses = [[result["status"] for result in design["results"]] for design in told]
     assert "inaccurate" in statuses[0]
     for row, result in enumerate(told[1]["results"]):
@@ -374,7 +368,7 @@ def test_a_comparison_is_no_better_than_the_worst_of_it(client: TestClient) -> N
 def test_scatter_that_a_method_does_not_see_is_told(client: TestClient, method: str, spread: str, doubt: bool) -> None:
     design = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}
     body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": {spread: 0.1}, "samples": 16}
-    told = client.post("/api/panel/tolerance", json={**body, "method": method}).json()
+    told = ask(client, "panel/tolerance", **body, method=method)
     assert (told["status"], spread in told["message"]) == (("inaccurate", True) if doubt else ("ok", False))
     table = client.post("/api/export/csv", json={"panel": "tolerance", "request": {**body, "method": method}}).text
     assert list(csv.reader(io.StringIO(table)))[1][1].split(": ")[0] == told["status"]
@@ -383,7 +377,7 @@ def test_scatter_that_a_method_does_not_see_is_told(client: TestClient, method: 
 def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     design, spread = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}, {"c": 0.1, "b": 0.05}
     body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": spread, "samples": 64}
-    told = client.post("/api/panel/tolerance", json=body).json()
+    told = ask(client, "panel/tolerance", **body)
     study = study_from(DOCUMENT)
     car = study.design("S3").with_values({"c": 3000.0, "b": 60.0})
     found = it.tolerance_analysis(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
@@ -398,13 +392,13 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
 
 def test_tables_read_back_as_the_same(client: TestClient) -> None:
     request = {"study": DOCUMENT, "layouts": ["S3"]}
-    panel = client.post("/api/panel/indices", json=request).json()["designs"][0]
+    panel = ask(client, "panel/indices", **request)["designs"][0]
     rows = list(
         csv.DictReader(io.StringIO(client.post("/api/export/csv", json={"panel": "indices", "request": request}).text))
     )
     assert [float(row["value"]) for row in rows] == [result["value"] for result in panel["results"]]
     assert float(rows[0]["b [kg]"]) == panel["values"]["b"]["value"]
-    curves = client.post("/api/panel/response", json=request).json()
+    curves = ask(client, "panel/response", **request)
     lines = client.post("/api/export/csv", json={"panel": "response", "request": request}).text.splitlines()
     numbers = [list(map(float, line.split(","))) for line in lines[1:]]
     assert [row[0] for row in numbers] == curves["frequency"]
@@ -419,7 +413,7 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
         "/api/records", params={"name": "device.csv"}, content=(tmp_path / "device.csv").read_bytes()
     ).json()
     body = {"kind": "identify", "records": [sent["id"]], "model": "ideal", "wait": 30}
-    told = client.post("/api/work", json=body).json()
+    told = ask(client, "work", **body)
     assert told["state"] == "done", told
     device = told["result"]["device"]
     document = {
@@ -427,7 +421,7 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
         "elements": {**DOCUMENT["elements"], **device["elements"]},
         "layouts": {**DOCUMENT["layouts"], "mine": f"k | c - ({device['layouts']['device']})"},
     }
-    assert client.post("/api/study/check", json={"study": document}).json()["problems"] == []
+    assert ask(client, "study/check", study=document)["problems"] == []
     client.delete(f"/api/records/{sent['id']}")
 
 
@@ -462,7 +456,7 @@ def test_a_picture_of_the_motion_is_that_of_a_simulation_file(client: TestClient
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_examples_answer(client: TestClient, path: Path) -> None:
     """Each example that is a study has indices, curves and a drawing of its car; others say what they are for."""
-    told = client.post("/api/study/read", json={"text": path.read_text(encoding="utf-8")}).json()
+    told = ask(client, "study/read", text=path.read_text(encoding="utf-8"))
     body = {"study": told["study"], "methods": ["norm"]}
     for panel in ("indices", "response", "mechanism"):
         answer = client.post(f"/api/panel/{panel}", json=body)

@@ -19,7 +19,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES
+from app.conftest import DOCUMENT, EXAMPLES, ask
 
 import inerter as it
 from inerter.app.documents import study_from
@@ -139,7 +139,7 @@ def test_it_ends_and_leaves_nothing(served: Any) -> None:
     """The last of these tests: an end in the midst of long work leaves no folder and no process behind."""
     client, process, home = served
     sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 10_000}}
-    work = client.post("/api/work", json={"kind": "sweep", "study": DOCUMENT, "sweep": sweep}).json()["id"]
+    work = ask(client, "work", kind="sweep", study=DOCUMENT, sweep=sweep)["id"]
     deadline = time.monotonic() + 60.0
     while client.get(f"/api/work/{work}").json()["done"] < 1 and time.monotonic() < deadline:
         time.sleep(0.05)
@@ -211,10 +211,10 @@ def test_processes_that_die_cost_what_they_did(tmp_path: Path) -> None:
         base, _, token = process.stdout.readline().strip().partition("/#token=")
         body = {"study": DOCUMENT, "layouts": ["S3"], "methods": ["norm"]}
         with httpx.Client(base_url=base, headers={"Authorization": f"Bearer {token}"}, timeout=60.0) as client:
-            wanted = client.post("/api/panel/indices", json=body).json()["designs"]
+            wanted = ask(client, "panel/indices", **body)["designs"]
             client.post("/api/panel/optimise", json=body).raise_for_status()
             for _ in range(3):
-                work = client.post("/api/work", json={"kind": "run", "study": DOCUMENT}).json()["id"]
+                work = ask(client, "work", kind="run", study=DOCUMENT)["id"]
                 time.sleep(float(random.uniform(0.0, 1.0)))
                 os.kill(int(random.choice(children_of(process))), signal.SIGKILL)
                 deadline = time.monotonic() + 60.0

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, changed, threads
+from app.conftest import DOCUMENT, ask, changed, threads
 from starlette.testclient import TestClient
 
 from inerter.app import jobs
@@ -21,7 +21,7 @@ LONG = changed(study={"sweep": {"k": {"from": "10 kN/m", "to": "30 kN/m", "point
 
 
 def begin(client: TestClient, **body: Any) -> str:
-    return str(client.post("/api/work", json=body).json()["id"])
+    return str(ask(client, "work", **body)["id"])
 
 
 def events(client: TestClient, number: str, last: str = "0") -> list[tuple[int, str, Any]]:
@@ -135,7 +135,7 @@ def endless(request: Any, folder: Any, tell: Any) -> Any:
     ],
 )
 def test_work_that_cannot_be_done_has_a_sentence(client: TestClient, body: Any) -> None:
-    told = client.post("/api/work", json={**body, "wait": 30}).json()
+    told = ask(client, "work", **body, wait=30)
     assert told["state"] == "failed"
     assert told["sentence"].strip().endswith((".", "?"))
     assert events(client, told["id"])[-1][1] == "failed"
@@ -143,7 +143,7 @@ def test_work_that_cannot_be_done_has_a_sentence(client: TestClient, body: Any) 
 
 def test_a_further_kind_is_one_row(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS, "count", WorkKind("count", "Counting", (), "app.test_work:count"))
-    told = client.post("/api/work", json={"kind": "count", "wait": 30}).json()
+    told = ask(client, "work", kind="count", wait=30)
     assert (told["state"], told["title"], told["result"]) == ("done", "Counting", {"counted": 3})
 
 
@@ -155,10 +155,10 @@ def count(request: Any, folder: Any, tell: Any) -> Any:
 
 def test_a_fault_is_told_and_the_queue_goes_on(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS, "fault", WorkKind("fault", "A fault", (), "app.test_work:nothing_of_that_name"))
-    told = client.post("/api/work", json={"kind": "fault", "wait": 30}).json()
+    told = ask(client, "work", kind="fault", wait=30)
     assert told["state"] == "failed"
     assert told["sentence"]
-    assert client.post("/api/work", json={"kind": "optimise", "study": DOCUMENT, "wait": 30}).json()["state"] == "done"
+    assert ask(client, "work", kind="optimise", study=DOCUMENT, wait=30)["state"] == "done"
 
 
 def test_only_so_much_work_is_kept(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:

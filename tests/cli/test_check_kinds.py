@@ -85,15 +85,20 @@ BAD_SIMULATIONS = {
 }
 
 
+def refused_by_both(tmp_path, capsys, text, command, output="out"):
+    """What `check` says of a file that it refuses; the command itself says the same."""
+    code, said = check(tmp_path, text, capsys)
+    assert code == 2
+    assert call([command, str(tmp_path / "file.toml"), "-o", str(tmp_path / output)]) == 2
+    assert " ".join(capsys.readouterr().err.split()) == said
+    return said
+
+
 @pytest.mark.parametrize("name", BAD_SIMULATIONS)
 def test_check_refuses_a_simulation_as_simulate_does(tmp_path, capsys, name):
     key, value, words = BAD_SIMULATIONS[name]
     text = replaced(SIMULATION, key, value) if key in SIMULATION else f"{SIMULATION}\n{key} = {value}\n"
-    code, said = check(tmp_path, text, capsys)
-    assert code == 2
-    assert words in said
-    assert call(["simulate", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
-    assert " ".join(capsys.readouterr().err.split()) == said
+    assert words in refused_by_both(tmp_path, capsys, text, "simulate")
 
 
 @pytest.mark.parametrize(
@@ -110,10 +115,7 @@ def test_check_sees_what_only_the_integration_would_refuse(tmp_path, capsys, cha
     rest = re.sub(rf"^({keys}) *=.*\n", "", SIMULATION, flags=re.MULTILINE)
     head, _, tail = rest.partition("[simulation]\n")
     added = "".join(f"{key} = {value}\n" for key, value in changes.items())
-    code, said = check(tmp_path, f"{head}[simulation]\n{added}{tail}", capsys)
-    assert code == 2
-    assert call(["simulate", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
-    assert " ".join(capsys.readouterr().err.split()) == said
+    refused_by_both(tmp_path, capsys, f"{head}[simulation]\n{added}{tail}", "simulate")
 
 
 @pytest.mark.parametrize(
@@ -125,11 +127,7 @@ def test_check_sees_what_only_the_integration_would_refuse(tmp_path, capsys, cha
     ],
 )
 def test_check_refuses_a_rig_as_rig_does(tmp_path, capsys, key, value, words):
-    code, said = check(tmp_path, replaced(RIG, key, value), capsys)
-    assert code == 2
-    assert words in said
-    assert call(["rig", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out.csv")]) == 2
-    assert " ".join(capsys.readouterr().err.split()) == said
+    assert words in refused_by_both(tmp_path, capsys, replaced(RIG, key, value), "rig", "out.csv")
 
 
 def test_a_simulation_on_a_road_says_its_class_and_doubts_what_no_road_is(tmp_path, capsys):
@@ -170,12 +168,9 @@ evaluate = ["METHOD"]
 @pytest.mark.parametrize("kind", ["element-force", "element-stroke", "element-velocity"])
 @pytest.mark.parametrize("method", ["norm", "statistical-linearisation"])
 def test_check_refuses_a_friction_where_its_force_or_motion_cannot_be_had(tmp_path, capsys, kind, method):
-    code, said = check(tmp_path, FRICTION.replace("KIND", kind).replace("METHOD", method), capsys)
-    assert code == 2
+    said = refused_by_both(tmp_path, capsys, FRICTION.replace("KIND", kind).replace("METHOD", method), "run")
     assert "layouts.S: " in said
     assert "expected-value" in said or "'f_stroke'" in said
-    assert call(["run", str(tmp_path / "file.toml"), "-o", str(tmp_path / "out")]) == 2
-    assert " ".join(capsys.readouterr().err.split()) == said
 
 
 @pytest.mark.parametrize("kind", ["element-force", "element-stroke"])

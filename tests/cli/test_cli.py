@@ -146,6 +146,7 @@ def test_reproduction_never_replaces_what_is_there(tmp_path: Path, capsys: pytes
     assert (tmp_path / "report.html").read_text() == "mine"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_json_is_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     study = tmp_path / "small.toml"
     study.write_text(SMALL.replace('S2 = "k | c | b"', 'S2 = "k | b"'), encoding="utf-8")

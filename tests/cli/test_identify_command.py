@@ -146,6 +146,7 @@ def test_the_elements_can_be_pasted_into_a_study(fitted: Path, capsys: pytest.Ca
     assert "ok" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_elements_can_be_simulated_as_they_are(fitted: Path) -> None:
     block = json.loads((fitted / "out" / "fit.json").read_text())["elements"]
     rest = '[vehicle]\nmodel = "rig"\n[signal]\nkind = "cosine"\namplitude = "1 mm"\nfrequency = "3 Hz"\n'

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
 import numpy as np
@@ -26,10 +28,19 @@ def rattle(tmp_path: Path) -> Path:
     return path
 
 
-def test_everything_is_written_and_said(rattle: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = tmp_path / "out"
-    assert call(["simulate", str(rattle), "-o", str(folder)]) == 0
-    out, err = capsys.readouterr()
+@pytest.fixture(scope="module")
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str, str]:
+    """The results folder of the command, and what it said."""
+    home = tmp_path_factory.mktemp("rattle")
+    (home / "rattle.toml").write_text(RATTLE, encoding="utf-8")
+    out, err = io.StringIO(), io.StringIO()
+    with redirect_stdout(out), redirect_stderr(err):
+        assert call(["simulate", str(home / "rattle.toml"), "-o", str(home / "out")]) == 0
+    return home / "out", out.getvalue(), err.getvalue()
+
+
+def test_everything_is_written_and_said(simulated: tuple[Path, str, str]) -> None:
+    folder, out, err = simulated
     for words in ("device force", "gap g ", "in the gap", "friction f", "unaccounted for", "Status: ok"):
         assert words in out
     assert max(map(len, out.splitlines())) <= 80
@@ -39,9 +50,8 @@ def test_everything_is_written_and_said(rattle: Path, tmp_path: Path, capsys: py
     assert {path.name for path in (folder / "figures").iterdir()} == {"simulation.svg", "simulation.png"}
 
 
-def test_files_hold_the_same_motion(rattle: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    assert call(["simulate", str(rattle), "-o", str(folder)]) == 0
+def test_files_hold_the_same_motion(simulated: tuple[Path, str, str]) -> None:
+    folder, *_ = simulated
     run = load_simulation(folder / "simulation.toml").run()
     with (folder / "trajectory.csv").open() as file:
         header, *rows = csv.reader(file)
@@ -58,6 +68,7 @@ def test_files_hold_the_same_motion(rattle: Path, tmp_path: Path) -> None:
     assert "# inerter" in (folder / "simulation.toml").read_text()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_json_is_json(rattle: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["simulate", str(rattle), "-o", str(tmp_path / "out"), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
@@ -68,6 +79,7 @@ def test_json_is_json(rattle: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert abs(data["energy"]["residual"]) < 1e-10
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_results_are_replaced_on_demand_only(
     rattle: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

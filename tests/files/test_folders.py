@@ -8,7 +8,7 @@ import json
 import os
 import random
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import product
 from pathlib import Path
@@ -45,6 +45,12 @@ def home(_compiled: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> It
     monkeypatch.chdir(tmp_path)
     with cheap():
         yield tmp_path
+
+
+def refused_with(arguments: list[str], options: Iterable[str], home: Path, capsys: Any, words: str) -> None:
+    """A command is refused with each option, in a sentence that has these words."""
+    for option in options:
+        assert words in refused([*arguments, *option.split()], home, capsys)
 
 
 def refused(arguments: list[str], home: Path, capsys: pytest.CaptureFixture[str]) -> str:
@@ -120,8 +126,7 @@ def test_what_a_user_changed_or_added_is_not_replaced(
 def test_a_name_of_ours_that_is_not_listed_is_not_replaced(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(RUN) == 0
     (home / "out" / "budgets.csv").write_text("mine")
-    for option in ("--force", "--resume"):
-        assert "budgets.csv was not written by inerter" in refused([*RUN, option], home, capsys)
+    refused_with(RUN, ("--force", "--resume"), home, capsys, "budgets.csv was not written by inerter")
 
 
 def test_a_folder_of_figures_that_becomes_a_link_is_not_written_to(
@@ -131,8 +136,7 @@ def test_a_folder_of_figures_that_becomes_a_link_is_not_written_to(
     elsewhere = home / "elsewhere"
     shutil.move(home / "out" / "figures", elsewhere)
     (home / "out" / "figures").symlink_to(elsewhere, target_is_directory=True)
-    for option in ("--force", "--resume"):
-        assert "figures" in refused([*RUN, option], home, capsys)
+    refused_with(RUN, ("--force", "--resume"), home, capsys, "figures")
     shutil.rmtree(elsewhere)
     elsewhere.mkdir()
     assert "figures" in refused([*RUN, "--force"], home, capsys)
@@ -161,8 +165,7 @@ def test_force_leaves_nothing_of_the_old_results(home: Path) -> None:
 
 def test_results_of_another_command_are_not_replaced(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(RUN) == 0
-    for option in ([], ["--force"]):
-        assert "holds the results of inerter run" in refused([*SIMULATE, *option], home, capsys)
+    refused_with(SIMULATE, ("", "--force"), home, capsys, "holds the results of inerter run")
 
 
 def test_a_record_in_a_folder_of_results_is_no_result(home: Path) -> None:
@@ -239,8 +242,7 @@ def test_work_that_is_refused_late_leaves_no_folder(where: str, home: Path, caps
 def test_a_folder_in_use_is_refused(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(RUN) == 0
     with FileLock(home / "out" / ".inerter" / "lock"):
-        for option in ("--force", "--resume"):
-            assert "another run is writing" in refused([*RUN, option], home, capsys)
+        refused_with(RUN, ("--force", "--resume"), home, capsys, "another run is writing")
 
 
 def test_no_right_to_write_is_a_wrong_request(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

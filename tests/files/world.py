@@ -109,6 +109,7 @@ def cheap(identified: IdentificationResult | None = None) -> Iterator[None]:
 
         change("inerter.files.study.cases.Case.answer", outcome)
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
+        change("inerter.cli.commands.draw_layouts", drawn("networks.svg", "networks.png"))
         change(
             "inerter.cli.commands.write_report",
             lambda results, study, figures, path, *found: write_text(path, "page\n"),

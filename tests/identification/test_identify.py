@@ -110,7 +110,7 @@ def test_a_reversed_load_cell_is_noticed():
 def test_times_that_a_file_rounds_are_even_ones():
     """2048 samples a second have intervals of 0.48828125 ms, which seven decimals show as 0.4882 and 0.4883 ms."""
     true = it.Inerter(113.0) | it.Friction(10.0)
-    record = it.VirtualRig(true, sampling=2048.0, seed=6).run(it.cosine(1e-3, 3.0), 1.0)
+    record = it.VirtualRig(true, sampling=2048.0, seed=6).run(it.cosine(1e-3, 6.0), 0.5)
     found = it.identify([replace(record, time=np.round(record.time, 7))], FREE_FLYWHEEL, seed=0, starts=8)
     assert found.parameters["b"].best == pytest.approx(113.0, rel=0.02)
 

@@ -163,7 +163,8 @@ def test_a_study_has_failed_where_a_status_is_and_not_where_a_word_is(
         status = {"norm": next(taken).value}
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, status, f"{word}: {TOKEN}")
 
-    study = replace(STUDY, evaluate=("norm",), budgets=())
+    few = {name: STUDY.layouts[name] for name in ("S1", "S2", "S3")}
+    study = replace(STUDY, evaluate=("norm",), budgets=(), layouts=few, indices=("J1",))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Case, "answer", answer)
         result = running.run_study(study, folder / "out")

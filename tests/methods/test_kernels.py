@@ -80,10 +80,15 @@ def test_many_designs_at_once_are_the_same_as_one_by_one(name, conventions):
     values = draw(car, 16, seed=len(name))
     many = evaluate_many(car, INDICES, values, method)
     for i, row in enumerate(many):
-        design = car.with_values({key: float(column[i]) for key, column in values.items()})
+        design = design_at(car, values, i)
         alone = [evaluate(design, index, method).value for index in INDICES]
         np.testing.assert_allclose(row[:2], alone[:2], rtol=1e-8)
         np.testing.assert_allclose(row[2], alone[2], rtol=1e-6)
+
+
+def design_at(car, values, i):
+    """The car with the numbers in row i of its drawn values."""
+    return car.with_values({key: float(column[i]) for key, column in values.items()})
 
 
 @pytest.mark.parametrize("layout", ["S1", "S2", "S3"])
@@ -92,7 +97,7 @@ def test_many_designs_in_rational_arithmetic(layout):
     values = draw(car, 200, seed=11)
     many = evaluate_many(car, INDICES[:2], values, Norm())
     for i, row in enumerate(many):
-        design = car.with_values({key: float(column[i]) for key, column in values.items()})
+        design = design_at(car, values, i)
         np.testing.assert_allclose(row, np.array(quarter_car_norms(design)) * ROAD.velocity_intensity, rtol=1e-8)
 
 
@@ -104,7 +109,7 @@ def test_many_designs_in_the_far_corner_of_the_bounds():
     known = np.all(np.isfinite(many), axis=1)
     assert known.mean() > 0.95
     for i, row in enumerate(many):
-        design = car.with_values({key: float(column[i]) for key, column in values.items()})
+        design = design_at(car, values, i)
         if known[i]:
             np.testing.assert_allclose(row, np.array(quarter_car_norms(design)) * ROAD.velocity_intensity, rtol=1e-6)
         else:
@@ -117,7 +122,7 @@ def test_sharp_resonances_are_valued_as_one_by_one():
     values = draw(car, 150, seed=13, stiffest=np.inf)
     many = evaluate_many(car, INDICES[2], values, Norm())[:, 0]
     for i, value in enumerate(many):
-        one = evaluate(car.with_values({key: float(column[i]) for key, column in values.items()}), INDICES[2], Norm())
+        one = evaluate(design_at(car, values, i), INDICES[2], Norm())
         if one.status.ok:
             assert value == pytest.approx(one.value, rel=1e-6)
 
@@ -203,7 +208,7 @@ def test_peaks_of_compiled_code_are_the_exact_ones(name):
     values = draw(car, 15, seed=7, stiffest=1e3)
     objective = Norm().objective(car, INDICES[2])
     for i, point in enumerate(np.column_stack([values[key] for key in car.free_values()])):
-        design = car.with_values({key: float(column[i]) for key, column in values.items()})
+        design = design_at(car, values, i)
         expected = evaluate(design, INDICES[2], Norm()).peaks
         gains = np.sort(objective.components(point, objective.active(point))[0])[::-1]
         np.testing.assert_allclose(gains[: len(expected)], [peak.gain for peak in expected], rtol=1e-6)

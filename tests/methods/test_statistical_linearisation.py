@@ -82,7 +82,9 @@ def test_both_struts_of_a_half_car(conventions):
             system.A, system.B, rows @ system.C, rows @ system.D, delays=[0.0, delay], sources=("road", "road")
         )
         sigma = h2(speeds, order).outputs * ROAD.velocity_intensity
-        dampers = math.sqrt(2.0 / math.pi) * forces / sigma
+        before, dampers = dampers, math.sqrt(2.0 / math.pi) * forces / sigma
+        if np.allclose(dampers, before, rtol=1e-12, atol=0.0):
+            break
     friction = half_car(*map(Friction, forces))
     for index in (J1, J3):
         expected = value(half_car(*map(Damper, dampers)), index, Norm(conventions))
@@ -119,7 +121,7 @@ def test_none_is_the_norm_and_a_huge_one_is_a_rigid_link(name):
 
 @pytest.mark.parametrize("name", sampled(LAYOUTS, ["S3"], kept=2))
 def test_no_jump_from_none_to_stuck(name):
-    forces = np.geomspace(1.0, 1e5, 60)
+    forces = np.geomspace(1.0, 1e5, 40)
     for index in (J1, J3, J5):
         logs = np.log([value(paper_quarter_car(LAYOUTS[name](f)), index) for f in forces])
         assert np.abs(np.diff(logs)).max() < 0.3

@@ -178,21 +178,23 @@ def test_searches_without_gradients_find_the_same(limit):
     assert np.isnan(other.limits[0].sensitivity)
 
 
-def test_limits_with_friction():
+@pytest.fixture
+def screw_car():
     screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
-    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
+    return paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
+
+
+def test_limits_with_friction(screw_car):
     limit = it.at_most(it.LoadCarrying(amplitude=1000.0), 2.7e-5)
-    best = it.optimise(car, J1, it.StatisticalLinearisation(), subject_to=[limit])
+    best = it.optimise(screw_car, J1, it.StatisticalLinearisation(), subject_to=[limit])
     assert best.limits[0].value == pytest.approx(limit.value, rel=1e-6)
     assert best.limits[0].sensitivity < 0.0
     assert best.gain_over_linear is not None
 
 
 @pytest.mark.campaign
-def test_limits_of_what_is_simulated():
-    screw = it.Inerter(it.free(1.0, 2e3, "b")) | it.Friction(20.0)
-    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(100.0, 1e5, "c")) - screw)
-    method = it.ExpectedValue(realisations=2, seed=0)
+def test_limits_of_what_is_simulated(screw_car):
+    car, method = screw_car, it.ExpectedValue(realisations=2, seed=0)
     least, here = it.optimise(car, J3, method).value, it.evaluate(it.optimise(car, J1, method).design, J3, method).value
     limit = it.at_most(J3, 0.5 * (least + here))
     best = it.optimise(car, J1, method, subject_to=[limit])

@@ -71,53 +71,49 @@ def table(rng: np.random.Generator, path: Path, names: dict[str, str], units: di
     return f"{delimiter!r} {decimal!r} {encoding} {style!r} {remark!r} {end!r}\n{text[:400]}"
 
 
-def check_record(seed: int, folder: Path) -> None:
-    rng = np.random.default_rng([seed, 12])
-    size = int(rng.integers(30, 60))
-    roles = ["time", "displacement", "force", "velocity"][: int(rng.integers(3, 5))]
-    columns = {role: rng.normal(0.0, 10.0 ** rng.uniform(-3.0, 2.0), size) for role in roles}
-    columns["time"] = 1e-3 * np.arange(size) + rng.uniform(0.0, 5.0)
-    units = {role: str(rng.choice(list(UNITS[role]))) for role in roles}
-    names = {role: str(rng.choice(NAMES[role])) for role in roles}
-    stored = {role: values / UNITS[role][units[role]] for role, values in columns.items()}
+def record_columns(rng: np.random.Generator, size: int) -> dict[str, np.ndarray]:
+    columns = {role: rng.normal(0.0, 10.0 ** rng.uniform(-3.0, 2.0), size) for role in [*NAMES][: rng.integers(3, 5)]}
+    return columns | {"time": 1e-3 * np.arange(size) + rng.uniform(0.0, 5.0)}
+
+
+def profile_columns(rng: np.random.Generator, size: int) -> dict[str, np.ndarray]:
+    columns = {role: rng.normal(0.0, 0.02, size) for role in [*PROFILES][: rng.integers(2, 4)]}
+    return columns | {"distance": rng.uniform(-5.0, 5.0) + np.cumsum(rng.uniform(0.05, 0.2, size))}
+
+
+KINDS = {
+    "record": (12, record_columns, NAMES, UNITS, it.read_record),
+    "profile": (13, profile_columns, PROFILES, {role: {"m": 1.0, "mm": 1e-3} for role in PROFILES}, it.read_profile),
+}
+
+
+def check(kind: str, seed: int, folder: Path) -> None:
+    number, draw, words, scales, read = KINDS[kind]
+    rng = np.random.default_rng([seed, number])
+    columns = draw(rng, int(rng.integers(30, 60)))
+    units = {role: str(rng.choice(list(scales[role]))) for role in columns}
+    names = {role: str(rng.choice(words[role])) for role in columns}
+    stored = {role: values / scales[role][units[role]] for role, values in columns.items()}
     said = table(rng, folder / "a.csv", names, units, stored)
     try:
-        record = it.read_record(folder / "a.csv")
+        found = read(folder / "a.csv")
     except RecordError as error:
         pytest.fail(f"{seed}: {error}\n{said}")
     for role, values in columns.items():
-        np.testing.assert_allclose(record.channels()[role], values, rtol=1e-13, err_msg=f"{seed}: {role} {said}")
+        np.testing.assert_allclose(getattr(found, role), values, rtol=1e-13, err_msg=f"{seed}: {role} {said}")
 
 
-def check_profile(seed: int, folder: Path) -> None:
-    rng = np.random.default_rng([seed, 13])
-    size = int(rng.integers(30, 60))
-    roles = ["distance", "height", "right"][: int(rng.integers(2, 4))]
-    columns = {role: rng.normal(0.0, 0.02, size) for role in roles}
-    columns["distance"] = rng.uniform(-5.0, 5.0) + np.cumsum(rng.uniform(0.05, 0.2, size))
-    units = {role: str(rng.choice(["m", "mm"])) for role in roles}
-    names = {role: str(rng.choice(PROFILES[role])) for role in roles}
-    stored = {role: values / {"m": 1.0, "mm": 1e-3}[units[role]] for role, values in columns.items()}
-    said = table(rng, folder / "a.csv", names, units, stored)
-    try:
-        profile = it.read_profile(folder / "a.csv")
-    except RecordError as error:
-        pytest.fail(f"{seed}: {error}\n{said}")
-    for role, values in columns.items():
-        np.testing.assert_allclose(getattr(profile, role), values, rtol=1e-13, err_msg=f"{seed}: {role} {said}")
-
-
-@pytest.mark.parametrize("check", [check_record, check_profile])
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(30))
-def test_every_dialect_is_the_same_table(tmp_path, check, seed):
-    check(seed, tmp_path)
+def test_every_dialect_is_the_same_table(tmp_path, kind, seed):
+    check(kind, seed, tmp_path)
 
 
 @pytest.mark.marathon
-@pytest.mark.parametrize("check", [check_record, check_profile])
-def test_many_dialects(tmp_path, check):
+@pytest.mark.parametrize("kind", KINDS)
+def test_many_dialects(tmp_path, kind):
     for seed in range(1000, 3000):
-        check(seed, tmp_path)
+        check(kind, seed, tmp_path)
 
 
 def grid(rng: np.random.Generator, left_out: int) -> tuple[np.ndarray, np.ndarray]:

@@ -27,15 +27,19 @@ def only(record, kind):
     return found
 
 
+TIME = np.arange(20000) * 1e-3
+OMEGA = 2 * np.pi * 0.7 * np.arange(1, 31)
+TONES = np.exp(1j * np.outer(OMEGA, TIME))
+
+
 def multisine(delay=0.0, late_acceleration=None, damping=200.0, friction=0.0, seed=1):
     """An inerter of 100 kg behind 1e7 N/m and 3000 N s/m, beside a damper and friction, from 0.7 to 21 Hz."""
     rng = np.random.default_rng(seed)
-    time = np.arange(20000) * 1e-3
-    omega = 2 * np.pi * 0.7 * np.arange(1, 31)
+    time, omega = TIME, OMEGA
     start = np.exp(2j * np.pi * rng.random(30)) * 2e-4 / np.arange(1, 31) / 0.7
 
     def signal(size, late=0.0):
-        return np.real((size * start) @ np.exp(1j * np.outer(omega, time - late)))
+        return np.real((size * start * np.exp(-1j * omega * late)) @ TONES)
 
     elastic = 1e7 + 3000j * omega
     mass = 100.0 * elastic / (elastic - 100.0 * omega**2)

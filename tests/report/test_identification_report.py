@@ -8,11 +8,11 @@ import json
 import math
 import re
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from report_pages import Page
 
 import inerter as it
 from inerter.errors import OK, Status, StatusKind
@@ -40,39 +40,8 @@ from inerter.report.identification_text import identification_text, unreliabilit
 from inerter.report.identified_values import elements_block, value_and_interval
 from inerter.report.options import as_options
 
-VOID = {"meta", "wbr", "br"}
 SHAFT = it.Spring(1e6, name="ks") | it.Damper(3200.0, name="cs")
 MODEL = SHAFT - (it.Inerter(it.free(1.0, 500.0), name="b") | it.Friction(it.free(0.0, 100.0), name="f"))
-
-
-class Page(HTMLParser):
-    """The text of a page, and whether every tag is closed in its turn."""
-
-    def __init__(self, page: str) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.words: list[str] = []
-        self.tags: list[str] = []
-        self.links: list[str] = []
-        self.feed(page)
-        assert self.open == []
-        self.text = re.sub(r"\s+", " ", "".join(self.words))
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append(tag)
-        self.links += [str(value) for name, value in attrs if name in ("src", "href") and value]
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        pass
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        if "style" not in self.open:
-            self.words.append(data)
 
 
 @pytest.fixture(scope="session")
@@ -106,7 +75,7 @@ def test_the_page_holds_the_numbers_and_every_figure(found: IdentificationResult
     assert "mains hum: 0.3 N at −50 Hz" in page.text
     assert elements_block(found).replace("\n", " ").replace("  ", " ")[:60] in page.text.replace("  ", " ")
     assert page.tags.count("svg") == len(list((tmp_path / "figures").glob("*.svg"))) == 7
-    assert all(link.startswith("#") for link in page.links)
+    assert all(link.startswith("#") for link in page.links())
     assert done == sorted(done)
     assert done[-1] == pytest.approx(1.0)
     assert {path.name for path in tmp_path.iterdir()} == {

@@ -4,12 +4,12 @@ import math
 import re
 from collections import Counter
 from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
+from report_pages import Page
 from synthetic import LONG, designs, judged, sweep, with_value
 
 import inerter as it
@@ -21,7 +21,6 @@ from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-VOID = {"meta", "wbr", "br"}
 SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -33,33 +32,6 @@ def study():
 @pytest.fixture(scope="session")
 def sweep_study():
     return load_study(EXAMPLES / "stiffness-sweep.toml")
-
-
-class Page(HTMLParser):
-    """The text of a page, its attributes, and whether every tag is closed in its turn."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.open, self.words, self.attributes, self.tags = [], [], [], []
-        self.feed(page)
-        assert self.open == []
-        self.text = re.sub(r"\s+", " ", "".join(self.words))
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append(tag)
-        self.attributes += attrs
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attrs):
-        self.attributes += attrs
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if "style" not in self.open:
-            self.words.append(data)
 
 
 def test_the_answer_is_on_the_page(study, tmp_path):
@@ -183,13 +155,20 @@ def test_figures_that_were_not_drawn_are_left_out(study, tmp_path):
     assert report(designs(), study, tmp_path).count("<figure>") == 3
 
 
-def test_the_same_results_give_the_same_page(study, tmp_path):
-    draw_study(designs(), tmp_path / "figures")
-    first = write_report(designs(), study, tmp_path / "figures", tmp_path / "1.html")
-    second = write_report(designs(), study, tmp_path / "figures", tmp_path / "2.html")
+@pytest.fixture(scope="module")
+def figures(tmp_path_factory):
+    """The folder of the figures of the designs."""
+    folder = tmp_path_factory.mktemp("drawn")
+    draw_study(designs(), folder)
+    return folder
+
+
+def test_the_same_results_give_the_same_page(study, figures, tmp_path):
+    first = write_report(designs(), study, figures, tmp_path / "1.html")
+    second = write_report(designs(), study, figures, tmp_path / "2.html")
     assert first.read_bytes() == second.read_bytes()
-    assert str(tmp_path) not in first.read_text(encoding="utf-8")
-    assert str(EXAMPLES) not in first.read_text(encoding="utf-8")
+    for folder in (tmp_path, figures, EXAMPLES):
+        assert str(folder) not in first.read_text(encoding="utf-8")
 
 
 def test_values_that_are_not_ok_stand_with_their_sentence(study, sweep_study, tmp_path):
@@ -229,9 +208,8 @@ def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
     assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")
 
 
-def test_a_page_has_contents_that_lead_to_its_parts(study, tmp_path):
-    draw_study(designs(), tmp_path)
-    source = report(designs(), study, tmp_path)
+def test_a_page_has_contents_that_lead_to_its_parts(study, figures):
+    source = report(designs(), study, figures)
     contents = re.search(r'<nav class="contents".*?</nav>', source)
     assert contents
     links = re.findall(r'<a href="#(part-\d+)">(.*?)</a>', contents[0])

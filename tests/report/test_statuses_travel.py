@@ -11,13 +11,12 @@ import re
 from dataclasses import replace
 
 import pytest
-from study_text import study_text
+from study_text import load_text, study_text
 from synthetic import terminal_text
 
 import inerter as it
 from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import cases, run_case
-from inerter.files.study.loading import load_study
 from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
@@ -126,9 +125,7 @@ def test_what_is_made_of_estimates_is_no_better_than_the_worst(name, monkeypatch
 
 def judged_study(tmp_path, text=TEXT):
     """All that a study comes to: as text, as data, and as a page."""
-    path = tmp_path / "study.toml"
-    path.write_text(text, encoding="utf-8")
-    study = load_study(path)
+    study = load_text(tmp_path, text)
     outcomes = {case: run_case(study, case) for case in cases(study)}
     found = tuple(run_part(study, outcomes, part) for part in parts_of(study))
     data = dataset(study, outcomes)

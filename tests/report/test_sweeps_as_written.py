@@ -46,6 +46,7 @@ def test_units_that_differ_within_a_sweep_are_told_in_si(tmp_path):
     assert swept_scale(result.data, "road.speed").unit == "m/s"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
     """The layout with the lower quantile of tolerances.csv, and the best one without scatter if that is another."""
     path = tmp_path / "study.toml"

@@ -18,14 +18,20 @@ METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-l
 ANY_VALUE = st.one_of(st.floats(1e-12, 1e12), st.sampled_from([math.inf, math.nan]))
 
 
+def fitting(results):
+    """The text of results, all of whose lines fit a terminal."""
+    text = terminal_text(results)
+    assert text.isascii()
+    assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
+    return text
+
+
 @settings(max_examples=15)
 @given(st.lists(NAMES, min_size=1, max_size=6, unique=True), ANY_VALUE, st.booleans(), st.text(max_size=200))
 def test_tables_fit_a_terminal(names, value, swept, message):
     results = (sweep if swept else designs)(names, baseline=names[0])
     results = with_value(results, value, f"failed: {message}", layout=names[-1], index="J3")
-    text = terminal_text(results)
-    assert text.isascii()
-    assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
+    text = fitting(results)
     for name in names[1:] if len(names) > 1 else names:
         assert name in text
 
@@ -52,9 +58,7 @@ def test_a_sweep_by_its_best_and_its_worst():
 def test_tables_by_method_fit_a_terminal(names, value, swept, count):
     results = (sweep if swept else designs)(names, baseline=names[0])
     results = judged(with_value(results, value, layout=names[-1], index="J3"), METHODS[-count:])
-    text = terminal_text(results)
-    assert text.isascii()
-    assert all(len(line) <= WIDTH and line == line.rstrip() for line in text.split("\n"))
+    text = fitting(results)
     assert all(brief_words_of(method).split()[-1] in text for method in METHODS[-count:] if count > 1)
 
 

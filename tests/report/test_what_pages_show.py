@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import sampled
+from study_text import load_text
 from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_text
 
 import inerter as it
@@ -262,8 +263,7 @@ def test_a_weighted_output_is_called_after_its_lever_or_what_it_is_compared_with
     text = (EXAMPLES / "half-car.toml").read_text(encoding="utf-8")
     text = re.sub(r"indices = .*", 'indices = ["J1", "dynamic-load-coefficient"]', text)
     text = re.sub(r"(?m)^\s*optimise = .*$", "", re.sub(r"\{ *from = \"([^\"]*)\"[^}]*\}", r'"\1"', text))
-    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
-    study = load_study(tmp_path / "study.toml")
+    study = load_text(tmp_path, text)
     found = {case: {} for case in cases(study)}
     named = responses(study, found)
     pitch = named["output_J1"].values.tolist()[1]

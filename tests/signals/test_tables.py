@@ -88,17 +88,20 @@ def test_far_away_knots_of_a_periodic_hold():
     assert np.array_equal(noise(0.0005 + 1e-3 * np.arange(10_000)), once)
 
 
-def test_breaks_of_a_periodic_table():
-    table = Signal.sampled([0.5, 0.75, 1.5], [1.0, 2.0, 1.0], "linear", periodic=True)
-    np.testing.assert_allclose(table.breaks(-1.0, 2.0), [-0.5, -0.25, 0.5, 0.75, 1.5, 1.75])
-    np.testing.assert_allclose(table.breaks(0.5, 1.5), [0.75])
-
-
-def test_breaks_of_a_table_include_its_start():
-    table = Signal.sampled([0.5, 0.75, 1.5], [1.0, 2.0, 3.0])
-    np.testing.assert_allclose(table.breaks(-9.0, 1.5), [0.5, 0.75])
-    np.testing.assert_allclose(table.breaks(0.6, 1.0), [0.75])
-    assert table.breaks(-9.0, 0.2).size == 0
+@pytest.mark.parametrize(
+    ("periodic", "ends", "breaks"),
+    [
+        (True, (-1.0, 2.0), [-0.5, -0.25, 0.5, 0.75, 1.5, 1.75]),
+        (True, (0.5, 1.5), [0.75]),
+        (False, (-9.0, 1.5), [0.5, 0.75]),  # its start included
+        (False, (0.6, 1.0), [0.75]),
+        (False, (-9.0, 0.2), []),
+    ],
+)
+def test_breaks_of_a_table(periodic, ends, breaks):
+    hold = "linear" if periodic else "cubic"
+    table = Signal.sampled([0.5, 0.75, 1.5], [1.0, 2.0, 1.0], hold, periodic=periodic)
+    np.testing.assert_allclose(table.breaks(*ends), breaks)
 
 
 def test_a_zero_hold_shows_its_last_sample_at_its_end_only():

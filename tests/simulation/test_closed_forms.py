@@ -281,8 +281,8 @@ def test_an_element_alone_on_the_rig(duration: float) -> None:
         assert inerter.energy.input_work == pytest.approx(40.0 * (slope[end] ** 2 - slope[0] ** 2), rel=1e-10)
 
 
-def bent(rng: np.random.Generator, duration: float, step: float, size: float) -> tuple[it.Signal, Array, Array]:
-    """A smooth table that begins at rest, with its values and slopes."""
+def bent(rng: np.random.Generator, duration: float, step: float, size: float) -> tuple[it.Signal, Array]:
+    """A smooth table that begins at rest, with its cubics."""
     time = np.linspace(0.0, duration, round(duration / step) + 1)
     waves = [(size * rng.standard_normal(), rng.uniform(1.0, 30.0), rng.uniform(0.0, 6.0)) for _ in range(5)]
     value, slope = np.zeros_like(time), np.zeros_like(time)
@@ -291,7 +291,7 @@ def bent(rng: np.random.Generator, duration: float, step: float, size: float) ->
         grown, rate = 1.0 - np.exp(-((8.0 * time) ** 2)), 128.0 * time * np.exp(-((8.0 * time) ** 2))
         value += a * grown * np.sin(w * time + phase)
         slope += a * (grown * w * np.cos(w * time + phase) + rate * np.sin(w * time + phase))
-    return it.Signal.sampled(time, value, "cubic", derivative=slope, speed=40.8), value, slope
+    return it.Signal.sampled(time, value, "cubic", derivative=slope, speed=40.8), cubic(value, slope, step)
 
 
 def cubic(value: Array, slope: Array, h: float) -> Array:
@@ -324,22 +324,27 @@ def derivative(pieces: Array) -> Array:
     return np.stack([pieces[:, 1], 2.0 * pieces[:, 2], 3.0 * pieces[:, 3], np.zeros(len(pieces))], axis=1)
 
 
+def assert_exact(car: Vehicle, names: tuple[str, ...], inputs: dict[str, Array], h: float, **request: Any) -> None:
+    """The outputs are those of the other assembler under inputs that are cubics over every step."""
+    system = it.state_space(car, inputs=tuple(inputs), outputs=names)
+    expected = exactly(system, np.stack([*inputs.values()], axis=1), h)
+    result = run(car, step=h, **request)
+    for i, name in enumerate(names):
+        assert_close(result[name], expected[:, i], 1e-10)
+    assert not result.events
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_linear_quarter_car_by_the_matrix_exponential(seed: int) -> None:
     """Random networks; the matrices come from the other assembler, and the cubic input enters exactly."""
     rng = np.random.default_rng(seed)
     car = random_quarter_car(rng, random_network(rng) | it.Spring(3e4) | it.Damper(900.0))
     h, duration = 1e-3, 0.6
-    road, height, climb = bent(rng, duration, h, 3e-3)
-    push, force, rate = bent(rng, duration, h, 300.0)
+    road, height = bent(rng, duration, h, 3e-3)
+    push, force = bent(rng, duration, h, 300.0)
     names = ("sprung_acceleration", "unsprung_acceleration", "tyre_load", "strut_force", "strut_travel")
-    system = it.state_space(car, inputs=("road", "sprung_force"), outputs=names)
-    pieces = np.stack([derivative(cubic(height, climb, h)), cubic(force, rate, h)], axis=1)
-    expected = exactly(system, pieces, h)
-    result = run(car, road=road, forces={"sprung_force": push}, duration=duration, step=h)
-    for i, name in enumerate(names):
-        assert_close(result[name], expected[:, i], 1e-10)
-    assert not result.events
+    inputs = {"road": derivative(height), "sprung_force": force}
+    assert_exact(car, names, inputs, h, road=road, forces={"sprung_force": push}, duration=duration)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -349,17 +354,14 @@ def test_linear_half_car_by_the_matrix_exponential(seed: int) -> None:
     front, rear = (random_network(rng, most=6) | it.Spring(3e4) | it.Damper(900.0) for _ in range(2))
     car = random_half_car(rng, front, rear)
     h, duration, late = 1e-3, 0.5, 40
-    road, height, climb = bent(rng, duration, h, 3e-3)
-    push, force, rate = bent(rng, duration, h, 300.0)
+    road, height = bent(rng, duration, h, 3e-3)
+    push, force = bent(rng, duration, h, 300.0)
     names = ("sprung_acceleration", "pitch_acceleration", "tyre_front_load", "tyre_rear_load", "rear_force")
-    system = it.state_space(car, inputs=("road_front", "road_rear", "pitch_moment"), outputs=names)
-    ahead = derivative(cubic(height, climb, h))
+    ahead = derivative(height)
     behind = np.concatenate([np.zeros((late, 4)), ahead[:-late]])
-    expected = exactly(system, np.stack([ahead, behind, cubic(force, rate, h)], axis=1), h)
-    result = run(car, road=road, forces={"pitch_moment": push}, duration=duration, step=h,
-                 speed=(car.distance_front + car.distance_rear) / (late * h))  # fmt: skip
-    for i, name in enumerate(names):
-        assert_close(result[name], expected[:, i], 1e-10)
+    inputs = {"road_front": ahead, "road_rear": behind, "pitch_moment": force}
+    speed = (car.distance_front + car.distance_rear) / (late * h)
+    assert_exact(car, names, inputs, h, road=road, forces={"pitch_moment": push}, duration=duration, speed=speed)
 
 
 @pytest.mark.parametrize("hold", ["zero", "linear"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import count
 from typing import ClassVar
 
@@ -276,26 +276,31 @@ def test_what_rests_at_a_limit_with_none_beyond_is_not_struck_by_rounding(drag):
     assert simulate(car, road=rough, duration=0.2, step=2e-4).status.ok
 
 
+CAR = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
+COMFORT = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+
+
+def with_in_series(law):
+    """The car with a law in series with its damper."""
+    return replace(CAR, strut=Spring(5e4) | Damper(1500.0) - law)
+
+
 @pytest.mark.parametrize("statistical", list(StatisticalRole))
 def test_statistical_linearisation_refuses_what_is_uneven_whatever_it_says_of_itself(statistical, monkeypatch):
     monkeypatch.setattr(UnevenFriction, "statistical", statistical)
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - UnevenFriction(300.0, 100.0, "u"))
     with pytest.raises(PerformanceIndexError, match="'u' in 'strut' is an uneven friction"):
-        it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.StatisticalLinearisation())
+        it.evaluate(with_in_series(UnevenFriction(300.0, 100.0, "u")), COMFORT, it.StatisticalLinearisation())
 
 
 def test_a_clutch_is_not_told_to_have_no_drag():
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - OneWay(0.0, "w"))
     with pytest.raises(PerformanceIndexError, match=r"which simulate it\.$"):
-        it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.StatisticalLinearisation())
+        it.evaluate(with_in_series(OneWay(0.0, "w")), COMFORT, it.StatisticalLinearisation())
 
 
 def test_a_budget_of_what_has_no_usual_size_asks_for_bounds():
-    first = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) - OneWay(0.0, "w"))
-    other = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
-    road = it.Road(roughness=5e-7, speed=25.0)
+    first, method = with_in_series(OneWay(0.0, "w")), it.ExpectedValue(realisations=2)
     with pytest.raises(DesignError, match=r"'w' is 0\. Give bounds=\(lower, upper\)"):
-        it.break_even(first, other, it.RideComfort(road), parameter="w", method=it.ExpectedValue(realisations=2))
+        it.break_even(first, CAR, COMFORT, parameter="w", method=method)
 
 
 def test_a_constant_force_leaves_gains_as_they_are():

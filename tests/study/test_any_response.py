@@ -14,6 +14,7 @@ from campaigns import sampled
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from random_mechanisms import FAMILIES, mechanisms
+from study_text import assert_survives, load_text
 from synthetic import terminal_text
 
 import inerter as it
@@ -21,7 +22,6 @@ from inerter.cli.main import call
 from inerter.errors import StudyError
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
@@ -35,11 +35,10 @@ Load = Callable[[str], Study]
 
 @pytest.fixture
 def load(tmp_path: Path) -> Load:
-    def load_text(text: str) -> Study:
-        (tmp_path / "study.toml").write_text(text, encoding="utf-8")
-        return load_study(tmp_path / "study.toml")
+    def load_file(text: str) -> Study:
+        return load_text(tmp_path, text)
 
-    return load_text
+    return load_file
 
 
 # --- numbers of random mechanisms, by two ways ---
@@ -258,8 +257,7 @@ def test_the_best_damper_is_that_of_the_literature(load: Load, tmp_path: Path) -
 
 def test_it_survives_being_written_and_is_told(load: Load, tmp_path: Path) -> None:
     study = load(OPTIMISED)
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    assert load_study(tmp_path / "again.toml") == study
+    assert_survives(study, tmp_path)
     page = report(run_study(study, tmp_path / "out").data, study, tmp_path)
     for told in (
         "random response (sway)",

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from study_text import study_text
+from study_text import assert_survives, load_text, study_text
 
 import inerter as it
 from inerter.errors import InerterError
@@ -15,7 +14,6 @@ from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
 from inerter.files.study.place import place_of
 from inerter.files.study.places import places, with_numbers
-from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 
@@ -33,9 +31,7 @@ def text_of(vehicle: dict[str, str], settings: str = ASK) -> str:
 
 
 def study_of(folder: Path, vehicle: dict[str, str], settings: str = ASK) -> Study:
-    path = folder / "study.toml"
-    path.write_text(text_of(vehicle, settings), encoding="utf-8")
-    return load_study(path)
+    return load_text(folder, text_of(vehicle, settings))
 
 
 def test_a_study_chooses_a_mass_as_python_does(tmp_path: Path) -> None:
@@ -54,9 +50,7 @@ def test_a_study_chooses_a_mass_as_python_does(tmp_path: Path) -> None:
 
 def test_it_reads_back_as_it_was_written(tmp_path: Path) -> None:
     study = study_of(tmp_path, {**FREE, "tyre_stiffness": '{ from = "80 kN/m", to = "0.2 MN/m" }'})
-    (tmp_path / "again.toml").write_text(write_resolved(study), encoding="utf-8")
-    again = load_study(tmp_path / "again.toml")
-    assert replace(again, path=study.path) == study
+    again = assert_survives(study, tmp_path)
     assert again.vehicle["tyre_stiffness"] == it.Free(80e3, 200e3, "tyre_stiffness")
 
 

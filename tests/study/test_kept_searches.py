@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from study_text import study_text
+from study_text import load_text, study_text
 
 import inerter as it
 from inerter.cli.main import call
@@ -82,9 +82,7 @@ def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, 
 
 
 def test_short_designs_keep_nothing_but_their_outcome(tmp_path: Path) -> None:
-    path = tmp_path / "study.toml"
-    path.write_text(STUDIES["smooth"], encoding="utf-8")
-    study = it.load_study(path)
+    study = load_text(tmp_path, STUDIES["smooth"])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(checkpoints, "_SELDOM", 1e9)
         it.run_study(study, tmp_path / "out")

@@ -20,7 +20,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from campaigns import sampled
-from study_text import study_text
+from study_text import load_text, study_text
 from synthetic import terminal_text
 
 from inerter.cli.main import call
@@ -46,10 +46,8 @@ WORDS = ("lower", "upper", "")
 def study_of(folder: Path, points: int, settings: str = "") -> Study:
     sweep = f'sweep = {{ k = {{ from = "10 kN/m", to = "90 kN/m", points = {points} }} }}'
     elements = 'k = "20 kN/m"\nc = { from = "1 kN s/m", to = "9 kN s/m" }\nb = "30 kg"'
-    path = folder / f"many{points}.toml"
     text = study_text(f'indices = ["J1", "J3"]\noptimise = "norm"\n{sweep}\n{settings}', elements=elements)
-    path.write_text(text, encoding="utf-8")
-    return load_study(path)
+    return load_text(folder, text, f"many{points}.toml")
 
 
 def drawn(study: Study, case: Case, threads: int = 1) -> Outcome:

@@ -69,6 +69,7 @@ def test_elements_that_no_vehicle_has(tmp_path, capsys):
     assert "no vehicle has such a spring: k 12 N/m, less than 100 N/m" in text
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
     path = tmp_path / "study.toml"
     text = QUARTER.replace("5e-7 m^3/cycle", "256e-6 m^3/cycle")

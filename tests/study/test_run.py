@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +24,10 @@ from inerter.files.study.cases import Outcome, cases
 from inerter.files.study.checking import check_study
 from inerter.files.study.journal import journal_of, results_of
 from inerter.files.study.loading import load_study
-from inerter.files.study.running import csv_text, result_names, run_study
+from inerter.files.study.running import StudyResult, csv_text, result_names, run_study
+from inerter.files.study.study import Study
 from inerter.methods.method import evaluate
+from inerter.work.checkpoints import Checkpoint
 
 SWEEP = """
 title = "Soft and stiff springs"
@@ -50,10 +54,48 @@ sweep = { k = { from = "10 kN/m", to = "90 kN/m", points = POINTS } }
 """
 
 
-def write(folder: Path, points: int = 3) -> Path:
+def write(folder: Path, points: int = 3, change: tuple[str, str] = ("f", "f")) -> Path:
     path = folder / "study.toml"
-    path.write_text(SWEEP.replace("POINTS", str(points)), encoding="utf-8")
+    path.write_text(SWEEP.replace("POINTS", str(points)).replace(*change), encoding="utf-8")
     return path
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A study that has been run, with its results in `folder`."""
+
+    study: Study
+    result: StudyResult
+
+    @property
+    def folder(self) -> Path:
+        return self.result.folder
+
+    @property
+    def journal(self) -> Path:
+        return self.folder / "journal.jsonl"
+
+    @property
+    def summary(self) -> bytes:
+        return (self.folder / "summary.csv").read_bytes()
+
+    def again(self, **options: bool) -> StudyResult:
+        return run_study(self.study, self.folder, **options)
+
+
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> Finished:
+    """Twelve cases: three stiffnesses, two layouts, two indices; read only."""
+    folder = tmp_path_factory.mktemp("first")
+    study = load_study(write(folder))
+    return Finished(study, run_study(study, folder / "out"))
+
+
+@pytest.fixture
+def finished(first: Finished, tmp_path: Path) -> Finished:
+    """The same in a folder of its own, to change."""
+    folder = shutil.copytree(first.folder, tmp_path / "out")
+    return replace(first, result=replace(first.result, folder=folder))
 
 
 def lines(journal: Path) -> list[str]:
@@ -86,12 +128,10 @@ def wait_for_cases(process: subprocess.Popen[bytes], journal: Path, count: int) 
         time.sleep(0.02)
 
 
-def test_summary_holds_the_values_of_the_designs(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path))
-    result = run_study(study, tmp_path / "out")
-    with (tmp_path / "out" / "summary.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    assert len(rows) == len(cases(study)) == result.computed == 12
+def test_summary_holds_the_values_of_the_designs(first: Finished) -> None:
+    study = first.study
+    rows = list(csv.DictReader(first.summary.decode().splitlines()))
+    assert len(rows) == len(cases(study)) == first.result.computed == 12
     for row in rows[::3]:
         values = {
             name: float(row[f"{name} [{unit}]"])
@@ -105,25 +145,23 @@ def test_summary_holds_the_values_of_the_designs(tmp_path: Path) -> None:
         assert row["status"] == "ok"
 
 
-def test_improvement_is_over_the_baseline_of_the_same_stiffness(tmp_path: Path) -> None:
-    data = run_study(load_study(write(tmp_path)), tmp_path / "out").data
+def test_improvement_is_over_the_baseline_of_the_same_stiffness(first: Finished) -> None:
+    data = first.result.data
     expected = 100.0 * (1.0 - data.value / data.value.sel(layout="usual", drop=True))
     assert np.all(data.improvement.sel(layout="usual") == 0.0)
     xr.testing.assert_allclose(data.improvement, expected.transpose(*data.improvement.dims))
 
 
-def test_results_reopen_with_units(tmp_path: Path) -> None:
-    result = run_study(load_study(write(tmp_path)), tmp_path / "out")
-    with xr.open_dataset(tmp_path / "out" / "results.nc", engine="h5netcdf") as again:
-        xr.testing.assert_identical(again.load().drop_attrs(), result.data.drop_attrs())
+def test_results_reopen_with_units(first: Finished) -> None:
+    with xr.open_dataset(first.folder / "results.nc", engine="h5netcdf") as again:
+        xr.testing.assert_identical(again.load().drop_attrs(), first.result.data.drop_attrs())
         assert again["k"].attrs["units"] == "N/m"
         assert "friction 'f' in 'strut' left out" in again.attrs["notes"]
 
 
-def test_resolved_study_gives_the_same_results(tmp_path: Path) -> None:
-    run_study(load_study(write(tmp_path)), tmp_path / "one")
-    run_study(load_study(tmp_path / "one" / "study.resolved.toml"), tmp_path / "two")
-    assert (tmp_path / "one" / "summary.csv").read_bytes() == (tmp_path / "two" / "summary.csv").read_bytes()
+def test_resolved_study_gives_the_same_results(first: Finished, tmp_path: Path) -> None:
+    run_study(load_study(first.folder / "study.resolved.toml"), tmp_path / "two")
+    assert (tmp_path / "two" / "summary.csv").read_bytes() == first.summary
 
 
 INTERRUPTED = [(how, *size) for how in (signal.SIGINT, signal.SIGKILL) for size in ((4, 1), (30, 2))]
@@ -189,94 +227,76 @@ def _state(pid: int) -> str:
         return "Z"
 
 
-def test_a_line_cut_short_is_dropped(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path))
-    run_study(study, tmp_path / "out")
-    journal = tmp_path / "out" / "journal.jsonl"
-    summary = (tmp_path / "out" / "summary.csv").read_bytes()
-    journal.write_bytes(journal.read_bytes()[:-100])
-    result = run_study(study, tmp_path / "out", resume=True)
-    assert result.computed == 1
-    assert (tmp_path / "out" / "summary.csv").read_bytes() == summary
+def test_a_line_cut_short_is_dropped(finished: Finished) -> None:
+    finished.journal.write_bytes(finished.journal.read_bytes()[:-100])
+    summary = finished.summary
+    assert finished.again(resume=True).computed == 1
+    assert finished.summary == summary
 
 
-def test_finished_study_resumes_without_work(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path))
-    run_study(study, tmp_path / "out")
-    assert run_study(study, tmp_path / "out", resume=True).computed == 0
+def test_finished_study_resumes_without_work(finished: Finished) -> None:
+    assert finished.again(resume=True).computed == 0
 
 
-def test_folder_is_never_overwritten_unasked(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path, points=2))
-    run_study(study, tmp_path / "out")
-    (tmp_path / "out" / "thesis.txt").write_text("mine")
+def test_folder_is_never_overwritten_unasked(finished: Finished) -> None:
+    thesis = finished.folder / "thesis.txt"
+    thesis.write_text("mine")
     with pytest.raises(StudyError, match=r"not empty.*--resume.*--force"):
-        run_study(study, tmp_path / "out")
-    assert run_study(study, tmp_path / "out", force=True).computed == 8
-    assert (tmp_path / "out" / "thesis.txt").read_text() == "mine"
+        finished.again()
+    assert finished.again(force=True).computed == 12
+    assert thesis.read_text() == "mine"
 
 
-def test_journal_of_another_study_is_refused(tmp_path: Path) -> None:
-    run_study(load_study(write(tmp_path)), tmp_path / "out")
-    other = load_study(write(tmp_path, points=6))
+def test_journal_of_another_study_is_refused(finished: Finished, tmp_path: Path) -> None:
     with pytest.raises(StudyError, match="another study"):
-        run_study(other, tmp_path / "out", resume=True)
+        run_study(load_study(write(tmp_path, points=6)), finished.folder, resume=True)
 
 
 @pytest.mark.parametrize("text", ["", '{"format": 1, "ine'], ids=["empty", "half a header"])
-def test_journal_cut_before_its_first_line_begins_anew(tmp_path: Path, text: str) -> None:
-    study = load_study(write(tmp_path, points=2))
-    run_study(study, tmp_path / "out")
-    (tmp_path / "out" / "journal.jsonl").write_text(text)
-    assert run_study(study, tmp_path / "out", resume=True).computed == 8
-    assert (tmp_path / "out" / "study.resolved.toml").exists()
+def test_journal_cut_before_its_first_line_begins_anew(finished: Finished, text: str) -> None:
+    finished.journal.write_text(text)
+    assert finished.again(resume=True).computed == 12
+    assert (finished.folder / "study.resolved.toml").exists()
 
 
-def test_folder_in_use_is_refused(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path, points=2))
-    run_study(study, tmp_path / "out")
-    with open_results(WriteMode(tmp_path / "out", "run", result_names(), resume=True)):
+def test_folder_in_use_is_refused(finished: Finished) -> None:
+    with open_results(WriteMode(finished.folder, "run", result_names(), resume=True)):
         for options in ({"force": True}, {"resume": True}, {}):
             with pytest.raises(StudyError, match=r"another run is writing|is not empty"):
-                run_study(study, tmp_path / "out", **options)
+                finished.again(**options)
 
 
-def test_resume_and_force_exclude_each_other(tmp_path: Path) -> None:
+def test_resume_and_force_exclude_each_other(finished: Finished) -> None:
     with pytest.raises(StudyError, match="one of them"):
-        run_study(load_study(write(tmp_path)), tmp_path / "out", resume=True, force=True)
+        finished.again(resume=True, force=True)
 
 
 @pytest.mark.marathon
 def test_numbers_beyond_reason_are_outcomes_not_crashes(tmp_path: Path) -> None:
-    path = write(tmp_path, points=2)
-    path.write_text(path.read_text().replace('"100 N s/m", to = "100 kN s/m"', '"1e-300 N s/m", to = "1e300 N s/m"'))
+    path = write(tmp_path, 2, ('"100 N s/m", to = "100 kN s/m"', '"1e-300 N s/m", to = "1e300 N s/m"'))
     result = run_study(load_study(path), tmp_path / "out")
     assert len(result.data.status.values.ravel()) == 8
     for line in result.failures:
         assert "Traceback" not in line
 
 
-def test_outcomes_survive_the_journal(tmp_path: Path) -> None:
-    study = load_study(write(tmp_path, points=2))
-    run_study(study, tmp_path / "out")
-    path = tmp_path / "out" / "journal.jsonl"
-    found = list(results_of(journal_of(study, path)))
-    assert [outcome.part for outcome in found] == list(cases(study))
+def test_outcomes_survive_the_journal(first: Finished) -> None:
+    journal = results_of(journal_of(first.study, first.journal))
+    found = [one for one in journal if not isinstance(one, Checkpoint)]  # of a search that took long
+    assert [outcome.part for outcome in found] == list(cases(first.study))
     for outcome in found:
         assert isinstance(outcome, Outcome)
         assert Outcome(**json.loads(json.dumps(outcome.to_json()))) == outcome
 
 
 def test_ill_posed_layout_is_found_before_work(tmp_path: Path) -> None:
-    path = write(tmp_path)
-    path.write_text(path.read_text().replace('serial = "k | c - (b | f)"', 'serial = "f"'))
+    path = write(tmp_path, 3, ('"k | c - (b | f)"', '"f"'))
     with pytest.raises(StudyError, match=r"layouts\.serial.*unconstrained"):
         check_study(load_study(path))
 
 
 def test_undamped_layout_is_a_result_with_a_status(tmp_path: Path) -> None:
-    path = write(tmp_path, points=2)
-    path.write_text(path.read_text().replace('serial = "k | c - (b | f)"', 'serial = "k | b"'))
+    path = write(tmp_path, 2, ('"k | c - (b | f)"', '"k | b"'))
     result = run_study(load_study(path), tmp_path / "out")
     row = result.data.sel(layout="serial", index="J1")
     assert np.all(np.isinf(row.value))

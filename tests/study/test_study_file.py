@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from study_text import assert_survives
 
 from inerter.errors import NetworkError, StudyError
 from inerter.field_metadata import fields_of
@@ -23,7 +24,6 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of
 from inerter.files.study.place import Sweep, place_of
-from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
@@ -249,15 +249,6 @@ def test_a_byte_order_mark_and_windows_lines_are_read(load):
 
 
 # --- there and back ---
-
-
-def assert_survives(study, folder):
-    copy = folder / "copy.toml"
-    copy.write_text(write_resolved(study), encoding="utf-8")
-    again = load_study(copy)
-    assert again == study
-    assert again.to_tables() == study.to_tables()
-    assert (list(again.layouts), list(again.elements)) == (list(study.layouts), list(study.elements))
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from study_text import study_text
+from study_text import assert_refused, load_text, study_text
 
 import inerter as it
 from inerter.app.documents import read
@@ -87,12 +87,10 @@ def load(tmp_path: Path) -> Callable[..., Study]:
     """Loads a study file beside road.csv, a profile of two tracks."""
     write_profile(tmp_path / "road.csv", heights(1), heights(2))
 
-    def load_text(road: str, **parts: str) -> Study:
-        path = tmp_path / "study.toml"
-        path.write_text(text_of(road, **parts), encoding="utf-8")
-        return load_study(path)
+    def load_file(road: str, **parts: str) -> Study:
+        return load_text(tmp_path, text_of(road, **parts))
 
-    return load_text
+    return load_file
 
 
 def full_car(strut: it.Network) -> it.FullCar:
@@ -297,11 +295,7 @@ def test_a_bad_road_is_refused_with_the_place(load, tmp_path, road, vehicle, pla
     write_profile(tmp_path / "short.csv", heights(5, points=8))
     write_profile(tmp_path / "flat.csv", np.zeros(500))
     write_profile(tmp_path / "one.csv", heights(6))
-    with pytest.raises(StudyError) as refused:
-        load(road, vehicle=vehicle)
-    (line,) = str(refused.value).splitlines()
-    assert line.startswith(f"study.toml: {place}: ")
-    assert words in line
+    assert_refused(lambda: load(road, vehicle=vehicle), place, [words])
 
 
 def test_a_missing_profile_is_told_with_the_other_problems(load):

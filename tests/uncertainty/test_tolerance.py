@@ -212,6 +212,9 @@ def test_two_parts_of_one_free_value_scatter_by_their_names():
     assert here < it.evaluate(one, it.Quantile(J1, alone, samples=256), NORM).value
 
 
+SCATTER = {"index": J1, "method": NORM, "spread": {"c": 0.1}}
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -230,9 +233,8 @@ def test_two_parts_of_one_free_value_scatter_by_their_names():
     ],
 )
 def test_tolerances_that_cannot_be(given, said):
-    asked = {"design": fixed(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
     with pytest.raises(it.InerterError, match=said):
-        it.tolerance_analysis(**asked)
+        it.tolerance_analysis(**{"design": fixed(), **SCATTER, **given})
 
 
 @pytest.mark.parametrize(
@@ -245,9 +247,8 @@ def test_tolerances_that_cannot_be(given, said):
     ],
 )
 def test_robust_designs_that_cannot_be(given, said):
-    asked = {"vehicle": free(), "index": J1, "method": NORM, "spread": {"c": 0.1}, **given}
     with pytest.raises(it.InerterError, match=said):
-        it.optimise_robust(**asked)
+        it.optimise_robust(**{"vehicle": free(), **SCATTER, **given})
 
 
 def test_shares_of_a_quantile():

@@ -61,13 +61,18 @@ def test_at_the_exact_optimum_two_peaks_are_double_roots(mu: float, beta: float)
     assert np.abs(roots.imag).max() < 1e-5
 
 
+def assert_best(mu: float, beta: float, k: float, c: float, index: it.PerformanceIndex, value: float) -> None:
+    """The search finds this stiffness and damping, and this value."""
+    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
+    best = it.optimise(free, index, it.Norm(), seed=0)
+    assert best.value == pytest.approx(value, rel=1e-8)
+    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+
+
 @pytest.mark.parametrize(("mu", "beta"), MASSES)
 def test_the_search_finds_the_exact_optimum(mu: float, beta: float) -> None:
     h, k, c = peak_and_parameters(mu + beta)
-    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
-    best = it.optimise(free, it.LoadCarrying(), it.Norm(), seed=0)
-    assert best.value == pytest.approx(h, rel=1e-8)
-    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+    assert_best(mu, beta, k, c, it.LoadCarrying(), h)
 
 
 def mean_square(mu: float, beta: float, k: float, c: float, on_absorber: float) -> float:
@@ -90,15 +95,19 @@ def random_force(mu: float) -> tuple[float, float, float]:
     return 0.5 * sqrt((4.0 + 3.0 * mu) / (mu * (1.0 + mu))), mu * nu**2, 2.0 * zeta * mu * nu
 
 
+def assert_least(mu: float, beta: float, k: float, c: float, on_absorber: float, least: float) -> None:
+    for step in (0.99, 1.01):
+        assert mean_square(mu, beta, step * k, c, on_absorber) > least
+        assert mean_square(mu, beta, k, step * c, on_absorber) > least
+
+
 @pytest.mark.parametrize(("mu", "beta"), MASSES)
 def test_the_mean_square_under_a_white_force(mu: float, beta: float) -> None:
     least, k, c = random_force(mu + beta)
     found = it.h2_norm(it.state_space(absorber(mu, beta, k, c), "primary_force", "primary_displacement"))
     assert found**2 == pytest.approx(mean_square(mu, beta, k, c, 0.0), rel=1e-8)
     assert found**2 == pytest.approx(least, rel=1e-8)
-    for step in (0.99, 1.01):  # it is the least
-        assert mean_square(mu, beta, step * k, c, 0.0) > least
-        assert mean_square(mu, beta, k, step * c, 0.0) > least
+    assert_least(mu, beta, k, c, 0.0, least)
 
 
 def random_ground(mu: float, beta: float) -> tuple[float, float]:
@@ -119,23 +128,15 @@ def test_the_mean_square_under_ground_acceleration(mu: float, beta: float) -> No
     found = it.evaluate(absorber(mu, beta, k, c), on_ground, it.Norm()).value
     least = mean_square(mu, beta, k, c, mu)  # the force on a mass is in proportion to it
     assert found**2 == pytest.approx(least, rel=1e-8)
-    for step in (0.99, 1.01):  # it is the least
-        assert mean_square(mu, beta, step * k, c, mu) > least
-        assert mean_square(mu, beta, k, step * c, mu) > least
-    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
-    best = it.optimise(free, on_ground, it.Norm(), seed=0)
-    assert best.value == pytest.approx(sqrt(least), rel=1e-8)
-    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+    assert_least(mu, beta, k, c, mu, least)
+    assert_best(mu, beta, k, c, on_ground, sqrt(least))
 
 
 @pytest.mark.parametrize(("mu", "beta"), MASSES)
 def test_the_search_finds_the_least_mean_square_under_a_white_force(mu: float, beta: float) -> None:
     least, k, c = random_force(mu + beta)
-    free = absorber(mu, beta, it.free(0.1 * k, 10.0 * k), it.free(0.1 * c, 10.0 * c))
     pushed = it.RandomResponse({"primary_displacement": 1.0}, it.WhiteForce("primary_force", intensity=4.0))
-    best = it.optimise(free, pushed, it.Norm(), seed=0)
-    assert best.value == pytest.approx(2.0 * sqrt(least), rel=1e-8)
-    assert best.parameters == pytest.approx({"k": k, "c": c}, rel=1e-5)
+    assert_best(mu, beta, k, c, pushed, 2.0 * sqrt(least))
 
 
 def test_support_with_a_damper() -> None:

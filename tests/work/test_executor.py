@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from study_text import study_text
+from study_text import load_text, study_text
 
 import inerter as it
 from inerter.errors import WorkError
@@ -40,8 +40,7 @@ class Elsewhere(Executor):
 
 
 def test_an_executor_of_ones_own_gives_the_same_results(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    study, executor = it.load_study(tmp_path / "study.toml"), Elsewhere()
+    study, executor = load_text(tmp_path, STUDY), Elsewhere()
     one = it.run_study(study, tmp_path / "one")
     other = it.run_study(study, tmp_path / "other", executor=executor)
     assert one.computed == other.computed == 4
@@ -66,8 +65,7 @@ class Deadly(Elsewhere):
 
 
 def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    study, executor = it.load_study(tmp_path / "study.toml"), Deadly()
+    study, executor = load_text(tmp_path, STUDY), Deadly()
     whole = it.run_study(study, tmp_path / "whole").data
     found = it.run_study(study, tmp_path / "out", executor=executor)
     assert found.failed
@@ -85,8 +83,7 @@ def test_a_case_that_ends_its_processes_has_a_status_and_the_rest_completes(tmp_
 
 
 def test_what_a_study_keeps_is_told_when_its_executor_has_ended(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    study, threads = it.load_study(tmp_path / "study.toml"), ThreadPoolExecutor(1)
+    study, threads = load_text(tmp_path, STUDY), ThreadPoolExecutor(1)
     threads.shutdown()
     with pytest.raises(WorkError, match=r"executor has ended, .* are kept; continue with --resume\.$"):
         it.run_study(study, tmp_path / "out", executor=threads)
@@ -94,17 +91,15 @@ def test_what_a_study_keeps_is_told_when_its_executor_has_ended(tmp_path: Path) 
 
 
 def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    study, executor = it.load_study(tmp_path / "study.toml"), Elsewhere()
+    study, executor = load_text(tmp_path, STUDY), Elsewhere()
     it.run_study(study, tmp_path / "out")
     assert it.run_study(study, tmp_path / "out", executor=executor, resume=True).computed == 0
     assert executor.run == 0
 
 
 def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     with pytest.raises(it.InerterError, match="not empty"):
-        it.run_study(it.load_study(tmp_path / "study.toml"), tmp_path)
+        it.run_study(load_text(tmp_path, STUDY), tmp_path)
 
 
 def test_an_executor_that_is_given_does_all_and_goes_on() -> None:

@@ -6,10 +6,12 @@ first access to a registry, once in each process.
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from difflib import get_close_matches
 from functools import lru_cache, wraps
+from importlib.util import find_spec
 from pathlib import Path
 from threading import RLock
 from types import MappingProxyType
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "inerter.rows"
+_ADDRESS = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_]\w*")  # of a class or function: module:name
+_VERSIONED = frozenset({"numpy", "scipy"}) | sys.stdlib_module_names  # whose versions are known, so not hashed
 Row = TypeVar("Row")
 Made = TypeVar("Made")
 
@@ -72,7 +76,8 @@ class Registry(Mapping[str, Row], Generic[Row]):
                 f"{name} is not a valid {self._what}: not a dataclass. Write @dataclass(frozen=True) above it."
             )
         self._rows[key] = row
-        _register_change(row, _classes.add)
+        _sources[id(row)] = {name.partition(".")[0] for name in _modules_of(row)}
+        _count_change()
         return row
 
     def remove(self, row: Row) -> None:
@@ -80,7 +85,8 @@ class Registry(Mapping[str, Row], Generic[Row]):
         key = getattr(row, self._key)
         if self._rows.get(key) is row:
             del self._rows[key]
-            _register_change(row, _classes.discard)
+            _sources.pop(id(row), None)
+            _count_change()
 
     def __getitem__(self, key: str) -> Row:
         load_plugins()
@@ -122,16 +128,25 @@ def cache_until_registration(make: Callable[[], Made]) -> Callable[[], Made]:
 
 _lock = RLock()
 _changes = 0
-_classes: set[type] = set()  # entries that are classes
+_sources: dict[int, set[str]] = {}  # packages with the code of each entry, by the identity of the entry
 _loading = False
 _failure: RegistryError | None = None
 
 
-def _register_change(row: object, keep: Callable[[type], None]) -> None:
+def _count_change() -> None:
     global _changes  # noqa: PLW0603 -- registries change while the package runs
     _changes += 1
-    if isinstance(row, type):
-        keep(row)
+
+
+def _modules_of(row: object) -> Iterator[str]:
+    """Modules with the code of an entry: that of the class or function, and of those that an instance refers to."""
+    yield getattr(row, "__module__", type(row).__module__)
+    if not isinstance(row, type):
+        for value in getattr(row, "__dict__", {}).values():
+            if isinstance(value, str) and _ADDRESS.fullmatch(value):
+                yield value.partition(":")[0]
+            elif callable(value) and getattr(value, "__module__", None):
+                yield value.__module__
 
 
 def load_plugins() -> None:
@@ -162,15 +177,19 @@ def plugin_versions() -> dict[str, str]:
 
 def plugin_paths() -> list[Path]:
     """Paths of the code of other distributions that adds entries: folders of packages, or files of single modules."""
-    modules = {entry.module for entry in _entries()} | {row.__module__ for row in _classes}
-    names = {name.partition(".")[0] for name in modules} - {__package__}
+    named = {entry.module.partition(".")[0] for entry in _entries()}
+    names = named.union(*_sources.values()) - {__package__, *_VERSIONED}
     return sorted({Path(place) for name in names for place in _module_paths(name)})
 
 
 def _module_paths(name: str) -> list[str]:
-    module = sys.modules.get(name)
-    places = list(getattr(module, "__path__", ())) or [getattr(module, "__file__", None)]
-    return [str(place) for place in places if place]
+    if name in sys.modules:
+        module = sys.modules[name]
+        places = list(getattr(module, "__path__", ())) or [getattr(module, "__file__", None)]
+    else:  # an entry that names the address of its code, which is imported at its first use
+        spec = find_spec(name)
+        places = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin]
+    return [str(place) for place in places if place and Path(place).exists()]
 
 
 def _entries() -> tuple[EntryPoint, ...]:

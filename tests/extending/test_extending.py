@@ -294,7 +294,7 @@ def test_a_task_is_worked_on_and_told_as_our_own(session: Session, tmp_path: Pat
     text += 'catalogue_of = "c"\ncatalogue = ["1 kN s/m", "2 kN s/m", "4 kN s/m"]\n'
     (tmp_path / "bought.toml").write_text(text, encoding="utf-8")
     assert "and 2 catalogues." in " ".join(session.command("check", "bought.toml", cwd=tmp_path)[0].split())
-    assert "values that are sold" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
+    assert "Values in the catalogue" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
     said = json.loads(session.command("run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path)[0])
     by = {one["layout"]: one for one in said["catalogues"]}
     assert set(by) == {"S1", "S3"}

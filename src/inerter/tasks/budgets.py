@@ -45,7 +45,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         """Name of the task part in messages."""
         return f"budget of {self.parameter}, {self.layout} {self.index}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
         """Break-even value of the element in the best design found."""
         present = design_value(study, designs[Case(self.layout, self.index)], self.parameter)
         may_vanish = study.elements[self.parameter].may_vanish
@@ -66,7 +66,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         more = "" if sure else decisive_method_clause(budget_method(study), said)
         return self._answer(study, found, found.status.kind.value, said + more)
 
-    def failure_answer(self, study: Study, message: str) -> BudgetAnswer:
+    def failed_result(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""
         return self._answer(study, None, StatusKind.FAILED.value, message)
 

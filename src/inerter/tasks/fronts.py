@@ -41,7 +41,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
         """Name of the task part in messages."""
         return f"front of {self.layout}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
         """Pareto front of the layout."""
         limits = [limit for several in limits_in(study) for limit in several]
         indices = [study.resolve_index(name, self.layout) for name in study.trade_off]
@@ -51,7 +51,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
         found = pareto_front(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
         return _answer(self.layout, found, str(study.optimise))
 
-    def failure_answer(self, study: Study, message: str) -> FrontAnswer:
+    def failed_result(self, study: Study, message: str) -> FrontAnswer:
         """Answer without points, with status `failed`."""
         return _without(self.layout, StatusKind.FAILED.value, message)
 

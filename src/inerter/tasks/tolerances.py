@@ -41,7 +41,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
         """Name of the task part in messages."""
         return f"tolerance of {self.layout} {self.index}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
         """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
         found = tolerance_analysis(
@@ -64,7 +64,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),
         )
 
-    def failure_answer(self, study: Study, message: str) -> ToleranceAnswer:
+    def failed_result(self, study: Study, message: str) -> ToleranceAnswer:
         """Answer without numbers, with status `failed`."""
         return ToleranceAnswer(
             layout=self.layout,

@@ -90,6 +90,18 @@ def format_complex(value: complex, digits: int = _DIGITS) -> str:
     return f"{format_number(value.real, digits)} {sign} {format_number(abs(value.imag), digits)}j"
 
 
+def format_decimals(value: float, decimals: int, sign: str = "") -> str:
+    """Number with so many decimals; without a sign if it rounds to zero, "n/a" for nan.
+
+    >>> format_decimals(1.005, 1), format_decimals(-0.001, 2), format_decimals(0.5, 2, "+")
+    ('1.0', '0.00', '+0.50')
+    """
+    if math.isnan(value):
+        return "n/a"
+    text = f"{value:{sign}.{decimals}f}"
+    return text.lstrip("+-") if float(text) == 0.0 else text
+
+
 def format_quantity(
     value: float, unit: str, digits: int = _DIGITS, *, error: float = math.nan, bound: float = math.nan
 ) -> str:

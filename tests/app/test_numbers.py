@@ -32,10 +32,12 @@ from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
+from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.speeds import speed_sentences
 from inerter.report.study_data import as_text
+from inerter.tasks.budgets import Budgets
 
 
 def run(document: dict[str, Any], folder: Path) -> Any:
@@ -244,6 +246,22 @@ def test_budgets_are_those_of_python(client: TestClient) -> None:
     )  # type: ignore[attr-defined]
     found = it.break_even(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
     assert (told["value"], told["status"]) == (None if np.isnan(found.value) else found.value, found.status.kind.value)
+
+
+@pytest.mark.parametrize("parameter", ["f", "k"])
+def test_break_even_values_of_the_page_are_those_of_a_study(client: TestClient, parameter: str) -> None:
+    """Over the same bounds, and of the index itself where the study minimises a quantile."""
+    asked = {"indices": ["J1"], "budgets": [parameter], "baseline": "S1", "evaluate": ["statistical-linearisation"]}
+    document = changed(elements={"c": "3 kN s/m", "b": "60 kg"})
+    document["study"] = {**asked, "tolerance": {"k": "10 %"}, "quantile": 0.95}
+    study = study_from(document)
+    outcomes = {case: run_case(study, case) for case in cases(study)}
+    (part,) = [part for part in Budgets().parts(study) if part.layout == "S3"]
+    found = run_part(study, outcomes, part)
+    body = {"study": document, "layout": "S3", "index": "J1", "parameter": parameter, "method": found.method}
+    told = client.post("/api/panel/budget", json=body).json()
+    assert (told["value"], told["status"]) == (found.value, found.status)
+    assert found.status != "failed"
 
 
 def _car(document: dict[str, Any], design: dict[str, Any]) -> Any:

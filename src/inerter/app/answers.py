@@ -26,12 +26,11 @@ from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import Network, Parallel
-from inerter.optimisation.budget import break_even as find_break_even
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
-from inerter.tasks.budgets import budget_method
+from inerter.tasks.budgets import budget_method, element_break_even
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.vehicle.registry import VEHICLES
 
@@ -197,13 +196,8 @@ def break_even(study: Study, body: Body) -> Answer:
     if baseline is None:
         raise DesignError("A budget needs a baseline: a second layout, or `baseline` in the request.")
     method = body.get("method") or budget_method(study)
-    found = find_break_even(
-        design.vehicle,
-        baseline.vehicle,
-        study.resolve_index(required_value(body, "index"), design.layout),
-        parameter=required_value(body, "parameter"),
-        method=study.method(method),
-    )
+    index, element = required_value(body, "index"), required_value(body, "parameter")
+    found = element_break_even(study, design.vehicle, baseline.vehicle, index, element, study.method(method))
     return {
         "parameter": found.parameter,
         "method": method,

@@ -12,6 +12,7 @@ from inerter.figures.identification import draw
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.identification.loading import CUSTOM
 from inerter.files.identification.running import FIT, RESIDUALS, IdentificationResult, responses
+from inerter.formatting import format_decimals
 from inerter.networks.parser import format_expression
 from inerter.report.identification_data import identification_data, response_data, write_residuals
 from inerter.report.identification_figures import figures
@@ -149,5 +150,5 @@ def _computation(found: IdentificationResult) -> str:
         f"measured motion was differentiated twice. Least squares from many starts, with residuals weighted and "
         f"whitened; {fit.simulations} simulations.{starts} Intervals of 95 % are from profile likelihoods and "
         f"from a parametric bootstrap. Settings: {settings}. Schwarz's criterion (lower is better): "
-        f"{fit.criterion:.1f}."
+        f"{format_decimals(fit.criterion, 1)}."
     )

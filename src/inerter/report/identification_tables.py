@@ -8,6 +8,7 @@ from math import floor, isnan, log10
 from inerter.files.identification.running import IdentificationResult
 from inerter.formatting import (
     choose_scale,
+    format_decimals,
     format_number,
     format_quantity,
     format_range,
@@ -48,22 +49,18 @@ def _two_digits(error: float) -> str:
     >>> _two_digits(0.0102), _two_digits(12.3), _two_digits(4321.0)
     ('0.010', '12', '4300')
     """
-    return f"{error:#.2g}".rstrip(".") if 1e-4 < error < 99.0 else format_number(error, 2)
+    places = 1 - floor(log10(error)) if error > 0.0 else 0
+    return format_decimals(error, places) if 1e-4 < error < 99.0 else format_number(error, 2)
 
 
 def correlation_table(found: IdentificationResult) -> Table:
     """Correlations of the estimates."""
     names = list(found.fit.parameters)
     rows = [
-        Row([Cell(name), *(Cell(None if isnan(value) else _format_correlation(value)) for value in row)])
+        Row([Cell(name), *(Cell(None if isnan(value) else format_decimals(value, 2, "+")) for value in row)])
         for name, row in zip(names, found.fit.correlation.tolist(), strict=True)
     ]
     return Table("Correlations of the estimates", columns("Parameter", *names), rows)
-
-
-def _format_correlation(value: float) -> str:
-    text = f"{value:+.2f}"
-    return "0.00" if float(text) == 0.0 else text
 
 
 def candidate_table(found: IdentificationResult) -> Table:
@@ -107,7 +104,7 @@ def format_variance_share(explained: float) -> str:
     """
     missing = 100.0 * (1.0 - explained)
     decimals = min(max(1 - floor(log10(missing)), 1), 5) if 0.0 < missing < 100.0 else 1
-    return f"{100.0 * explained:.{decimals}f} %"
+    return f"{format_decimals(100.0 * explained, decimals)} %"
 
 
 def cause_texts(found: IdentificationResult) -> Iterator[tuple[str, str, str, str]]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 
 from inerter.files.identification.running import IdentificationResult, Reading, model_title
-from inerter.formatting import format_quantity
+from inerter.formatting import format_decimals, format_number, format_quantity
 from inerter.identification.fit import RecordFit
 from inerter.report.identification_tables import candidate_table, cause_texts, goodness_table, parameter_table
 from inerter.report.identified_values import elements_block
@@ -77,14 +77,16 @@ def unreliability_reason(found: IdentificationResult) -> str:
 def misfit_sentence(found: IdentificationResult) -> str:
     """Sentence on the normalised residual: r.m.s. residual over sensor noise, of fitted and validation data."""
     m = found.fit.misfit
-    parts = [f"{m.fitted:.2f} (fitted)"] + ([f"{m.checked:.2f} (checked)"] if m.checked == m.checked else [])
+    sizes = {"fitted": m.fitted, "checked": m.checked}
+    parts = [f"{format_decimals(size, 2)} ({part})" for part, size in sizes.items() if size == size]
     return f"Residual over the expected sensor noise: {' and '.join(parts)} (r.m.s., whitened)."
 
 
 def sampling_summary(reading: Reading) -> str:
     """Samples, length and rate of a record."""
     record = reading.used
-    return f"{record.time.size} samples over {record.duration:.6g} s at {1.0 / record.interval:.6g} Hz"
+    duration, rate = format_number(record.duration), format_number(1.0 / record.interval)
+    return f"{record.time.size} samples over {duration} s at {rate} Hz"
 
 
 def processing_notes(found: IdentificationResult, reading: Reading, comparison: RecordFit) -> Iterator[str]:
@@ -92,7 +94,8 @@ def processing_notes(found: IdentificationResult, reading: Reading, comparison: 
     yield from reading.used.notes
     yield from comparison.record.notes[len(reading.used.notes) :]
     motion = comparison.experiment.motion
-    yield f"The displacement was smoothed to {motion.bandwidth:.4g} Hz; it shows motion up to {motion.highest:.4g} Hz."
+    smoothed, highest = format_quantity(motion.bandwidth, "Hz"), format_quantity(motion.highest, "Hz")
+    yield f"The displacement was smoothed to {smoothed}; it shows motion up to {highest}."
     fitted, checked = int(comparison.fitted.sum()), int(comparison.checked.sum())
     left = reading.used.time.size - fitted - checked
     lead = f", among them the first {format_quantity(comparison.lead, 's', 3)}" if comparison.lead else ""
@@ -151,9 +154,9 @@ def _goodness_lines(found: IdentificationResult) -> Iterator[str]:
 def whiteness_sentence(comparison: RecordFit) -> str:
     """Sentence on the whiteness test of the residuals."""
     p = comparison.whiteness
-    size = f"p = {p:.1g}" if p > 1e-16 else "p < 1e-16"
+    size = f"p = {format_number(p, 1)}" if p > 1e-16 else "p < 1e-16"
     if p >= INDEPENDENT:
-        return f"The residual is no more autocorrelated than sensor noise (p = {p:.2g})."
+        return f"The residual is no more autocorrelated than sensor noise (p = {format_number(p, 2)})."
     return (
         f"The residual is more autocorrelated than sensor noise ({size}): part of it is not noise. "
         f"Intervals are widened for it."

@@ -179,7 +179,7 @@ def inline(svg: str, name: str, caption: str, *, natural: bool = False) -> Marku
     opening, _, rest = body.partition(">")
     rest = _REFERENCE.sub(rf"\g<1>{name}-", rest)
     width = _WIDTH.search(opening)
-    size = f' style="width: {_LARGER * float(width[1]):.0f}pt"' if natural and width else ""
+    size = f' style="width: {round(_LARGER * float(width[1]))}pt"' if natural and width else ""
     return Markup(f'{_SIZE.sub("", opening)}{size} role="img" aria-label="{escape(caption)}">{rest}')
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
-from inerter.formatting import format_quantity
+from inerter.formatting import format_decimals, format_number, format_quantity, format_range
 from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH, table_lines
 from inerter.simulation.peaks import LiftOff, Peak
@@ -58,7 +58,7 @@ def _request(result: SimulationResult) -> Iterator[str]:
     yield from wrap(f"{request.model}, {request.layout} = {network}", WIDTH, subsequent_indent="  ")
     yield from wrap(f"{signal.input}: {signal.kind}, {', '.join(keys)}", WIDTH, subsequent_indent="  ")
     start = "steady state" if request.initial == "periodic" else f"from {request.initial}"
-    steps = f"{run.time[-1] - run.time[0]:.6g} s in steps of {1e3 * request.step:.6g} ms"
+    steps = f"{format_number(run.time[-1] - run.time[0])} s in steps of {format_number(1e3 * request.step)} ms"
     yield from wrap(f"{steps}, {request.integrator}, {start}", WIDTH)
 
 
@@ -95,7 +95,9 @@ def _when(peak: Peak, unit: str) -> str:
 def _elements(result: SimulationResult) -> Iterator[str]:
     rows = []
     for n in result.nonlinear:
-        shares = ", ".join(f"{n.switch.time_in(state)} {100 * share:.1f} %" for state, share in n.shares.items())
+        shares = ", ".join(
+            f"{n.switch.time_in(state)} {format_decimals(100 * share, 1)} %" for state, share in n.shares.items()
+        )
         rows.append(Row(cells(f"{n.kind} {n.name}", n.events, shares)))
     if rows:
         heads = [*columns("Element", "Events"), Column("Share of the time", prose=True)]
@@ -125,9 +127,11 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
     run, begin, end = result.run, float(result.run.time[0]), float(result.run.time[-1])
     if run.repetition is not None:
         r = run.repetition
-        yield f"Steady state: after {r.periods} periods the state repeats to {r.mismatch:.1e} of its size."
+        mismatch = format_number(r.mismatch, 2)
+        yield f"Steady state: after {r.periods} periods the state repeats to {mismatch} of its size."
     if window is not None and window != (begin, end):
-        yield f"The figure shows {window[0]:g} to {window[1]:g} s; another part with --window FROM:TO."
+        shown = format_range(*window, "s", 6)
+        yield f"The figure shows {shown}; another part with --window FROM:TO."
     if window is not None and run.lift_offs:
         yield from _elsewhere(run.lift_offs, window, (begin, end))
     for note in (*result.request.notes, *run.notes):
@@ -139,5 +143,5 @@ def _elsewhere(found: tuple[LiftOff, ...], window: Window, whole: Window) -> Ite
     """Sentence on the window of the first lift-off, if none lies in the window of the figure."""
     if not any(one.end > window[0] and one.begin < window[1] for one in found):
         half, at = 0.5 * (window[1] - window[0]), found[0].begin
-        around = f"{max(whole[0], at - half):.4g}:{min(whole[1], at + half):.4g}"
+        around = f"{format_number(max(whole[0], at - half), 4)}:{format_number(min(whole[1], at + half), 4)}"
         yield f"No tyre lifts off in that part; the first one does within --window {around}."

@@ -13,17 +13,20 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import capital, format_list, index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.cases import Case
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.formatting import format_quantity
+from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
-from inerter.networks.elements import Free, Tied
+from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.index_summary import best_layouts
 from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value
+from inerter.vehicle.replace_values import elements_by_label
+from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,20 +50,12 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
 
     def compute(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
         """Break-even value of the element in the best design found."""
-        present = design_value(study, designs[Case(self.layout, self.index)], self.parameter)
-        may_vanish = study.elements[self.parameter].may_vanish
         design, baseline = (
             study.design(layout).with_values(designs[Case(layout, self.index)].parameters)
             for layout in (self.layout, str(study.baseline))
         )
-        found = break_even(
-            design,
-            baseline,
-            study.over_conditions(self.index),
-            parameter=self.parameter,
-            method=study.method(budget_method(study), threads),
-            bounds=None if may_vanish else (present / _DOWN, present * _UP),
-        )
+        method = study.method(budget_method(study), threads)
+        found = element_break_even(study, design, baseline, self.index, self.parameter, method)
         said = found.status.message
         sure = found.status.kind in (StatusKind.OK, StatusKind.UNBOUNDED)
         more = "" if sure else decisive_method_clause(budget_method(study), said)
@@ -197,11 +192,18 @@ def budget_method(study: Study) -> str:
     return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
-def design_value(study: Study, outcome: Outcome, element: str) -> float:
-    """Value of an element in the design found [SI]."""
-    value = study.elements[element].value
-    assert not isinstance(value, Tied)
-    return outcome.parameters[element] if isinstance(value, Free) else value
+def element_break_even(
+    study: Study, design: Vehicle, baseline: Vehicle, index: str, element: str, method: Method
+) -> BreakEven:
+    """Break-even value of an element of `study` in a design with numbers only, for an index over its conditions.
+
+    Raises what `break_even` raises.
+    """
+    bounds = None
+    for present in elements_by_label(design, element):  # else it is none of the design, which `break_even` tells
+        if not present.may_vanish and isinstance(present.value, float):
+            bounds = present.value / _DOWN, present.value * _UP
+    return break_even(design, baseline, study.over_conditions(index), parameter=element, method=method, bounds=bounds)
 
 
 def _verdict(found: BudgetAnswer) -> str:

@@ -13,14 +13,14 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.formatting import format_share
+from inerter.formatting import format_decimals, format_number, format_share
 from inerter.methods.registry import decisive_method_clause
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis
 
 SHARE = 0.95  # of cases, of the quantile that is told
 _NUMBERS = ("nominal", "mean", "standard_deviation", "quantile", "worst")
-_KEYS = {"quantile": f"quantile_{SHARE:g}"}  # of the file, of numbers that have another one there
+_KEYS = {"quantile": f"quantile_{format_number(SHARE)}"}  # of the file, of numbers that have another one there
 _HEADINGS = {
     "mean": "Mean",
     "standard_deviation": "Standard deviation",
@@ -202,4 +202,6 @@ def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
 
 def _due(one: ToleranceAnswer) -> str:
     """Values that contribute to the variance, largest first, each with its total-order Sobol' index [%], as text."""
-    return ", ".join(f"{name} {100.0 * max(total, 0.0):.0f} %" for total, name in _shares(one)) or MISSING
+    return (
+        ", ".join(f"{name} {format_decimals(100.0 * max(total, 0.0), 0)} %" for total, name in _shares(one)) or MISSING
+    )

@@ -7,6 +7,7 @@ from typing import Any
 
 from inerter.errors import StatusKind
 from inerter.formatting import (
+    format_decimals,
     format_number,
     format_quantity,
     format_range,
@@ -54,7 +55,7 @@ def _linear_row(c: ComparedRow, names: Iterable[str]) -> Row:
     contents = [
         *(_design(c.row), c.row.table, c.row.index, c.row.case, c.row.layout, c.unit),
         *(Shown(c.row.value, c.row.printed), _number(c.paper2008), _number(c.exact)),
-        Shown(c.off_by, format_signed(c.off_by, 1)),
+        Shown(c.off_by, format_decimals(c.off_by, 1, "+")),
         Shown(100.0 * relative, _percent_text(100.0 * relative)),
         c.agrees,
         *map(c.row.parameters.get, names),
@@ -250,10 +251,4 @@ def _percent_cell(value: float, remark: str) -> Cell:
 
 
 def _percent_text(value: float) -> str:
-    return f"{format_signed(value)} %"
-
-
-def format_signed(value: float, decimals: int = 2) -> str:
-    """Number with its sign and so many decimals; without a sign if it rounds to zero."""
-    text = f"{value:+.{decimals}f}"
-    return text[1:] if float(text) == 0.0 else text
+    return f"{format_decimals(value, 2, '+')} %"

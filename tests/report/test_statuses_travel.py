@@ -35,7 +35,7 @@ J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)
 K, C, B = it.Spring(60e3, "k"), it.Damper(3e3, "c"), it.Inerter(50.0, "b")
 ELEMENTS = 'k = "60 kN/m"\nc = { from = "500 N s/m", to = "9 kN s/m" }\nb = "50 kg"'
 TEXT = study_text(
-    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nbudgets = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3\n'
+    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nbreak_even = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3\n'
     'tolerance = { k = "5 %" }',
     elements=ELEMENTS,
 )

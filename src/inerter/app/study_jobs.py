@@ -39,7 +39,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     document = dict(body["study"])
     if not isinstance(asked := document.get("study"), Mapping):
         raise StudyError("A sweep needs a study document with a section [study].")
-    settings = {key: value for key, value in asked.items() if key != "budgets"}
+    settings = {key: value for key, value in asked.items() if key not in ("break_even", "budgets")}
     if body.get("sweep"):
         settings["sweep"] = body["sweep"]
     if body.get("indices"):

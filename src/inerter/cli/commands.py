@@ -58,7 +58,7 @@ def run(
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
 
     kept = _continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    items = " and ".join(["designs", *(task.key for task in tasks() if task.parts(loaded))])
+    items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,

@@ -145,6 +145,11 @@ class Declaration:
     attribute: str = ""  # in Python
     words: str = ""  # of its number, in sentences
     implied: bool = False  # whether the file may leave it out because other keys say it
+    former: str = ""  # its name in files of the previous version, which is read too
+
+    def name_in(self, raw: Mapping[str, Any]) -> str:
+        """Name of the key in a table of a file that gives it; empty in one that does not."""
+        return next((name for name in (self.name, self.former) if name and name in raw), "")
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the key."""
@@ -225,8 +230,11 @@ class TableCodec(Codec):
         raw, count = self.before(context.table(raw)), len(context.problems)
         values: dict[str, Any] = {}
         for one in self.keys:
-            if one.name in raw:
-                values[one.attribute] = context.at(one.name, one.example).read(one.codec, raw[one.name])
+            if name := one.name_in(raw):
+                values[one.attribute] = context.at(name, one.example).read(one.codec, raw[name])
+                if one.former in raw and name != one.former:
+                    both = f"given together with {one.name}, the new name of the same key"
+                    context.at(one.former).add(EntryError(fault=both, expected="one of the two"))
             elif one.default is REQUIRED:
                 example = one.example or f"a section [{'.'.join((*context.place, one.name))}]"
                 context.at(one.name).add(EntryError(fault="missing", expected=example))
@@ -236,7 +244,8 @@ class TableCodec(Codec):
             if not context.place:
                 context.loaded[one.name] = values[one.attribute]
         known = self.names
-        others = {name: entry for name, entry in raw.items() if name not in known}
+        former = {one.former for one in self.keys}
+        others = {name: entry for name, entry in raw.items() if name not in known and name not in former}
         if self.rest:
             values[self.rest] = others
         for name in () if self.rest else others:
@@ -274,7 +283,13 @@ class TableCodec(Codec):
         """The JSON Schema of the table."""
         tag, word, what = self.tag
         decides = {"const": word, "type": "string", "description": what, "examples": [word]}
-        properties = {**({tag: decides} if tag else {}), **{one.name: one.schema() for one in self.keys}}
+        former = {
+            one.former: {**one.codec.schema(), "description": f"Former name of {one.name}.", "deprecated": True}
+            for one in self.keys
+            if one.former
+        }
+        own = {one.name: one.schema() for one in self.keys}
+        properties = {**({tag: decides} if tag else {}), **own, **former}
         required = [one.name for one in self.keys if one.default is REQUIRED and not one.implied]
         return {
             "type": "object",
@@ -301,15 +316,15 @@ class TableCodec(Codec):
     def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries of all keys that a table gives."""
         for one in self.keys if isinstance(raw, Mapping) else ():
-            if one.name in raw:
-                for entry in one.codec.raw_entries(raw[one.name]):
-                    yield entry.below(one.name, sentence=one.sentence, words=one.words)
+            if name := one.name_in(raw):
+                for entry in one.codec.raw_entries(raw[name]):
+                    yield entry.below(name, sentence=one.sentence, words=one.words)
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
         """The table with other names of elements in the entries of its keys."""
         if not isinstance(raw, Mapping):
             return raw
-        codecs = {one.name: one.codec for one in self.keys}
+        codecs = {name: one.codec for one in self.keys for name in (one.name, one.former)}
         return {key: codecs[key].rename(entry, names) if key in codecs else entry for key, entry in raw.items()}
 
     def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:

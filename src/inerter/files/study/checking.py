@@ -43,7 +43,7 @@ def check_lines(path: Path) -> Iterator[str]:
     """
     study = load_study(path)
     check_study(study)
-    counts = {task.key: len(task.parts(study)) for task in tasks()}
+    counts = {task.items or task.key: len(task.parts(study)) for task in tasks()}
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
     swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
     yield (

@@ -237,8 +237,10 @@ class Settings:
     budgets: tuple[str, ...] = key(
         some_names("f"),
         "Elements whose break-even value against the baseline is computed.",
-        'budgets = ["f"]',
+        'break_even = ["f"]',
         default=(),
+        name="break_even",
+        former="budgets",
     )
     limits: tuple[StudyLimit, ...] = key(
         LimitsCodec(),

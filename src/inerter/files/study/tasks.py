@@ -59,6 +59,7 @@ class Task(ABC, Generic[AnswerT]):
 
     key: ClassVar[str]  # of its answers in the journal and in --json, and of their file
     title: ClassVar[str]  # of its section in a report
+    items: ClassVar[str] = ""  # its parts where they are counted, in the plural; the key if empty
     answer: type[AnswerT]
 
     @abstractmethod

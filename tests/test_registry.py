@@ -291,7 +291,7 @@ def added() -> Iterator[Added]:
 def index_with(setting: str) -> type:
     """An index that has this setting, in m."""
     given = (setting, float, field(default=1.0, metadata=it.quantity("m", "A length.", "1 m")))
-    words = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    words = dict.fromkeys(("title", "unit", "response", "definition"), "x")
     return make_dataclass("Other", [given], namespace={"symbol": "X1", **words}, frozen=True)
 
 
@@ -325,7 +325,7 @@ class Heard:
     )
     symbol, title, unit, response = "X2", "loudness", "", "gain"
 
-    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+    def definition(self, mechanism: it.Mechanism) -> it.IndexDefinition:
         outputs = (*(it.OutputWeight(*one) for one in self.outputs.items()), it.OutputWeight(self.ear))
         return it.IndexDefinition(outputs, it.Combination.SUM_OF_RMS, self.cause, "", self.hearing)
 
@@ -372,7 +372,7 @@ def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added
 def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
     metadata: Any, words: str, added: Added, tmp_path: Path
 ) -> None:
-    words_of_it = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    words_of_it = dict.fromkeys(("title", "unit", "response", "definition"), "x")
     given: list[Any] = [("road", it.Road), ("by", Any, field(default=None, metadata=metadata))]
     added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
     path = tmp_path / "study.toml"

@@ -105,10 +105,10 @@ class Session:
         """What a program prints."""
         return self._asked([str(cwd), program, ()], 0)[0]
 
-    def _asked(self, question: list[object], expected: int) -> tuple[str, str]:
+    def _asked(self, request: list[object], expected: int) -> tuple[str, str]:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        print(json.dumps(question), file=self.process.stdin, flush=True)
+        print(json.dumps(request), file=self.process.stdin, flush=True)
         code, out, err = json.loads(self.process.stdout.readline())
         assert code == expected, err
         return out, err
@@ -476,7 +476,7 @@ BROKEN = {
         "from dataclasses import dataclass\n@it.INDICES.add\n@dataclass(frozen=True)\nclass T(it.RideComfort): pass",
         "'J1'",
     ),
-    "half": (f"{FROZEN}class T:\n    symbol = 'T'", "title, unit, response, question"),
+    "half": (f"{FROZEN}class T:\n    symbol = 'T'", "title, unit, response, definition"),
     "no dataclass": ("@it.INDICES.add\nclass T(it.RideComfort):\n    symbol = 'T'", "@dataclass"),
     "no key": (
         f"{FROZEN}class T(it.RideComfort):\n    symbol = ''",
@@ -536,7 +536,7 @@ class WheelTravel:
     road: it.Road
     symbol, title, unit, response = "D1", "tyre deflection", "m", "deflection per road velocity"
 
-    def question(self, mechanism):
+    def definition(self, mechanism):
         outputs = tuple(it.OutputWeight(f"{tyre.name}_deflection") for tyre in mechanism.tyres)
         return it.on_road(self, mechanism, outputs, "tyres")
 

@@ -60,9 +60,9 @@ def pools(request):
     Every road has its own seed, so groups of 5 roads are as independent as runs with other seeds are.
     """
     systems = [piecewise(parallel(100.0)), piecewise(series(100.0))]
-    question = J3.question(systems[0].mechanism)
-    way = drive(systems[0], question, CONVENTIONS["paper2008"])
-    changes = [first_order(system, question, way) for system in systems]
+    definition = J3.definition(systems[0].mechanism)
+    way = drive(systems[0], definition, CONVENTIONS["paper2008"])
+    changes = [first_order(system, definition, way) for system in systems]
 
     def on_road(seed):
         found = [run(system, way, ("sprung_acceleration", "tyre_load"), (), seed).power for system in systems]
@@ -244,16 +244,16 @@ CASES = {
 def test_a_small_friction_changes_each_road_as_predicted(case):
     design, index, outputs, conventions = CASES[case]
     system = piecewise(design(0.0))
-    question = with_convention_filters(CONVENTIONS[conventions], system.mechanism, index.question(system.mechanism))
-    way = drive(system, question, CONVENTIONS[conventions])
-    weights = [abs(output.weight) for output in question.outputs]
+    definition = with_convention_filters(CONVENTIONS[conventions], system.mechanism, index.definition(system.mechanism))
+    way = drive(system, definition, CONVENTIONS[conventions])
+    weights = [abs(output.weight) for output in definition.outputs]
     for seed in realisation_seeds(0, 0, 2):
-        plain = run(system, way, outputs, question.filters, seed)
+        plain = run(system, way, outputs, definition.filters, seed)
         assert plain.status.ok
         rubbing = piecewise(design(2.0))
-        found = run(rubbing, way, outputs, question.filters, seed).power
+        found = run(rubbing, way, outputs, definition.filters, seed).power
         change = (np.sqrt(found) - np.sqrt(plain.power)) @ weights
-        assert first_order(rubbing, question, way)([seed])[0] == pytest.approx(change, rel=0.05)
+        assert first_order(rubbing, definition, way)([seed])[0] == pytest.approx(change, rel=0.05)
 
 
 @pytest.mark.parametrize("case", CASES)

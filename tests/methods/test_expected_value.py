@@ -383,8 +383,8 @@ def assert_near_the_norm(car, linear, index):
 def test_what_lies_outside_the_band_is_uncertain_by_at_most_itself(scale):
     """Also where the linear model of the motion that is found is of no use."""
     system = piecewise(quarter_car(30.0).mechanism())
-    question = J1.question(system.mechanism)
-    design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
+    definition = J1.definition(system.mechanism)
+    design = on_roads(system, definition, CONVENTIONS["exact"], seed=0)
     with ThreadPoolExecutor(1) as pool:
         found = [replace(ran, power=scale * ran.power) for ran in design.runs(0, 2, pool)]
     lacking = rest_of(design, found)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.formatting import format_quantity, format_share
-from inerter.indices.excitation import stand_ins_of
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
+from inerter.indices.excitation import error_sources_of
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
@@ -67,7 +67,7 @@ class OnRoads:
 
     system: PiecewiseSystem
     frictions: tuple[str, ...]
-    question: IndexDefinition
+    definition: IndexDefinition
     way: Drive
     linear: EquivalentLinearModel | None
     seed: int
@@ -76,18 +76,18 @@ class OnRoads:
     @property
     def outputs(self) -> tuple[str, ...]:
         """Names of the outputs of the index."""
-        return tuple(output.output for output in self.question.outputs)
+        return tuple(output.output for output in self.definition.outputs)
 
     @property
     def weights(self) -> Array:
         """Factor of each output's r.m.s. value in the index."""
-        return np.array([abs(output.weight) for output in self.question.outputs])
+        return np.array([abs(output.weight) for output in self.definition.outputs])
 
     def runs(self, first: int, stop: int, pool: Executor) -> list[RoadRun]:
         """Results of the realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
-        return map_items(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
+        return map_items(partial(run, self.system, self.way, outputs, self.definition.filters), seeds, pool.map)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,16 +104,16 @@ class Rest:
 
 
 def on_roads(
-    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
+    system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
 ) -> OnRoads:
     """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
-    way = drive(system, question, conventions, period)
+    way = drive(system, definition, conventions, period)
     check_drive(system, way)
     if way.hold is not None:
-        return OnRoads(system, (), question, way, None, seed, LONGEST)
-    linear = equivalent_linear_model(system.mechanism, question, conventions)
+        return OnRoads(system, (), definition, way, None, seed, LONGEST)
+    linear = equivalent_linear_model(system.mechanism, definition, conventions)
     longest = LONGEST if period is None else way.period
-    return OnRoads(*with_velocities(system), question, way, linear, seed, longest)
+    return OnRoads(*with_velocities(system), definition, way, linear, seed, longest)
 
 
 def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], Rest]:
@@ -169,7 +169,7 @@ def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
     gains, sampled = _squared_gains(design, speeds, omega)
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
-    added = (design.question.drive.size * norms) ** 2 - seen
+    added = (design.definition.drive.amplitude_density * norms) ** 2 - seen
     (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (way.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
@@ -184,7 +184,7 @@ def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
-    measured = road_errors(design.question, system, pade_order, norms)
+    measured = road_errors(design.definition, system, pade_order, norms)
     return Rest(added, unseen, share * unlike, within_reach, status, measured=measured)
 
 
@@ -259,19 +259,19 @@ def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, po
 def _average_index(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
-    status, unit = worst_of([lacking.status, *(ran.status for ran in found)]), design.question.unit
-    question, weights = design.question, design.weights
-    samples = question.combine(np.sqrt(np.maximum(power, 0.0)), weights)
+    status, unit = worst_of([lacking.status, *(ran.status for ran in found)]), design.definition.unit
+    definition, weights = design.definition, design.weights
+    samples = definition.combine(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        found_none = Estimate(float(question.combine(sizes, weights)), unit, status, notes=lacking.notes)
+        found_none = Estimate(float(definition.combine(sizes, weights)), unit, status, notes=lacking.notes)
         return with_error_sources(found_none, (), PROMISE)
     mean, scatter, _ = mean_and_error(samples)
-    value = mean if design.way.hold is not None else float(question.combine(sizes, weights))
+    value = mean if design.way.hold is not None else float(definition.combine(sizes, weights))
     estimate = Estimate(
         value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=lacking.notes,
         samples=tuple(samples.tolist()), period=design.way.period,
-        error_sources=(*stand_ins_of(question.drive, design.system.mechanism), *lacking.measured),
+        error_sources=(*error_sources_of(definition.drive, design.system.mechanism), *lacking.measured),
     )  # fmt: skip
     return with_error_sources(estimate, _errors(lacking, found, len(design.outputs)), PROMISE)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import Status
 from inerter.formatting import format_quantity
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import Conventions
 from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
@@ -57,7 +57,7 @@ class Drive:
     @property
     def sources(self) -> tuple[str, ...]:
         """Names of the sources."""
-        return tuple(dict.fromkeys(arrival.source for one in self.reached for arrival in one))
+        return tuple(dict.fromkeys(path.source for one in self.reached for path in one))
 
     def signal(self, seed: int, source: int = 0) -> Harmonics:
         """Realisation of a source as a road, before the hold."""
@@ -68,29 +68,29 @@ class Drive:
         """Inputs in one realisation: displacements of roads, and forces; None for an input at rest."""
         signals = {name: self.signal(seed, i) for i, name in enumerate(self.sources)}
         return [
-            self._sum(arrivals, signals, velocity=i >= self.roads) if arrivals else None
-            for i, arrivals in enumerate(self.reached)
+            self._sum(paths, signals, velocity=i >= self.roads) if paths else None
+            for i, paths in enumerate(self.reached)
         ]
 
-    def _sum(self, arrivals: Sequence[InputPath], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
+    def _sum(self, paths: Sequence[InputPath], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
         """The sum of what arrives; a force is what the velocity of a road is."""
         first = next(iter(signals.values()))
         omega = 2.0 * np.pi * first.frequencies
-        total = sum(factor_of(a, omega) * signals[a.source].coefficient for a in arrivals)
+        total = sum(factor_of(a, omega) * signals[a.source].coefficient for a in paths)
         return replace(first, coefficient=np.asarray(total * (1j * omega if velocity else 1.0)), speed=None)
 
 
-def factor_of(arrival: InputPath, omega: Array) -> NDArray[np.complex128]:
+def factor_of(path: InputPath, omega: Array) -> NDArray[np.complex128]:
     """Complex gain of an input path at `omega` [rad/s]."""
-    passed: Any = 1.0 if arrival.filter is None else arrival.filter.response(omega)
-    if arrival.excess is not None:
-        passed = passed * arrival.excess.factor(omega)
-    return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))
+    passed: Any = 1.0 if path.filter is None else path.filter.response(omega)
+    if path.excess is not None:
+        passed = passed * path.excess.factor(omega)
+    return np.asarray(path.lever * passed * np.exp(-1j * omega * path.delay))
 
 
 def _one_road(reached: Sequence[Sequence[InputPath]], roads: int) -> bool:
     """Whether one source is the road of all road inputs, and no force acts."""
-    on_roads = [arrival for one in reached[:roads] for arrival in one]
+    on_roads = [path for one in reached[:roads] for path in one]
     alone = all(len(one) == 1 for one in reached[:roads]) and not any(reached[roads:])
     return alone and all(a.plain for a in on_roads) and len({a.source for a in on_roads}) == 1
 
@@ -106,17 +106,17 @@ class RoadRun:
 
 
 def drive(
-    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, period: int | None = None
+    system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, period: int | None = None
 ) -> Drive:
     """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.
     """
-    mechanism, size = system.mechanism, question.drive.size
-    arrivals = question.arrivals(mechanism)
+    mechanism, size = system.mechanism, definition.drive.amplitude_density
+    paths = definition.input_paths(mechanism)
     names = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
-    reached = tuple(tuple(a for a in arrivals if a.input == name) for name in names)
-    road = getattr(question.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
+    reached = tuple(tuple(a for a in paths if a.input == name) for name in names)
+    road = getattr(definition.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
     roads = len(mechanism.roads)
     return Drive(road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD)
 

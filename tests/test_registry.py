@@ -86,7 +86,7 @@ def test_loading_that_is_interrupted_begins_anew(monkeypatch: pytest.MonkeyPatch
             raise KeyboardInterrupt
         return ()
 
-    monkeypatch.setattr(registry, "_entries", entries)
+    monkeypatch.setattr(registry, "_entry_points", entries)
     with pytest.raises(KeyboardInterrupt):
         registry.load_plugins()
     registry.load_plugins()
@@ -525,7 +525,7 @@ def test_a_search_by_what_simulates_begins_where_a_row_with_gradients_ends(monke
 
             return Values()
 
-    monkeypatch.setitem(it.METHODS._rows, Sharp.name, Sharp)
+    monkeypatch.setitem(it.METHODS._entries, Sharp.name, Sharp)
     assert [method.name for method in with_gradients("exact")] == ["sharp", "statistical-linearisation", "norm"]
     found = it.optimise(SLIPS, it.RideComfort(ROAD), Dull("paper2008"), starts=4)
     assert {*asked} == {"paper2008"}

@@ -11,7 +11,7 @@ from inerter.deprecation import warn_renamed
 from inerter.lazy_names import homes
 
 _HOME = homes(__file__)
-_OLD = {  # names of 0.1
+_OLD = {  # former names
     "Arrival": "InputPath",
     "Budget": "BreakEven",
     "Choice": "ModelSelection",
@@ -29,6 +29,7 @@ _OLD = {  # names of 0.1
     "Staged": "StagedIdentification",
     "Statistical": "StatisticalRole",
     "Switch": "SwitchRole",
+    "TaskRow": "TaskEntry",
     "Weighted": "OutputWeight",
     "WeightedMotion": "WeightedAcceleration",
     "assemble": "state_space",

@@ -17,8 +17,8 @@ from inerter.files.common.signal_kinds import SignalKey as SignalKey
 from inerter.files.common.signal_kinds import SignalKind as SignalKind
 from inerter.files.study.loading import load_study as load_study
 from inerter.files.study.running import run_study as run_study
-from inerter.files.study.task_rows import TASKS as TASKS
-from inerter.files.study.task_rows import TaskRow as TaskRow
+from inerter.files.study.task_registry import TASKS as TASKS
+from inerter.files.study.task_registry import TaskEntry as TaskEntry
 from inerter.identification.choice import ModelSelection as ModelSelection
 from inerter.identification.choice import select_model as select_model
 from inerter.identification.fit import Fit as Fit

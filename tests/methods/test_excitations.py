@@ -372,7 +372,7 @@ def test_excitations_and_indices_of_the_previous_version_are_read():
 
     strut = it.Spring(20e3) | it.Damper(1e3)
     car = it.QuarterCar(250.0, 35.0, 150e3, strut)
-    with pytest.warns(DeprecationWarning) as warned:
+    with pytest.warns(DeprecationWarning, match="is now") as warned:
         found = it.evaluate(car, Motion(), it.Norm())
     names = {str(one.message).split(";")[0] for one in warned}
     assert names == {

@@ -133,7 +133,7 @@ def test_the_order_in_which_outcomes_come_is_no_matter(tmp_path: Path) -> None:
     assert other.identical(one)
     low, high = (f"{end(o.notes[0][1] for o in shuffled):.6g}" for end in (min, max))
     assert one.attrs["notes"].splitlines() == [f"S1, S2: c taken as {low} to {high} N s/m", "S1, S2: left out"]
-    assert gathered.not_ok == sum(o.kind != "ok" for o in shuffled)
+    assert gathered.n_failures == sum(o.kind != "ok" for o in shuffled)
 
 
 def test_cases_are_made_when_they_are_asked_for(tmp_path: Path) -> None:
@@ -272,8 +272,8 @@ def test_failures_are_told_one_by_one(tmp_path: Path, swift: object) -> None:
     bad = [(case, o) for case in cases(study) if (o := drawn(study, case)).kind != "ok"]
     expected = [f"{c.layout} {c.index} {c.swept[0]}: {o.kind}: {o.message}" for c, o in bad]
     assert result.failures == expected
-    assert result.not_ok == len(bad)
-    assert next(result.failing()) == expected[0]
+    assert result.n_failures == len(bad)
+    assert next(result.iterate_failures()) == expected[0]
 
 
 def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(

@@ -151,10 +151,10 @@ def _processes(jobs: int | None) -> int:
 
 def _judge(result: StudyResult) -> int:
     """Report designs whose status is not ok on stderr; returns 1 if a case has no number at all, else 0."""
-    for line in islice(result.failing(), _MOST):
+    for line in islice(result.iterate_failures(), _MOST):
         _say(line)
-    if result.not_ok > _MOST:
-        _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} lists all")
+    if result.n_failures > _MOST:
+        _say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")
     return int(result.failed)
 
 

@@ -51,18 +51,18 @@ class _Study:
     done: int = 0
     total: int = 0
     kept: int = 0  # done in an earlier run
-    not_ok: int = 0
+    n_failures: int = 0
     begun: float | None = None
     compiling: str = ""
 
-    def count(self, done: int, total: int, last: PartResult | None, not_ok: int) -> None:
+    def count(self, done: int, total: int, last: PartResult | None, n_failures: int) -> None:
         """Take note of what is done."""
         if self.begun is None:
             self.begun, self.kept = time.monotonic(), done
             self.pace.begin(done)
         elif last is not None:
             self.pace.finish(last.layout, last.index if isinstance(last, Outcome) else "", done - self.done)
-        self.done, self.total, self.not_ok, self.compiling = done, total, not_ok, ""
+        self.done, self.total, self.n_failures, self.compiling = done, total, n_failures, ""
 
     def begin_kernel(self, title: str, number: int, total: int) -> None:
         """Take note of a kernel that is begun."""
@@ -74,7 +74,7 @@ class _Study:
             return f"{self.what}: {self.compiling or step}"
         part = self.part()
         rate = f", {format_number(self.rate(), 3)} a second" if self.done > self.kept + 9 else ""
-        count = f"{self.done} of {self.total} {self.items} found{_not_ok(self.not_ok)}{rate}"
+        count = f"{self.done} of {self.total} {self.items} found{_failures_clause(self.n_failures)}{rate}"
         return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
 
     def part(self) -> str:
@@ -106,8 +106,8 @@ def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
     with pulse(study.words, study.pace.take) as printer:
 
-        def show(done: int, total: int, last: PartResult | None, not_ok: int) -> None:
-            study.count(done, total, last, not_ok)
+        def show(done: int, total: int, last: PartResult | None, n_failures: int) -> None:
+            study.count(done, total, last, n_failures)
             if last is None and done < total:
                 kept = f", {done} of them done before" if done else ""
                 printer.say(f"{study.what}: {total} {study.items} to find{kept}")
@@ -135,7 +135,9 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
                 bar.update(task, description=words)
                 return
             parts = sum(one.share or 0.0 for one, _ in study.pace.parts.values())
-            text = f"{study.what}: {study.part() or study.items}{_not_ok(study.not_ok)}{study.pace.words()}"
+            text = (
+                f"{study.what}: {study.part() or study.items}{_failures_clause(study.n_failures)}{study.pace.words()}"
+            )
             bar.update(task, completed=study.done + parts, total=study.total, description=text)
 
         with listening(Listener(update, every=0.5)):
@@ -217,5 +219,5 @@ def _hands(executor: Executor | None) -> str:
     return "" if executor is None else f", {count} thread{'' if count == 1 else 's'} at work"
 
 
-def _not_ok(count: int) -> str:
+def _failures_clause(count: int) -> str:
     return f", {count} not ok" if count else ""

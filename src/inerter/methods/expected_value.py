@@ -28,7 +28,7 @@ from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
-from inerter.methods.realisations import drive, realisation_seeds
+from inerter.methods.realisations import random_excitation, realisation_seeds
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import middle
 from inerter.simulation.event_driven import KERNELS
@@ -160,7 +160,7 @@ class ExpectedValue:
             return None
         if not is_nonlinear(system, definition):
             return np.zeros(count), np.zeros(_MORE)
-        change = first_order(system, definition, drive(system, definition, conventions, self.period))
+        change = first_order(system, definition, random_excitation(system, definition, conventions, self.period))
         if change is None:
             return None
         seeds = realisation_seeds(self.seed, 0, count + _MORE)
@@ -239,7 +239,7 @@ def _is_held(system: PiecewiseSystem, definition: IndexDefinition, conventions: 
     """Whether the conventions change the value of linear designs too, so that it differs from the norm."""
     if conventions.hold is None:
         return False
-    return not definition.drive.is_random or drive(system, definition, conventions).hold is not None
+    return not definition.drive.is_random or random_excitation(system, definition, conventions).hold is not None
 
 
 def _linear(vehicle: Vehicle, definition: IndexDefinition, conventions: Conventions) -> LinearProblem | None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.indices.definition import IndexDefinition
 from inerter.kernels.arrays import FRICTION, KIND
-from inerter.methods.realisations import Drive, table
+from inerter.methods.realisations import RandomExcitation, table
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
 from inerter.simulation import event_driven
@@ -34,7 +34,7 @@ _TOGETHER = 2**19  # times of several roads at once: 8 MB
 class FirstOrder:
     """The change of an index of r.m.s. values by friction, to first order, on one road."""
 
-    way: Drive
+    excitation: RandomExcitation
     velocities: Complex  # (lines, frictions) across the frictions, for a line of the road of 1 m
     effects: Complex  # (lines, frictions) of a line of sgn(v) on the index, for a line of the road of 1 m
 
@@ -46,7 +46,7 @@ class FirstOrder:
 
     def _changes(self, seeds: Sequence[int]) -> Array:
         lines, times = self.velocities.shape[0], self._times
-        roads = np.array([_lines(self.way.road, self.way.period, lines, seed) for seed in seeds])
+        roads = np.array([_lines(self.excitation.road, self.excitation.period, lines, seed) for seed in seeds])
         total = np.zeros(len(seeds))
         for velocity, effect in zip(self.velocities.T, self.effects.T, strict=True):
             spectrum = np.zeros((len(seeds), times // 2 + 1), dtype=complex)
@@ -69,28 +69,32 @@ def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 
-def first_order(system: PiecewiseSystem, definition: IndexDefinition, way: Drive) -> FirstOrder | None:
+def first_order(
+    system: PiecewiseSystem, definition: IndexDefinition, excitation: RandomExcitation
+) -> FirstOrder | None:
     """The first-order effect of every friction.
 
     None if a gap is there, if a part is loose without friction, if what moves is not one road alone, or if a friction
     differs by its direction.
     """
     kinds, (lower, upper) = system.mechanics.elements[:, KIND], system.mechanics.limits.T
-    if way.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
+    if excitation.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
         return None
     if np.any(upper[kinds != FRICTION] > 0.0):
         return None
     count, n, nu = upper.size, system.order, system.inputs
-    integration = event_driven.start(system, table(way, 0), np.zeros(n))
+    integration = event_driven.start(system, table(excitation, 0), np.zeros(n))
     slip, forces = _slipping(integration)
-    signal = way.signal(0)
-    lines = round(_HIGHEST * way.period)
+    signal = excitation.signal(0)
+    lines = round(_HIGHEST * excitation.period)
     omega = 2.0 * np.pi * signal.frequencies[:lines]
     amplitudes = signal.amplitudes[:lines]
-    path = np.exp(-1j * np.outer(omega, way.delays))
+    path = np.exp(-1j * np.outer(omega, excitation.delays))
     inputs = np.zeros((omega.size, nu), dtype=complex)
     for order in range(3):
-        inputs[:, order * len(way.delays) : (order + 1) * len(way.delays)] = path * (1j * omega[:, None]) ** order
+        inputs[:, order * len(excitation.delays) : (order + 1) * len(excitation.delays)] = (
+            path * (1j * omega[:, None]) ** order
+        )
     try:
         resolvent = np.linalg.inv(1j * omega[:, None, None] * np.eye(n) - slip[:n, :n])
     except np.linalg.LinAlgError:
@@ -114,7 +118,7 @@ def first_order(system: PiecewiseSystem, definition: IndexDefinition, way: Drive
     sizes, given = np.sqrt(power), np.array([abs(output.weight) for output in definition.outputs])
     weights = definition.slopes(sizes, given) / (2.0 * sizes)
     effects = np.einsum("o,ko,kof->kf", weights, np.conj(outputs), responses)
-    return FirstOrder(way, velocities, effects)
+    return FirstOrder(excitation, velocities, effects)
 
 
 def _over_slip(system: PiecewiseSystem, definition: IndexDefinition) -> tuple[Array, Array]:

@@ -35,7 +35,7 @@ _FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 
 @dataclass(frozen=True)
-class Drive:
+class RandomExcitation:
     """Random excitation of a mechanism: input paths of each input, and duration.
 
     Each is the velocity of a road: a white force or acceleration is as much, in its own unit.
@@ -105,9 +105,9 @@ class RoadRun:
     jumps: Array  # what samples may miss of the r.m.s. values, relative to them
 
 
-def drive(
+def random_excitation(
     system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, period: int | None = None
-) -> Drive:
+) -> RandomExcitation:
     """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.
@@ -118,43 +118,49 @@ def drive(
     reached = tuple(tuple(a for a in paths if a.input == name) for name in names)
     road = getattr(definition.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
     roads = len(mechanism.roads)
-    return Drive(road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD)
+    return RandomExcitation(
+        road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD
+    )
 
 
-def table(way: Drive, seed: int) -> InputTable:
+def table(excitation: RandomExcitation, seed: int) -> InputTable:
     """Input table over one period of a realisation."""
-    return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
+    return _kept_table(excitation, seed) if excitation.period <= PERIOD else _table(excitation, seed)
 
 
-def _table(way: Drive, seed: int) -> InputTable:
-    if way.delays is None:
-        moved = way.input_signals(seed)
-        return tabulate(moved, [0.0] * len(moved), way.signal(seed).period, STEP)
-    signal, rest = way.signal(seed), len(way.reached) - way.roads
-    road = signal if way.hold is None else signal.held(way.hold)
-    signals = [*(road for _ in way.delays), *(None for _ in range(rest))]
-    delays = [*way.delays, *(0.0 for _ in range(rest))]
-    parts = 1 if way.hold is None else parts_of(way.hold, way.delays)
-    return tabulate(signals, delays, signal.period, (way.hold or STEP) / parts, every=parts)
+def _table(excitation: RandomExcitation, seed: int) -> InputTable:
+    if excitation.delays is None:
+        moved = excitation.input_signals(seed)
+        return tabulate(moved, [0.0] * len(moved), excitation.signal(seed).period, STEP)
+    signal, rest = excitation.signal(seed), len(excitation.reached) - excitation.roads
+    road = signal if excitation.hold is None else signal.held(excitation.hold)
+    signals = [*(road for _ in excitation.delays), *(None for _ in range(rest))]
+    delays = [*excitation.delays, *(0.0 for _ in range(rest))]
+    parts = 1 if excitation.hold is None else parts_of(excitation.hold, excitation.delays)
+    return tabulate(signals, delays, signal.period, (excitation.hold or STEP) / parts, every=parts)
 
 
 _kept_table = lru_cache(maxsize=_KEPT)(_table)
 
 
-def check_drive(system: PiecewiseSystem, way: Drive) -> None:
+def check_held_roads(system: PiecewiseSystem, excitation: RandomExcitation) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
-    if way.hold is not None:
-        held = Signal(label=f"a road held for {format_quantity(way.hold, 's', 6)}", hold="zero")
-        check_holds(system, [held for _ in range(way.roads)])
+    if excitation.hold is not None:
+        held = Signal(label=f"a road held for {format_quantity(excitation.hold, 's', 6)}", hold="zero")
+        check_holds(system, [held for _ in range(excitation.roads)])
 
 
 def run(
-    system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
+    system: PiecewiseSystem,
+    excitation: RandomExcitation,
+    outputs: Sequence[str],
+    filters: Sequence[Filter | None],
+    seed: int,
 ) -> RoadRun:
     """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
-    inputs = table(way, seed)
+    inputs = table(excitation, seed)
     state = initial_state(system, inputs.value[0], "rest")
-    most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
+    most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / excitation.period))
     return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most))
 
 

@@ -15,8 +15,8 @@ from inerter.files.study.cases import Outcome as Outcome
 from inerter.files.study.cases import run_case as run_case
 from inerter.files.study.study import Study as Study
 from inerter.files.study.study import elements_used as elements_used
-from inerter.files.study.task_rows import TASKS as TASKS
-from inerter.files.study.task_rows import TaskRow as TaskRow
+from inerter.files.study.task_registry import TASKS as TASKS
+from inerter.files.study.task_registry import TaskEntry as TaskEntry
 from inerter.files.study.tasks import Answer as Answer
 from inerter.files.study.tasks import Designs as Designs
 from inerter.files.study.tasks import Task as Task

@@ -13,9 +13,9 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import format_list
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import limits_in
+from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.files.study.ways import ways
 from inerter.formatting import format_quantity, label_with_unit
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
@@ -209,7 +209,7 @@ def _title(study: Study) -> str:
 
 def _method_words(study: Study) -> str:
     """Method of the fronts in words, if the study has several."""
-    return ways(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
+    return method_labels(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
 
 
 def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterator[Row]:

@@ -21,7 +21,7 @@ class CatalogueKeys:
     )
 
 
-it.TASKS.add(it.TaskRow("catalogues", "inerter_extending.catalogue:Catalogues", CatalogueKeys))
+it.TASKS.add(it.TaskEntry("catalogues", "inerter_extending.catalogue:Catalogues", CatalogueKeys))
 
 
 @dataclass(frozen=True)

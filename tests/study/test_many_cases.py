@@ -102,7 +102,7 @@ def swift(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Outcome]],
     monkeypatch.setattr("inerter.cli.commands.draw_study", lambda *arguments: None)
 
     def use(work: Callable[..., Outcome]) -> None:
-        monkeypatch.setattr(Case, "answer", lambda case, study, designs, threads: work(study, case, threads))
+        monkeypatch.setattr(Case, "compute", lambda case, study, designs, threads: work(study, case, threads))
 
     use(drawn)
     return use
@@ -290,7 +290,7 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
         monkeypatch.setattr(f"inerter.cli.{module}.time", SimpleNamespace(monotonic=lambda: clock[0]))
     outcome = drawn(study, cases(study)[0])
     pace = Pace({"S1": 1, "S2": 1}, ("J1",), 500)
-    with ThreadPoolExecutor(3) as threads, progress("many", executor=threads, pace=pace) as shown:
+    with ThreadPoolExecutor(3) as threads, progress(executor=threads, pace=pace) as shown:
         shown.cases(500, 1000, None, 0)
         clock[0] = 50.0
         shown.cases(600, 1000, outcome, 2)
@@ -299,9 +299,9 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
         while len(lines) < 2 and time.monotonic() < until:
             time.sleep(0.05)
             lines += capsys.readouterr().err.splitlines()
-    assert lines[0] == "many: 1000 designs to find, 500 of them done before"
+    assert lines[0] == "1000 designs to find, 500 of them done before"
     assert re.fullmatch(
-        r"many: 600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s",
+        r"600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s",
         lines[1],
     )
 

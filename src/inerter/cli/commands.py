@@ -62,7 +62,7 @@ def run(
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
-        progress(study.stem, items, executor, _pace(loaded)) as shown,
+        progress(items, executor, _pace(loaded)) as shown,
     ):
         result = run_study(
             loaded,
@@ -94,7 +94,8 @@ def run(
 def _pace(study: Study) -> Pace:
     """Estimator of the remaining time of a study, initially weighted by the design variables of each layout."""
     free = {name: len(study.design(name).free_values()) if study.optimise else 1 for name in study.layouts}
-    return Pace(free, study.indices, cases(study).points)
+    parts = {part.name: task.key for task in tasks() for part in task.parts(study)}
+    return Pace(free, study.indices, cases(study).points, parts)
 
 
 def papers() -> int:
@@ -127,7 +128,7 @@ def reproduce(
     parts = (word for part in only for word in ("--only", part))
     kept = _continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
     settings = {"jobs": processes, "resume": resume, "force": force}
-    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps(name) as callback:
+    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps() as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     _say(f"report: {folder / REPORT}")
     print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))

@@ -146,7 +146,7 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
 def steps() -> Iterator[Callable[[str, int, int], None]]:
     """A callback that shows how far each of several parts of the work is: its name, steps done, and all steps."""
     if not sys.stderr.isatty():
-        parts = _Parts()
+        parts = _PartCounts()
         with pulse(parts.words) as printer:
             parts.printer = printer
             yield parts
@@ -164,7 +164,7 @@ def steps() -> Iterator[Callable[[str, int, int], None]]:
 
 
 @dataclass
-class _Parts:
+class _PartCounts:
     """A line when a part begins, one when it ends, and one whenever it was silent for long."""
 
     counts: dict[str, tuple[int, int]] = field(default_factory=dict)

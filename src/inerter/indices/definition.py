@@ -98,7 +98,7 @@ class IndexDefinition:
 
 
 class DescribedIndex(Protocol):
-    """What reports say of an index: its symbol, title, unit and frequency response."""
+    """Description of an index for reports: its symbol, title, unit and frequency response."""
 
     @property
     def symbol(self) -> str:

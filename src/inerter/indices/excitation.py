@@ -82,7 +82,7 @@ class RoadVelocity(FormerNames):
         """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road excites a mechanism at its tyres, and this one has none.")
-        if self.road.coherence is not None and any(r.track for r in mechanism.roads):
+        if self.road.coherence is not None and any(r.side for r in mechanism.roads):
             return tuple(self._on_tracks(mechanism, self.road.coherence))
         return tuple(InputPath(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
 
@@ -91,14 +91,14 @@ class RoadVelocity(FormerNames):
         ratios = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
         parts = {source: None if ratio is None else Filter(*ratio) for source, ratio in ratios.items()}
         for road in mechanism.roads:
-            if not road.track:
+            if not road.side:
                 raise PerformanceIndexError(
                     f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Set "
                     f'track = "left" or "right", or leave the coherence out.'
                 )
             for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
                 if shape is not None:
-                    lever = right if road.track == "right" else 1.0
+                    lever = right if road.side == "right" else 1.0
                     excess = coherence.excess(right, speed)
                     yield InputPath(road.name, source, road.distance / speed, lever, shape, excess=excess)
 

@@ -126,10 +126,10 @@ def assign(
 
 def _by_track(mechanism: Mechanism, moved: object) -> dict[str, object]:
     """Signal of each road if one is given for each track; else empty."""
-    tracks = {road.track for road in mechanism.roads}
+    tracks = {road.side for road in mechanism.roads}
     if not isinstance(moved, Mapping) or not {*moved} or not {*moved} <= {"left", "right"} or tracks != {*moved}:
         return {}
-    return {road.name: moved[road.track] for road in mechanism.roads}
+    return {road.name: moved[road.side] for road in mechanism.roads}
 
 
 def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal]:

@@ -553,17 +553,17 @@ BAD = {
     "sweep that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nsweep = { f = ["10 N", "20 N"] }')],
         "study.sweep.f",
-        ["f is a friction", '"expected-value"'],
+        ["f is a friction element", '"expected-value"'],
     ),
     "condition that norm cannot see": (
         [*FRICTION, ("[study]", '[[conditions]]\nf = "20 N"\n[study]')],
         '"conditions[1]".f',
-        ["f is a friction", '"expected-value"'],
+        ["f is a friction element", '"expected-value"'],
     ),
     "budget that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbreak_even = ["f"]')],
         "study.break_even",
-        ["f is a friction", '"expected-value"'],
+        ["f is a friction element", '"expected-value"'],
     ),
     "conventions": ([(INDICES, INDICES + '\nconventions = "paper"')], "study.conventions", ['"paper2008"']),
     "seed": ([(INDICES, INDICES + "\nseed = -1")], "study.seed", ["got -1", "whole number"]),

@@ -350,7 +350,7 @@ class GaussianClosure:
         (solved,) = self.solve(np.zeros((1, 0)))
         parts, dampers, problem = solved.pattern.parts, solved.dampers, solved.pattern.index.problem
         if np.isnan(dampers.error[0]):
-            message = "the r.m.s. velocity across a friction could not be computed: lost to rounding"
+            message = "the r.m.s. velocity across a friction element could not be computed: lost to rounding"
             return Estimate(math.nan, self.definition.unit, Status(StatusKind.FAILED, message))
         result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:
@@ -360,7 +360,7 @@ class GaussianClosure:
         if result.status.ok and not bound <= PROMISE:
             result = replace(result, status=poorly_represented(self._stick(solved.unlike[0]), bound))
         result = with_error_sources(
-            result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf
+            result, (ErrorSource("one damper for a friction element", bound + float(dampers.error[0])),), np.inf
         )
         told = [Note(f"{words} sticks") for words in parts.locked]
         told += [

@@ -48,9 +48,8 @@ class StatisticalLinearisation:
     conventions: str = "exact"
     name = "statistical-linearisation"
     description = (
-        "norms of a linear model in which an equivalent damper replaces each friction, for the motion that results; "
-        "for a "
-        "peak gain at each frequency under a sinusoidal force"
+        "norms of a linear model in which an equivalent damper replaces each friction element, for the "
+        "motion that results; for a peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
     nonlinearity_support = NonlinearitySupport.FRICTION

@@ -347,6 +347,6 @@ def check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> No
             )
         if signal.hold == "zero" and system.moves_elements[i]:
             raise SimulationError(
-                f"Friction or a gap moves with {road.name!r} without a mass between; {signal.label!r} jumps, and what "
-                f'slips or touches on the way of a jump is not determined. Use hold="cubic" or "linear".'
+                f"A friction element or a gap moves with {road.name!r} without a mass between; {signal.label!r} jumps, "
+                f'and what slips or touches on the way of a jump is not determined. Use hold="cubic" or "linear".'
             )

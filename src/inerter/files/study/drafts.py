@@ -91,7 +91,10 @@ class Draft:
         free = [(entry.codec, entry.keys[-1]) for entry in self.entries if isinstance(_value(entry), Free)]
         elements = {name for codec, name in free if isinstance(codec, ElementCodec)}
         others = [name for codec, name in free if not isinstance(codec, ElementCodec)]
-        return {layout: [*(name for name in used if name in elements), *others] for layout, used in self.elements_by_layout.items()}
+        return {
+            layout: [*(name for name in used if name in elements), *others]
+            for layout, used in self.elements_by_layout.items()
+        }
 
 
 def _numbers(entry: RawEntry) -> Iterator[WrittenNumber]:

@@ -57,7 +57,7 @@ class LoadContext:
             self.add(error)
             return INVALID
 
-    def table(self, raw: Any) -> Mapping[str, Any]:
+    def as_table(self, raw: Any) -> Mapping[str, Any]:
         """The entry, if it is a table; raises `EntryError` for another."""
         if not isinstance(raw, Mapping):
             raise EntryError(got=quote_value(raw), fault="not a table", expected=self.example)
@@ -128,7 +128,7 @@ class Codec:
         """The entry of a file, valid or not, with other names of elements."""
         return raw
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables that the entry may hold or be, by their places."""
         yield from ()
 
@@ -227,7 +227,7 @@ class TableCodec(Codec):
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """Object or dictionary of the table; unknown keys are problems."""
-        raw, count = self.before(context.table(raw)), len(context.problems)
+        raw, count = self.before(context.as_table(raw)), len(context.problems)
         values: dict[str, Any] = {}
         for one in self.keys:
             if name := one.name_in(raw):
@@ -258,7 +258,7 @@ class TableCodec(Codec):
         other = None if context.place else kind_with(name)
         if other is not None:
             return f"It is a section of {other.plural}, for: inerter {other.command}."
-        every = [(p, t) for p, t in context.root.tables(()) if p and "*" not in p and name in t.names]
+        every = [(p, t) for p, t in context.root.table_codecs(()) if p and "*" not in p and name in t.names]
         for place, table in every:
             if place == context.place[:1] and table.tag[1]:
                 return f'It is a key of {table.tag[0]} = "{table.tag[1]}".'
@@ -327,11 +327,11 @@ class TableCodec(Codec):
         codecs = {name: one.codec for one in self.keys for name in (one.name, one.former)}
         return {key: codecs[key].rename(entry, names) if key in codecs else entry for key, entry in raw.items()}
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table, and those at its keys."""
         yield place, self
         for one in self.keys:
-            yield from one.codec.tables((*place, one.name))
+            yield from one.codec.table_codecs((*place, one.name))
 
 
 def table_of(kind: Any, **more: Any) -> TableCodec:
@@ -341,15 +341,15 @@ def table_of(kind: Any, **more: Any) -> TableCodec:
 
 @dataclass(frozen=True)
 class Scalar(Codec):
-    """An entry without keys of its own: `check` parses it, and raises ValueError for an invalid one."""
+    """An entry without keys of its own: `parse` gives its value, and raises ValueError for an invalid one."""
 
-    check: Callable[[Any], Any]
+    parse: Callable[[Any], Any]
     describe: Callable[[], dict[str, Any]]  # its JSON Schema, made when it is asked for: rows may be added until then
     write: Callable[[Any], Any] = lambda value: value
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """Value of the entry, as `check` returns it."""
-        return self.check(raw)
+        """Value of the entry, as `parse` returns it."""
+        return self.parse(raw)
 
     def dump(self, value: Any) -> Any:
         """Entry of a value, as `write` returns it."""

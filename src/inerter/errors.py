@@ -11,10 +11,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from inerter.deprecation import warn_renamed
+from inerter.statements import Severity, Statement
 
 
-class InerterError(Exception):
+class InerterError(Exception, Statement):
     """Base of all errors of this package. Invalid request; the message contains a remedy."""
+
+    severity = Severity.ERROR
 
 
 class NetworkError(InerterError, ValueError):
@@ -81,6 +84,8 @@ class StudyError(InerterError, ValueError):
 class WorkError(InerterError):
     """Failed computation of a valid request; completed results are kept."""
 
+    severity = Severity.WARNING
+
 
 class StatusKind(StrEnum):
     """Kind of the status of a result."""
@@ -94,9 +99,27 @@ class StatusKind(StrEnum):
     INFEASIBLE = "infeasible"
     FAILED = "failed"
 
+    @property
+    def severity(self) -> Severity:
+        """Severity of such a status."""
+        return _SEVERITIES[self]
+
+
+_SEVERITIES = {  # the most severe first, also among equal severities
+    StatusKind.FAILED: Severity.WARNING,
+    StatusKind.INFEASIBLE: Severity.WARNING,
+    StatusKind.UNSTABLE: Severity.WARNING,
+    StatusKind.MARGINAL: Severity.WARNING,
+    StatusKind.DIRECT_TERM: Severity.WARNING,
+    StatusKind.UNBOUNDED: Severity.WARNING,
+    StatusKind.INACCURATE: Severity.WARNING,
+    StatusKind.OK: Severity.INFO,
+}
+_RANKS = {kind: rank for rank, kind in enumerate(_SEVERITIES)}
+
 
 @dataclass(frozen=True)
-class Status:
+class Status(Statement):
     """Reliability of a result, with an explanation unless it is `ok`."""
 
     kind: StatusKind = StatusKind.OK
@@ -106,6 +129,16 @@ class Status:
     def ok(self) -> bool:
         """True if the result is reliable."""
         return self.kind is StatusKind.OK
+
+    @property
+    def severity(self) -> Severity:
+        """Severity of its kind."""
+        return self.kind.severity
+
+    @property
+    def sentence(self) -> str:
+        """The explanation; empty if there is none."""
+        return self.message
 
     def __str__(self) -> str:
         return self.kind.value if not self.message else f"{self.kind.value}: {self.message}"
@@ -128,21 +161,9 @@ class ErrorSource:
     bound: float
 
 
-_MOST_SEVERE_FIRST = (
-    StatusKind.FAILED,
-    StatusKind.INFEASIBLE,
-    StatusKind.UNSTABLE,
-    StatusKind.MARGINAL,
-    StatusKind.DIRECT_TERM,
-    StatusKind.UNBOUNDED,
-    StatusKind.INACCURATE,
-    StatusKind.OK,
-)
-
-
 def worst_of(statuses: Iterable[Status]) -> Status:
     """Status of a result that depends on several: the most severe one, the first among equals."""
-    return min(statuses, key=lambda status: _MOST_SEVERE_FIRST.index(status.kind), default=OK)
+    return min(statuses, key=lambda status: _RANKS[status.kind], default=OK)
 
 
 def with_article(word: str) -> str:

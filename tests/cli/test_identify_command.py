@@ -17,7 +17,7 @@ from inerter.cli.main import call
 from inerter.files.identification import running as identification_run
 from inerter.files.identification.loading import load_identification
 from inerter.identification import diagnosis
-from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.records.uncertain import Uncertain
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
@@ -352,7 +352,7 @@ def test_what_is_wrong_in_a_configuration_is_said(
 
 
 SCALES = {
-    ("--force-scale", "one"): 'Got "one"; expected a value and its standard uncertainty, such as "1 +- 1 %".',
+    ("--force-scale", "one"): 'alone or with its standard uncertainty, such as "1" or "1 +- 1 %".',
     ("--displacement-scale", "1 +- 80 %"): "expected an uncertainty below half of the value.",
     ("--fixture-mass", "2 kg +- "): "--fixture-mass: ",
 }

@@ -13,7 +13,7 @@ from quick_fits import explained, quick_fit
 import inerter as it
 from inerter.identification.experiment import experiment_of
 from inerter.identification.friction_models import ChainValues, simulate_chain
-from inerter.identification.possible_causes import Suspect
+from inerter.identification.statements.causes import Suspect
 
 RIG = Rig(duration=2.5, tones=((2e-3, 1.6), (8e-4, 3.1), (3e-4, 5.7)))
 CHANGES = {

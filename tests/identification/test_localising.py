@@ -24,7 +24,7 @@ from inerter.identification.localising import (
     _resonance,
     localisation_of,
 )
-from inerter.identification.misfit_patterns import FRICTION, MisfitPattern
+from inerter.identification.statements.patterns import FRICTION, MisfitPattern
 from inerter.records.record import Record
 from inerter.report.identification_figures import residual_samples
 

@@ -10,14 +10,8 @@ from hypothesis import strategies as st
 
 import inerter as it
 from inerter.errors import IdentificationError
-from inerter.identification.finding_texts import _TEXTS, FitFinding
-from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.options import FitOptions, OptionChanges
-from inerter.identification.possible_causes import _REMEDIES, _SENTENCES, Suspect
-from inerter.records.finding_texts import _TEXTS as OF_RECORDS
-from inerter.records.finding_texts import RecordFinding
-from inerter.records.remedy import Action, Remedy
-from inerter.report.options import _OPTIONS
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 
 
 def test_the_keywords_are_the_fields() -> None:
@@ -35,23 +29,6 @@ def test_a_changed_option_is_the_only_one_that_changes(seed: int, check: float, 
 def test_an_option_that_there_is_not_is_refused_in_a_sentence(function) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(IdentificationError, match="unknown option 'sead' of a fit"):
         function(None, None, sead=1)
-
-
-def test_every_kind_is_said() -> None:
-    """A kind that is added without its sentence does not pass."""
-    for kinds, texts in (
-        (RecordFinding, OF_RECORDS),
-        (FitFinding, _TEXTS),
-        (Suspect, _SENTENCES),
-        (Suspect, _REMEDIES),
-    ):
-        assert set(kinds) == set(texts)
-    assert set(Action) == set(_OPTIONS)
-    for verdict in Verdict:
-        said = Identifiability("b", verdict, "kg", (1.0, 2.0)).sentence
-        assert said.startswith("b: ")
-        assert said.endswith(".")
-    assert str(Remedy(Action.GAPS, 0.05)) == "gaps=0.05"
 
 
 def test_the_old_name_of_a_verdict_works_with_a_warning() -> None:

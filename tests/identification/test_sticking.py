@@ -10,11 +10,11 @@ from troubled_records import model_of, record_of, sticking
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
-from inerter.identification.identifiability import Verdict
 from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
+from inerter.identification.statements.identifiability import Verdict
 from inerter.identification.sticking import profiles_at_rest, with_adhesion
 
 KS, CS, LEVEL = 2e4, 300.0, 0.12

@@ -20,10 +20,10 @@ from inerter.identification.diagnosis import hypotheses
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.friction_models import ChainValues, simulate_chain
 from inerter.identification.hypotheses import delay
-from inerter.identification.identifiability import Verdict
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
 from inerter.identification.residual_tests import mean_square
+from inerter.identification.statements.identifiability import Verdict
 
 STARTS = 8
 

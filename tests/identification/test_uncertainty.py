@@ -14,13 +14,13 @@ import inerter as it
 from inerter.identification import bootstrap as bootstrapping
 from inerter.identification.experiment import experiment_of
 from inerter.identification.friction_law import friction_law
-from inerter.identification.identifiability import Verdict
 from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
 from inerter.identification.residual_tests import NoiseReference, mean_square
 from inerter.identification.staged_protocol import _friction
+from inerter.identification.statements.identifiability import Verdict
 
 LEVEL, STROKE, PERIODS, RATE = 10.0, 400, 12, 100.0  # [N], samples in a stroke, periods of two strokes, [Hz]
 BLOCKS = 24  # of time, over which a friction law sums its errors: here a stroke each

@@ -21,10 +21,11 @@ from inerter.files.study import running
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.loading import load_study
 from inerter.identification import diagnosis
-from inerter.identification.finding_texts import FitFinding
-from inerter.identification.friction_law import FrictionLaw, friction_law
-from inerter.identification.identifiability import Identifiability
-from inerter.identification.possible_causes import Suspect
+from inerter.identification.friction_law import friction_law
+from inerter.identification.statements.causes import Suspect
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.statements.friction import FrictionLaw
+from inerter.identification.statements.identifiability import Identifiability
 from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Remedy
 from inerter.records.writers import write_record

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -82,6 +83,8 @@ def test_between_slip_and_stick_it_is_not_ok_and_at_both_ends_it_is(index):
     told = next(found for found in known if not found.status.ok)
     assert told.status.kind == "inaccurate"
     assert "the error may exceed 3 %" in told.status.message
+    (bound,) = re.findall(r"3 %, but not (\S+) %", told.status.message)
+    assert 3.0 < float(bound) < 100.0
 
 
 @pytest.mark.parametrize("first", sampled(range(0, 100, 10), seldom=range(0, 100, 10)))

@@ -18,6 +18,7 @@ from inerter.cli.options import Cluster
 from inerter.errors import StudyError
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
+from inerter.statements import exit_code
 
 SOURCES = Path(inerter.__file__).parent
 WORK = ("recompute", "write", "data", "text")
@@ -114,8 +115,8 @@ def test_another_paper_needs_no_more_than_its_row(
     monkeypatch.setattr(PAPERS, "_entries", dict(PAPERS))
     PAPERS.add(one)
     folder = tmp_path / "out"
-    code = commands.reproduce(one.name, ("table",), folder, 2, Cluster(), resume=False, force=False, as_json=as_json)
-    assert code == 0
+    told = commands.reproduce(one.name, ("table",), folder, 2, Cluster(), resume=False, force=False, as_json=as_json)
+    assert exit_code(told) == 0
     assert (folder / "table.csv").read_text() == "7\n"
     said = capsys.readouterr()
     assert f"report: {folder}" in said.err
@@ -123,7 +124,7 @@ def test_another_paper_needs_no_more_than_its_row(
         assert json.loads(said.out) == {"table": [{"value": 7, "only": ["table"], "jobs": 2}]}
     else:
         assert said.out == "seven\n"
-    assert commands.papers() == 0
+    commands.papers()
     assert "one-2031\n  One (2031), A table of one number\n  Parts: table.\n  Claims: 0. Figures: 1." in (
         capsys.readouterr().out
     )

@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from inerter import LoadCarrying
 from inerter.cli.main import call
+from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
 from inerter.methods.method import evaluate
 from inerter.methods.norm import Norm
@@ -26,10 +27,10 @@ from inerter.papers.wang_su_2008 import between, beyond, curves, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimPart,
     ClaimVerdict,
     EstimatedQuantity,
     Evidence,
-    Statement,
     combined_verdict,
     everywhere,
     somewhere_above,
@@ -106,6 +107,20 @@ def test_how_far_method_1_is_from_the_printed_table() -> None:
         assert float(said) - 0.1 < max(map(abs, off[index, False])) <= float(said)
     assert [f"{value:.0f}" for value in off["J5", True]] == ["5", "11", "-5", "-13"]
     assert "5 and 11 % higher than printed for S2 (10 and 20 N), and 5 and 13 % lower for S3" in text
+
+
+def test_errors_that_do_not_scatter_count_in_rows_and_curves() -> None:
+    """What a window twice as wide changes is no sampling, and for J5 more than that."""
+    row = next(row for row in simulated_rows(2) if (row.index, row.case) == ("J5", 13))
+    method = ApproximateLinear(realisations=rows.RUNS, conventions="paper2008")
+    found = evaluate(row.design(), row.asks(), method)
+    assert found.standard_error is not None
+    assert found.error_bound * found.value > found.standard_error
+    total = rows.compute(2, "J5 13")["paper2008_error"]
+    assert total == pytest.approx(math.hypot(found.standard_error, found.error_bound * found.value), rel=1e-12)
+    point = curves.compute("S2-10N J5 15", {"c": 3e3, "b": 300.0})
+    sampled_error = np.std(point["deviations"], ddof=1) / math.sqrt(len(point["deviations"]))
+    assert point["error"] > 1.001 * sampled_error
 
 
 def test_every_simulated_row_is_there() -> None:
@@ -343,7 +358,7 @@ def test_a_claim_is_as_good_as_its_worst_statement() -> None:
     assert combined_verdict([SHOWN, UNDETERMINED]) is UNDETERMINED
     assert combined_verdict([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
     mixed = Claim(
-        0, "", (Statement("this", SHOWN, CONTRADICTED), Statement("that", UNDETERMINED, None, "1 %")), "N. B."
+        0, "", (ClaimPart("this", SHOWN, CONTRADICTED), ClaimPart("that", UNDETERMINED, None, "1 %")), "N. B."
     )
     assert mixed.headline == "undetermined in 1 of 2 statements; printed numbers contradicted"
     assert mixed.evidence == "this [shown; printed number contradicted]; that [undetermined; detectable: 1 %]. N. B."

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from importlib.resources import files
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
 
 from inerter.files.study.checking import check_study
+from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
-from inerter.papers.wang_su_2008.linear import compared_row
+from inerter.papers.wang_su_2008.linear import compared_row, found_design
 from inerter.papers.wang_su_2008.source import PrintedRow, linear_rows, study
 
 ROWS = linear_rows()
@@ -45,6 +48,17 @@ def test_table_3_repeats_table_2(row: PrintedRow) -> None:
     (same,) = (other for other in DESIGNS if (other.table, other.index, other.case) == (2, row.index, row.case))
     assert float(same.printed) == float(row.printed)
     assert same.parameters == row.parameters
+
+
+@pytest.mark.parametrize("table", [1, 2])
+def test_designs_are_read_from_the_results_of_their_study(table: int, tmp_path: Path) -> None:
+    row = next(row for row in DESIGNS if (row.table, row.index, row.layout) == (table, "J1", "S1"))
+    whole = source(row)
+    one = replace(whole, layouts={row.layout: whole.layouts[row.layout]}, indices=(row.index,), baseline=row.layout)
+    found = found_design(row, run_study(one, tmp_path / "results", jobs=1))
+    assert abs(found.value - float(row.printed)) <= row.last_digit
+    assert set(found.parameters) == set(row.parameters)
+    assert 1 <= found.agreed <= found.starts
 
 
 ALWAYS = [row for row in DESIGNS if row.table == 1 or row.layout == "S1"]

@@ -70,3 +70,12 @@ def test_a_text_of_one_is_read_back() -> None:
     for one in (Uncertain(1.0, 0.01), Uncertain(0.3, 0.01, "kg")):
         again = parse_uncertain(str(one), one.unit)
         assert (again.value, again.uncertainty) == pytest.approx((one.value, one.uncertainty))
+
+
+@pytest.mark.parametrize(("unit", "examples"), [("kg", ("0.3 kg", "0.3 kg +- 3 %")), ("", ("1", "1 +- 1 %"))])
+def test_examples_in_a_refusal_are_read(unit, examples):
+    with pytest.raises(UnitError) as refused:
+        parse_uncertain(["2 kg"], unit)
+    for example in examples:
+        assert f'"{example}"' in str(refused.value)
+        parse_uncertain(example, unit)

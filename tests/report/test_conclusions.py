@@ -134,3 +134,16 @@ def test_values_that_are_not_numbers_are_no_ties(study):
     nothing = with_value(designs(), math.nan, layout=["S1", "S2", "S3"], index="J1")
     assert best_layouts(nothing, "J1") == []
     assert conclusion_sentences(nothing, study)[0] == "Best ride comfort: no layout has a finite value."
+
+
+@pytest.mark.parametrize("methods", ['["statistical-linearisation"]', '["norm", "statistical-linearisation"]'])
+def test_a_single_layout_that_is_its_own_baseline_is_the_best(tmp_path, methods):
+    text = study_text(
+        f'indices = ["J1"]\nevaluate = {methods}\nbaseline = "S1"',
+        elements='k = "20 kN/m"\nc = "1 kN s/m"\nf = "20 N"',
+        layouts='S1 = "k | c | f"',
+    )
+    (tmp_path / "one.toml").write_text(text, encoding="utf-8")
+    found = run_study(load_study(tmp_path / "one.toml"), tmp_path / "results", jobs=1)
+    assert best_layouts(found.data, "J1") == ["S1"]
+    assert any("S1" in sentence for sentence in conclusion_sentences(found.data, found.study, found.answers))

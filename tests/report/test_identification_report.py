@@ -19,13 +19,13 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.files.identification.running import IdentificationResult, Reading, Responses, responses
 from inerter.formatting import format_quantity
 from inerter.identification.choice import Candidate
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
 from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis
-from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.initial_estimate import chain_of
-from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.statements.identifiability import Identifiability, Verdict
+from inerter.identification.statements.patterns import MisfitPattern
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.parser import format_expression
 from inerter.records.channel_selection import ROLES

@@ -23,6 +23,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import TaskResults, by_task, parts_of
 from inerter.methods.compare import compare
+from inerter.methods.registry import decisive_method_clause
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import report
@@ -196,3 +197,35 @@ def test_a_claim_that_rests_on_a_doubtful_estimate_is_undetermined_and_says_why_
             assert within(one, 1.0, 9.0) is verdict
     said = statement("5 %", within(doubtful, 1.0, 9.0), by=[doubtful])
     assert said.found == "unreliable (inaccurate: it is so so): 5 %"
+
+
+def with_a_damper_in_the_tyre(strut):
+    mechanism = car(strut).mechanism()
+    (tyre,) = mechanism.tyres
+    return replace(mechanism, tyres=(replace(tyre, network=tyre.network | it.Damper(100.0)),))
+
+
+def test_a_budget_without_values_claims_nothing():
+    designs = (with_a_damper_in_the_tyre(strut) for strut in (K | C | B, K | C))
+    found = it.break_even(*designs, J3, parameter="b", method=it.Norm())
+    assert found.status.kind == "direct-term"
+    assert "better" not in found.status.message
+
+
+def test_the_tolerance_of_an_infinite_value_says_why_it_is_infinite():
+    found = it.tolerance_analysis(with_a_damper_in_the_tyre(K | C), J3, it.Norm(), spread={"k": 0.1}, samples=16)
+    assert found.status == found.nominal.status
+    assert found.status.kind == "direct-term"
+
+
+def test_simulation_confirms_an_infinite_variance():
+    simulated = it.ExpectedValue(realisations=2)
+    found = it.evaluate(with_a_damper_in_the_tyre(K | C | it.Friction(5.0)), J3, simulated)
+    assert found.status.kind == "direct-term"
+    assert not decisive_method_clause("norm", found.status)
+
+
+@pytest.mark.parametrize("kind", StatusKind)
+def test_simulation_is_named_only_where_it_may_find_a_value(kind):
+    clause = decisive_method_clause("norm", Status(kind, "a reason" if kind != "ok" else ""))
+    assert ("expected-value" in clause) is (kind in ("inaccurate", "failed"))

@@ -10,7 +10,8 @@ from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_t
 from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layout, crossings, headlines
-from inerter.report.text import WIDTH
+from inerter.report.text import WIDTH, table_lines
+from inerter.table import Row, Table, cells, columns
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
 METHODS = ["norm", "statistical-linearisation", "expected-value", "approximate-linear"]
@@ -188,3 +189,17 @@ def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(c
     assert f": {order[0]}, {order[1]}, {order[2]} and {order[3]}, equally good, " in sentence
     worse = with_value(results, value * (1.0 + 1e-8), layout=order[0], index="J5")
     assert best_layout(worse, "J5") == order[1]
+
+
+def test_a_wide_table_continues_below_and_tells_a_doubt_once():
+    heads = [f"column-{i}-of-twelve" for i in range(12)]
+    rows = [Row(cells(label, *(f"{label}{i}" for i in range(12))), status=f"{label} is doubtful") for label in "ab"]
+    lines = list(table_lines(Table("Wide", columns("Row", *heads), rows)))
+    assert max(map(len, lines)) <= WIDTH
+    words = " ".join(lines).split()
+    assert [word for word in words if word in heads] == heads
+    for label in "ab":
+        assert [word for word in words if word[:-1].startswith(label) and word[1:].isdigit()] == [
+            f"{label}{i}" for i in range(12)
+        ]
+        assert sum(f"! {label} is doubtful" in line for line in lines) == 1

@@ -262,7 +262,9 @@ BAD = {
     "flat": ('profile = "flat.csv"', "", "road.profile", "flat"),
     "no such track": ('profile = "one.csv"\ntrack = "left"', "", "road.profile", "unknown track"),
     "another word": ('profile = "road.csv"\ntrack = "middle"', "", "road.track", "right"),
-    "track of nothing": (f'{ROUGH}\ntrack = "left"', "", "road", "no profile"),
+    "track of nothing": (f'{ROUGH}\ntrack = "left"', "", "road", "got a track but no profile"),
+    "interval of nothing": (f'{ROUGH}\ninterval = "1 m"', "", "road", "got an interval but no profile"),
+    "columns of nothing": (f"{ROUGH}\ncolumns = {{ height = 1 }}", "", "road", "got columns but no profile"),
     "one track": (COHERENT + '{ track = "1.5 m" }', "", "road.coherence", "no left and right track"),
     "one of two": (COHERENT + "{ level = 0.5 }", OWN, "road.coherence", "right is on neither track"),
     "a vehicle that cannot be": (

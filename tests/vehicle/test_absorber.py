@@ -188,3 +188,17 @@ def test_bad_values_are_refused_in_one_sentence(given: dict[str, object], messag
 def test_on_a_road_it_cannot_be_judged() -> None:
     with pytest.raises(it.InerterError, match="requires a road, and this mechanism has no tyre"):
         it.evaluate(absorber(0.1, 0.0, 0.1, 0.1), it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+
+
+@pytest.mark.parametrize("name", ["k", "c"])
+def test_an_element_named_as_those_of_the_support_is_told_from_them(name: str) -> None:
+    """A tolerance of the mount's own k or c, also of the mechanism, which has the support beside it."""
+    mount = it.Spring(4e3, name="k") | it.Damper(300.0, name="c")
+    made = it.Absorber(1e3, 40e3, 50.0, mount, primary_damping=100.0)
+    index = it.PeakResponse(input="primary_force", output="primary_displacement")
+    found = [
+        it.tolerance_analysis(vehicle, index, it.Norm(), spread={name: 0.1}, samples=64, seed=1)
+        for vehicle in (made, made.mechanism())
+    ]
+    assert found[0].standard_deviation > 0.0
+    assert found[1].standard_deviation == pytest.approx(found[0].standard_deviation, rel=1e-9)

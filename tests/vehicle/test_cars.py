@@ -21,7 +21,9 @@ from inerter import (
     frequency_response,
     state_space,
 )
+from inerter.errors import MechanismError
 from inerter.indices.definition import Combination
+from inerter.systems.piecewise import piecewise
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
 
@@ -112,3 +114,19 @@ def test_pitch_counts_in_comfort_with_the_mean_lever():
 def test_the_road_velocity_of_the_paper():
     """Wang and Su (2008): F = 2 pi sqrt(V kappa) with V = 25 m/s and kappa = 5e-7 m^3/cycle."""
     assert Road(5e-7, 25.0).velocity_intensity == pytest.approx(2.0 * np.pi * np.sqrt(12.5e-6), rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("mass", "damper", "remedy"),
+    [
+        (250.0, 1e-27, "Omit such a small element."),
+        (250.0, 1e30, "Replace such a large element by a rigid joint."),
+        (1e-27, 3e3, "Omit such a small inertia."),
+        (1e30, 3e3, "Fix such a heavy body to the ground."),
+    ],
+)
+def test_a_size_beyond_double_precision_is_refused_with_its_own_remedy(mass, damper, remedy):
+    body = Mechanism((Coordinate("body", mass),), (Strut("s", k | Damper(damper), {"body": 1.0}, GROUND),))
+    with pytest.raises(MechanismError) as refused:
+        piecewise(body)
+    assert str(refused.value).endswith(remedy)

@@ -1,13 +1,15 @@
 // The JSON interface of the server: requests with the token, refusals as values that carry their sentence.
 
-/** @typedef {{place: string[], sentence: string, fault?: string, got?: string, expected?: string, hint?: string}} Problem */
+/** @typedef {{place: string[], sentence: string, fault?: string, got?: string, expected?: string, hint?: string}}
+ * Problem */
 
 export class Refusal extends Error {
   /** @param {number} status @param {{sentence?: string, problems?: Problem[], outdated?: boolean}} body */
   constructor(status, body) {
-    super(body.sentence || body.problems?.map(({ sentence }) => sentence).join(" ") || `The server answered ${status}.`);
+    const problems = body.problems ?? [];
+    super(body.sentence || problems.map(({ sentence }) => sentence).join(" ") || `The server answered ${status}.`);
     this.status = status;
-    this.problems = body.problems ?? [];
+    this.problems = problems;
     this.outdated = body.outdated === true;
   }
 }
@@ -16,7 +18,15 @@ export class Refusal extends Error {
 export class Lost extends Error {}
 
 /** `waiting`: since when the oldest request has waited for its answer [ms since 1970], or null.
- * @typedef {{waiting: () => number | null, get: (path: string) => Promise<any>, post: (path: string, body: unknown) => Promise<any>, remove: (path: string) => Promise<any>, upload: (path: string, file: Blob) => Promise<any>, blob: (path: string, body?: unknown) => Promise<Blob>, events: (path: string, told: (event: string, data: any) => void, signal?: AbortSignal) => Promise<void>}} Api */
+ * @typedef {{waiting: () => number | null, get: (path: string) => Promise<any>,
+ * post: (path: string, body: unknown) => Promise<any>, remove: (path: string) => Promise<any>,
+ * upload: (path: string, file: Blob) => Promise<any>, blob: (path: string, body?: unknown) => Promise<Blob>,
+ * events: (path: string, told: (event: string, data: any) => void, signal?: AbortSignal) => Promise<void>}} Api */
+
+/** Asks as of now in the name of a part of the page: what was asked in that name before is outdated.
+ * @param {Api} api @param {string} path @param {string} name @param {object} body */
+export const postNow = (api, path, name, body) =>
+  api.post(path, { ...body, client: `page.${name}`, sequence: Date.now() });
 
 /** @param {() => string} token @returns {Api} */
 export function createApi(token) {
@@ -49,7 +59,8 @@ export function createApi(token) {
     post: async (path, body) => json(await request("POST", path, JSON.stringify(body))),
     remove: async (path) => json(await request("DELETE", path)),
     upload: async (path, file) => json(await request("POST", path, file)),
-    blob: async (path, body) => (await request(body === undefined ? "GET" : "POST", path, body === undefined ? undefined : JSON.stringify(body))).blob(),
+    blob: async (path, body) =>
+      (await (body === undefined ? request("GET", path) : request("POST", path, JSON.stringify(body)))).blob(),
     events: async (path, told, signal) => {
       const { body } = await request("GET", path, undefined, signal);
       if (body === null) return;

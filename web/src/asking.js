@@ -1,16 +1,17 @@
-// Questions to the server follow from the state; this asks them. Of each panel one request is under way at a time, and when it is
-// answered the newest question is asked next, so that what is shown at last belongs to the last step.
+// Questions to the server follow from the state; this asks them. Of each panel one request is under way at a time, and
+// when it is answered the newest question is asked next, so that what is shown at last belongs to the last step.
 
-import { Lost, Refusal } from "./api.js";
+import { Lost, Refusal, postNow } from "./api.js";
 import { questions, soughtOf } from "./questions.js";
 import { isSettled } from "./state/answers.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store, State } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 const AGAIN = 1000; // [ms] until a lost server is asked again
 
-/** Keeps answers up to date with the state. @param {Store} store @param {Api} api @param {string} client @param {() => Promise<void>} found what is done when a lost server is back */
+/** Keeps answers up to date with the state. @param {Store} store @param {Api} api @param {string} client
+ * @param {() => Promise<void>} found what is done when a lost server is back */
 export function keepAsking(store, api, client, found = async () => {}) {
   /** @type {Set<string>} */
   const underWay = new Set();
@@ -40,10 +41,10 @@ export function keepAsking(store, api, client, found = async () => {}) {
       if (learnt) store.dispatch(learnt(value));
     } catch (error) {
       if (error instanceof Lost) lose();
+      else if (isUnauthorised(error)) store.dispatch({ type: "connected", connection: "refused" });
       else {
-        const refusal = /** @type {Refusal} */ (error);
-        if (refusal.status === 401) store.dispatch({ type: "connected", connection: "refused" });
-        else if (!refusal.outdated) store.dispatch({ type: "refused", panel, question: key, sentence: refusal.message });
+        const { message, outdated } = /** @type {Refusal} */ (error);
+        if (!outdated) store.dispatch({ type: "refused", panel, question: key, sentence: message });
       }
     } finally {
       underWay.delete(panel);
@@ -68,7 +69,7 @@ export function keepAsking(store, api, client, found = async () => {}) {
         store.dispatch({ type: "connected", connection: "ready" });
         await found();
       } catch (error) {
-        if (error instanceof Refusal && error.status === 401) store.dispatch({ type: "connected", connection: "refused" });
+        if (isUnauthorised(error)) store.dispatch({ type: "connected", connection: "refused" });
       }
     }
     waking = false;
@@ -89,11 +90,15 @@ export function keepAsking(store, api, client, found = async () => {}) {
   return { lose };
 }
 
+/** Whether the server does not know the token. @param {unknown} error */
+export const isUnauthorised = (error) => error instanceof Refusal && error.status === 401;
+
 /** Whether the free values of the study that is open are being chosen: questions about its designs come then.
- * @param {import("./state/store.js").State} state */
+ * @param {State} state */
 const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
 
-/** Asks what a button of a panel asks, with parameters of its form; the answer stands in the state. @param {Store} store @param {Api} api @param {string} panel @param {any} parameters */
+/** Asks what a button of a panel asks, with parameters of its form; the answer stands in the state.
+ * @param {Store} store @param {Api} api @param {string} panel @param {any} parameters */
 export async function seek(store, api, panel, parameters) {
   store.dispatch({ type: "sought", panel, parameters });
   const question = soughtOf(store.get(), panel);
@@ -101,7 +106,7 @@ export async function seek(store, api, panel, parameters) {
   const { key, path, body } = question;
   store.dispatch({ type: "asked", panel, question: key });
   try {
-    store.dispatch({ type: "answered", panel, question: key, value: await api.post(path, { ...body, client: `page.${panel}`, sequence: Date.now() }) });
+    store.dispatch({ type: "answered", panel, question: key, value: await postNow(api, path, panel, body) });
   } catch (error) {
     store.dispatch({ type: "refused", panel, question: key, sentence: /** @type {Error} */ (error).message });
   }

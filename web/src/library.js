@@ -3,8 +3,8 @@
 
 import { isRange, textOf, entryAt } from "./state/document.js";
 
-/** @typedef {import("./state/store.js").State} State */
-/** @typedef {import("./network/algebra.js").Tree} Tree */
+/** @import { State } from "./state/store.js" */
+/** @import { Tree } from "./network/algebra.js" */
 /** A number that the document gives: the keys to its text, its place in sweeps, its SI unit, and its name where it may
  * be free. @typedef {{path: string[], place: string, words: string, sentence: string, unit: string,
  * value: number | null, may_be_free: boolean, name: string}} NumberRow */

@@ -3,8 +3,8 @@
 import { render } from "preact";
 import "uplot/dist/uPlot.min.css";
 import "./page.css";
-import { Lost, Refusal, createApi } from "./api.js";
-import { keepAsking } from "./asking.js";
+import { Lost, createApi } from "./api.js";
+import { isUnauthorised, keepAsking } from "./asking.js";
 import { Page } from "./page.js";
 import { html } from "./parts/html.js";
 import { fromAddress, keepRemembering, remembered, unpacked } from "./remembering.js";
@@ -39,7 +39,7 @@ function enter(text) {
 async function firstDocument() {
   const linked = address.state === null ? null : await unpacked(address.state);
   if (linked) {
-    store.dispatch({ type: "viewed", view: linked.view });
+    store.look(linked.view);
     return linked.document;
   }
   unread = address.state !== null;
@@ -66,7 +66,7 @@ async function connect() {
     store.dispatch({ type: "connected", connection: "ready" });
     await findWork(store, api);
   } catch (error) {
-    if (error instanceof Refusal && error.status === 401) {
+    if (isUnauthorised(error)) {
       windows.postMessage({ ask: true });
       store.dispatch({ type: "connected", connection: "refused" });
     } else if (error instanceof Lost) {
@@ -84,7 +84,7 @@ async function begin() {
     store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
     store.dispatch({ type: "began" });
   }
-  if (unread) store.dispatch({ type: "said", text: "The link holds no state that this page can read." });
+  if (unread) store.say("The link holds no state that this page can read.");
   return document !== null && !known;
 }
 
@@ -92,11 +92,13 @@ async function begin() {
 async function compiled() {
   store.dispatch({ type: "connected", connection: "compiling" });
   await api.events("ready", (event, data) => {
-    if (event === "kernels") store.dispatch({ type: "told", about: { ...store.get().about, kernels: { ...data, ready: false } } });
+    const kernels = { ...data, ready: false };
+    if (event === "kernels") store.dispatch({ type: "told", about: { ...store.get().about, kernels } });
   });
 }
 
-render(html`<${Page} store=${store} api=${api} enter=${enter} />`, /** @type {HTMLElement} */ (document.getElementById("page")));
+const place = /** @type {HTMLElement} */ (document.getElementById("page"));
+render(html`<${Page} store=${store} api=${api} enter=${enter} />`, place);
 keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()), () => findWork(store, api));
 keepRemembering(store);
 void connect();

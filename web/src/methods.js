@@ -1,7 +1,8 @@
 // The methods that the server knows, told apart by what their rows say of them, never by a name.
 
-/** @typedef {import("./state/store.js").State} State */
-/** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean, averages: boolean}} Method */
+/** @import { State } from "./state/store.js" */
+/** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean,
+ * averages: boolean}} Method */
 
 /** @param {Pick<State, "about">} state @returns {Method[]} */
 export const methodsOf = ({ about }) => about?.methods ?? [];
@@ -12,7 +13,8 @@ export const isQuick = (method) => method?.sees === "neither";
 /** The one with which the page searches while one waits. @param {Pick<State, "about">} state */
 export const quickMethod = (state) => methodsOf(state).find((method) => isQuick(method) && method.searches);
 
-/** The one of that name; without one of the name the quick one. @param {Pick<State, "about">} state @param {string} name */
+/** The one of that name; without one of the name the quick one.
+ * @param {Pick<State, "about">} state @param {string} name */
 export const methodOf = (state, name) => methodsOf(state).find((method) => method.name === name) ?? quickMethod(state);
 
 /** The one by which the page judges. @param {Pick<State, "about" | "view">} state */

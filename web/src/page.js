@@ -12,12 +12,13 @@ import { ValuesPanel } from "./panels/values.js";
 import { WorkPanel } from "./panels/work.js";
 import { Clock, Moving } from "./parts/clock.js";
 import { Field } from "./parts/field.js";
+import { Select, formHandler } from "./parts/controls.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { open } from "./remembering.js";
 import { openStudy } from "./working.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 /** What is below the strut and its answers: a tab a row. */
 const TABS = [
@@ -55,8 +56,7 @@ export function Page({ store, api, enter }) {
     ${blank
       ? html`<main class="blank"><h2>No study is open</h2>
         <p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
-          <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button>
-            </main>`
+        <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
       : html`<main>
           <div class="columns">
             <${NetworkPanel} store=${store} api=${api} />
@@ -137,10 +137,8 @@ function Bar({ store, api, enter }) {
       ${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})`
         : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</p>`}
     ${connection === "refused" &&
-    html`<form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
-      event.preventDefault();
-      enter(String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("token")));
-    }}><label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
+    html`<form class="row" onSubmit=${formHandler((form) => enter(String(form.get("token"))))}>
+      <label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
     ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>
       ${text} <button type="button" class="link" aria-label="Close the message"
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
@@ -156,14 +154,14 @@ function Tabs({ store, api }) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (step === undefined) return;
     const next = TABS[(TABS.indexOf(shown) + step + TABS.length) % TABS.length];
-    store.dispatch({ type: "viewed", view: { tab: next.key } });
+    store.look({ tab: next.key });
     document.getElementById(`tab-${next.key}`)?.focus();
   }
   return html`<section class="panel tabs">
     <div role="tablist" aria-label="More answers" onKeyDown=${turn}>
       ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key}
         aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1}
-          onClick=${() => store.dispatch({ type: "viewed", view: { tab: key } })}>${title}</button>`)}
+          onClick=${() => store.look({ tab: key })}>${title}</button>`)}
     </div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
       <${shown.Panel} store=${store} api=${api} /></div>
@@ -178,10 +176,8 @@ function Theme({ store }) {
   useEffect(() => {
     document.documentElement.dataset.theme = theme;
   }, [theme]);
-  return html`<label class="theme">Colours <select value=${theme}
-    onChange=${(/** @type {Event} */ event) =>
-      store.dispatch({ type: "viewed", view: { theme: /** @type {any} */ (event.currentTarget).value } })}>
-        ${THEMES.map((each) => html`<option key=${each}>${each}</option>`)}</select></label>`;
+  return html`<label class="theme">Colours <${Select} value=${theme} choices=${THEMES}
+    set=${(/** @type {typeof THEMES[number]} */ chosen) => store.look({ theme: chosen })} /></label>`;
 }
 
 /** What the whole page listens to. @param {Store} store @param {Api} api */
@@ -226,13 +222,15 @@ async function filesOf(transfer) {
 
 /** @param {any} entry @returns {Promise<File[]>} */
 async function filesIn(entry) {
-  if (entry.isFile) return [await new Promise((resolve, reject) => entry.file(resolve, reject))];
+  if (entry.isFile) return [await fileOf(entry)];
   const reader = entry.createReader();
   /** @type {any[]} */
   const inside = [];
   // a hundred at a time
   for (let more = [entry]; more.length > 0; inside.push(...more)) more = await new Promise((resolve, reject) =>
     reader.readEntries(resolve, reject));
-  return Promise.all(inside.filter((/** @type {any} */ each) => each.isFile).map((/** @type {any} */ each) =>
-    new Promise((resolve, reject) => each.file(resolve, reject))));
+  return Promise.all(inside.filter(({ isFile }) => isFile).map(fileOf));
 }
+
+/** @param {any} entry @returns {Promise<File>} */
+const fileOf = (entry) => new Promise((resolve, reject) => entry.file(resolve, reject));

@@ -6,12 +6,11 @@ import { shownOf, soughtIn } from "./state/answers.js";
 import { isRange, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
-/** @typedef {import("./state/store.js").State} State */
-/** @typedef {import("./state/document.js").Document} Document */
+/** @import { State, Action } from "./state/store.js" */
+/** @import { Document, Study } from "./state/document.js" */
 /** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
  * tells.
- * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) =>
- * import("./state/store.js").Action}} Row */
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) => Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
@@ -31,26 +30,16 @@ export function shownDesigns(document) {
 }
 
 /** What can stand in the comparison: the layouts of the study, and the designs that were kept.
- * @typedef {{key: string, name: string, kept: boolean, study: import("./state/document.js").Study, design: {layout:
- * string, values: {[element: string]: string}, name: string}}} Choice */
+ * @typedef {{key: string, name: string, kept: boolean, study: Study, design: ReturnType<typeof designOf>}} Choice */
 
 /** @param {Document} document @returns {Choice[]} */
 export function choicesOf(document) {
-  const layouts = Object.keys(document.study.layouts ?? {}).map((layout) => ({
-    key: `layout ${layout}`,
-    name: layout,
-    kept: false,
-    study: document.study,
-    design: designOf({ ...document, layout }),
-  }));
-  const designs = document.designs.map((design) => ({
-    key: `kept ${design.name}`,
-    name: design.name,
-    kept: true,
-    study: design.study,
-    design: { ...designOf({ ...document, ...design }), name: design.name },
-  }));
-  return [...layouts, ...designs];
+  const { study, designs } = document;
+  const layouts = Object.keys(study.layouts ?? {}).map((layout) =>
+    ({ key: `layout ${layout}`, name: layout, kept: false, study, design: designOf({ ...document, layout }) }));
+  const kept = designs.map(({ name, ...design }) => ({ key: `kept ${name}`, name, kept: true, study: design.study,
+    design: { ...designOf({ ...document, ...design }), name } }));
+  return [...layouts, ...kept];
 }
 
 /** What stands in the comparison, first what the others are compared with. @param {State} state @returns {Choice[]} */
@@ -64,35 +53,20 @@ export function comparedOf({ view, history }) {
 const ROWS = [
   (_, { study }) => [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
+    { panel: "check", path: "study/check", body: { study } },
   ],
-  (_, { study }) => [{ panel: "check", path: "study/check", body: { study } }],
-  (state, document) => [
-    {
-      panel: "indices",
-      path: "panel/indices",
-      ofDesigns: true,
-      body: { ...about(document), methods: methodNames(state) },
-    },
-  ],
-  (state, document) =>
-    state.view.tab === "response"
-      ? [{ panel: "response", path: "panel/response", ofDesigns: true, body: about(document) }]
-      : [],
-  (state, document) => (state.view.tab === "history" ? [historyOf(state, document)] : []),
-  (state, document) =>
-    state.view.tab === "history"
-      ? [
-          {
-            panel: "mechanism",
-            path: "panel/mechanism",
-            ofDesigns: true,
-            body: { study: document.study, design: designOf(document) },
-          },
-        ]
-      : [],
+  (state, document) => [ofDesigns("indices", { ...about(document), methods: methodNames(state) })],
+  ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
+  ({ view: { tab, seconds, seed } }, document) => (tab !== "history" ? [] : [
+    ofDesigns("history", { ...presentDesign(document), duration: seconds, seed }),
+    ofDesigns("mechanism", presentDesign(document)),
+  ]),
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
-  (state, document) => unitsOf(state, document),
+  unitsOf,
 ];
+
+/** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
+const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });
 
 /** What was asked of each state, since a page asks it often. @type {WeakMap<State, Question[]>} */
 const ASKED = new WeakMap();
@@ -128,21 +102,10 @@ export function soughtOf(state, panel) {
 
 /** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
 const SOUGHT = {
-  budget: (state, document, { index, parameter }) => ({
-    study: document.study,
-    design: designOf(document),
-    baseline: baselineOf(document),
-    index,
-    parameter,
-    ...seeing(state),
-  }),
-  tolerance: (state, document, { index, spread }) => ({
-    study: document.study,
-    design: designOf(document),
-    index,
-    spread,
-    ...effortOf(state, Object.keys(spread).length),
-  }),
+  budget: (state, document, asked) =>
+    ({ ...presentDesign(document), baseline: baselineOf(document), ...asked, ...seeing(state) }),
+  tolerance: (state, document, asked) =>
+    ({ ...presentDesign(document), ...asked, ...effortOf(state, Object.keys(asked.spread).length) }),
 };
 
 /** The method by which the page judges, where it sees what a budget is about; else that of the study.
@@ -176,31 +139,18 @@ export const bodyOf = (state, panel) =>
 const methodNames = (state) => [judging(state)?.name ?? []].flat();
 
 /** @param {Document} document */
-const about = (document) => ({
-  study: document.study,
-  designs: shownDesigns(document),
-  baseline: baselineOf(document),
-});
+const about = (document) =>
+  ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
 
-/** @param {State} state @param {Document} document @returns {Row} */
-function historyOf({ view }, document) {
-  const body = { study: document.study, design: designOf(document), duration: view.seconds, seed: view.seed };
-  return { panel: "history", path: "panel/history", ofDesigns: true, body };
-}
+/** @param {Document} document */
+const presentDesign = (document) => ({ study: document.study, design: designOf(document) });
 
 /** @param {State} state @returns {Row[]} */
 function comparison(state) {
   const compared = comparedOf(state);
   if (compared.length < 2) return [];
   const designs = compared.map(({ kept, study, design }) => (kept ? { ...design, study } : design));
-  return [
-    {
-      panel: "compare",
-      path: "panel/compare",
-      ofDesigns: true,
-      body: { study: state.history.present.study, designs, methods: methodNames(state) },
-    },
-  ];
+  return [ofDesigns("compare", { study: state.history.present.study, designs, methods: methodNames(state) })];
 }
 
 /** Units whose size is not known yet, all in one question. @param {State} state @param {Document} document
@@ -209,7 +159,7 @@ function unitsOf(state, document) {
   const asked = unitsIn(state, document).filter(({ key }) => !(key in state.quantities));
   if (asked.length === 0) return [];
   const items = asked.map(({ text, unit }) => ({ text, unit }));
-  /** @param {{items: any[]}} value @returns {import("./state/store.js").Action} */
+  /** @param {{items: any[]}} value @returns {Action} */
   const learnt = (value) => ({
     type: "measured",
     quantities: Object.fromEntries(asked.map(({ key }, i) => [key, value.items[i]])),

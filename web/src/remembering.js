@@ -4,11 +4,10 @@ import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
 import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./state/document.js").Document} Document */
-/** @typedef {import("./state/store.js").View} View */
+/** @import { Store, View } from "./state/store.js" */
+/** @import { Document } from "./state/document.js" */
+/** @import { Api } from "./api.js" */
 /** @typedef {{document: Document, view: Partial<View>}} Shared */
-/** @typedef {import("./api.js").Api} Api */
 
 const KEPT = "inerter.document";
 const LINK = "state";
@@ -118,9 +117,9 @@ export async function open(store, api, files) {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
       else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
-      else say(store, `${file.name} is not a supported file; supported: ${KNOWN}.`);
+      else store.say(`${file.name} is not a supported file; supported: ${KNOWN}.`);
     } catch (error) {
-      say(store, `${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
+      store.say(`${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
     }
   }
 }
@@ -138,10 +137,6 @@ async function studiesFirst(files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
-/** Says something; of what is about the same thing the newest stays. @param {Store} store @param {string} text
- * @param {string} [about] */
-const say = (store, text, about) => store.dispatch({ type: "said", text, about });
-
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openStudyFile(store, api, file) {
   const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
@@ -150,17 +145,12 @@ async function openStudyFile(store, api, file) {
   const isStudy =
     study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
   if (!isStudy) {
-    say(store, `${file.name} is not a study file; nothing was changed. ${other ?? ""}`.trim());
+    store.say(`${file.name} is not a study file; nothing was changed. ${other ?? ""}`.trim());
     return;
   }
   if (!(await beginWith(store, api, study))) return;
-  say(
-    store,
-    problems.length
-      ? `${file.name} is open; ${problems.length === 1 ? "one entry needs"
-        : `${problems.length} entries need`} another value.`
-      : `${file.name} is open.`,
-  );
+  const several = problems.length === 1 ? "one entry needs" : `${problems.length} entries need`;
+  store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`);
 }
 
 const RIG = "displacement"; // what is moved there: an end of the device itself
@@ -177,26 +167,26 @@ const isSimulation = (tables) =>
 async function openSimulation(store, api, name, { signal, simulation, ...study }) {
   const { about } = store.get();
   const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
-  if (model?.moved === RIG) return say(store, `${name}: ${await takeDevice(store, api, study)}`);
+  if (model?.moved === RIG) return store.say(`${name}: ${await takeDevice(store, api, study)}`);
   if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
-  say(store, `${name} is open as a study of its vehicle; the excitation of the simulation is omitted.`);
+  store.say(`${name} is open as a study of its vehicle; the excitation of the simulation is omitted.`);
 }
 
 /** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */
 async function openFit(store, api, file) {
   const fit = JSON.parse(await file.text());
   if (typeof fit.elements !== "string")
-    return say(store, `${file.name} is no result of inerter identify, and nothing was changed.`);
+    return store.say(`${file.name} is no result of inerter identify, and nothing was changed.`);
   const { study } = await api.post("study/read", { text: fit.elements, name: file.name });
-  say(store, `${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
+  store.say(`${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
 }
 
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
-  store.dispatch({ type: "viewed", view: { tab: "rig" } });
-  say(store, `Reading ${file.name}…`, file.name);
+  store.look({ tab: "rig" });
+  store.say(`Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
-  say(store, `${file.name} was read.`, file.name);
+  store.say(`${file.name} was read.`, file.name);
 }

@@ -1,14 +1,14 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
-import { Lost } from "./api.js";
+import { Lost, postNow } from "./api.js";
 import { freeIn, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { nextLayout, textOf } from "./state/document.js";
 
-/** @typedef {import("./state/store.js").Store} Store */
-/** @typedef {import("./api.js").Api} Api */
+/** @import { Store, State } from "./state/store.js" */
+/** @import { Api } from "./api.js" */
 
 const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const LOOK = 300; // [ms] between two looks at work that goes on
@@ -20,19 +20,12 @@ export async function optimise(store, api, asked) {
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
-      await begin(store, api, {
-        kind: "optimise",
-        title: `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`,
-        ...body,
-      });
-      store.dispatch({ type: "viewed", view: { tab: "work" } });
+      const title = `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`;
+      await begin(store, api, { kind: "optimise", title, ...body });
+      store.look({ tab: "work" });
       return "Under way: see Work.";
     }
-    const { designs, at_speeds: speeds } = await api.post("panel/optimise", {
-      ...body,
-      client: "page.optimise",
-      sequence: Date.now(),
-    });
+    const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)
       return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
     return withSpeeds(takeOptima(store, designs, null, study), speeds);
@@ -58,20 +51,21 @@ export function takeOptima(store, designs, gesture = null, of = null) {
     const other = `a layout ${best.layout} that has ${Object.keys(values).join(", ")} free`;
     return `${doubts}These are values of ${other}, which is not in the study that is open; nothing was changed.`;
   }
-  store.change(
-    { type: "valuedAll", values: Object.fromEntries(taken.map(({ best, values }) => [best.layout, values])) },
-    gesture,
-  );
+  const all = Object.fromEntries(taken.map(({ best, values }) => [best.layout, values]));
+  store.change({ type: "valuedAll", values: all }, gesture);
   return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
     best.layout + atBounds(best)).join(", ")}.`;
 }
+
+/** The values of an optimum become the present ones, and a message tells it. @param {Store} store @param {any} best */
+export const takeAndTell = (store, best) => store.say(takeOptima(store, [best]), "taken");
 
 /** What is told of optima, with what they become at other speeds: doubts first. @param {string} text
  * @param {{doubts: string[], others: string[]} | undefined} speeds */
 export const withSpeeds = (text, speeds) => [...(speeds?.doubts ?? []), text, ...(speeds?.others ?? [])].join(" ");
 
 /** Whether a layout has these values free.
- * @param {import("./state/store.js").State} state @param {string} layout @param {string[]} values */
+ * @param {State} state @param {string} layout @param {string[]} values */
 function isHere(state, layout, values) {
   const free = freeIn(state, layout);
   return values.every((name) => free.includes(name));
@@ -112,19 +106,13 @@ export async function beginAtBest(store, api, gesture = null) {
     const parts = await api.post("study/parts", { study });
     if (Object.values(parts.layouts).every((/** @type {any} */ { free }) => free.length === 0)) return;
     if (!(await isSmall(api, study, Object.keys(study.layouts ?? {})[0]))) return;
-    const { designs } = await api.post("panel/optimise", {
-      study,
-      indices: [index],
-      method,
-      methods: [method],
-      client: "page.opening",
-      sequence: Date.now(),
-    });
+    const body = { study, indices: [index], method, methods: [method] };
+    const { designs } = await postNow(api, "panel/optimise", "opening", body);
     const { present } = store.get().history;
     if (present.study !== study || Object.keys(present.values).length > 0) return;
     takeOptima(store, designs, gesture, study);
     const doubts = doubted(designs.flatMap(membersOf));
-    if (doubts) store.dispatch({ type: "said", text: doubts.trim() });
+    if (doubts) store.say(doubts.trim());
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {
@@ -134,12 +122,7 @@ export async function beginAtBest(store, api, gesture = null) {
 
 /** @param {Api} api @param {any} study @param {string} layout */
 async function isSmall(api, study, layout) {
-  const { coordinates } = await api.post("panel/mechanism", {
-    study,
-    layout,
-    client: "page.size",
-    sequence: Date.now(),
-  });
+  const { coordinates } = await postNow(api, "panel/mechanism", "size", { study, layout });
   return coordinates.length <= SMALL;
 }
 
@@ -151,9 +134,8 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   if (document.layout === "") return "Open a study first: the device joins its strut.";
   const known = document.study.elements ?? {};
   const taken = [...Object.keys(known), ...Object.keys(elements)];
-  const others = Object.keys(elements).filter(
-    (name) => name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]),
-  );
+  const others = Object.keys(elements).filter((name) =>
+    name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
   /** @type {{[name: string]: string}} */
   const names = {};
   for (const name of others) names[name] = freshName(name, [...taken, ...Object.values(names)]);
@@ -186,7 +168,7 @@ export const withheld = ({ parameters }) =>
   `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
 
 /** Parameters in SI units as texts that read back as the same numbers.
- * @param {import("./state/store.js").State} state @param {{[name: string]: number}} parameters */
+ * @param {State} state @param {{[name: string]: number}} parameters */
 const textsOf = (state, parameters) =>
   Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 
@@ -198,6 +180,11 @@ export async function begin(store, api, body) {
   return job.id;
 }
 
+/** Begins work; gives the sentence why it cannot be begun, empty where it is begun.
+ * @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body
+ * @returns {Promise<string>} */
+export const tryToBegin = (store, api, body) => begin(store, api, body).then(() => "", ({ message }) => message);
+
 /** All work that the server knows, watched on. @param {Store} store @param {Api} api */
 export async function findWork(store, api) {
   await look(store, api);
@@ -205,15 +192,8 @@ export async function findWork(store, api) {
 }
 
 /** @param {any} job */
-const jobOf = (job) => ({
-  id: job.id,
-  kind: job.kind,
-  title: job.title,
-  state: job.state,
-  begun: job.begun ?? null,
-  share: job.total ? (job.done ?? 0) / job.total : null,
-  sentence: job.sentence || job.told || null,
-});
+const jobOf = ({ id, kind, title, state, begun = null, total, done = 0, sentence, told }) =>
+  ({ id, kind, title, state, begun, share: total ? (done ?? 0) / total : null, sentence: sentence || told || null });
 
 let watching = false;
 

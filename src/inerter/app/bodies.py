@@ -77,7 +77,7 @@ class ParseNetwork(Body):
     elements: dict[str, Any] | list[str] | None = None
 
 
-class QuantityRequest(Body):
+class QuantityBody(Body):
     """A text that is to be read, in `unit` if it is given; or a value in `unit` that is to be written."""
 
     text: str | None = None
@@ -87,9 +87,9 @@ class QuantityRequest(Body):
 
 
 class Quantities(Body):
-    """Several texts or values, as in `QuantityRequest`."""
+    """Several texts or values, as in `QuantityBody`."""
 
-    items: Annotated[list[QuantityRequest], Field(max_length=10_000)]
+    items: Annotated[list[QuantityBody], Field(max_length=10_000)]
 
 
 class OfDesigns(Body):

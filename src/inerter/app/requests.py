@@ -92,7 +92,7 @@ async def _parse(server: Server, request: Request, body: bodies.ParseNetwork) ->
     return parts.parse_network(body.text, body.elements)
 
 
-async def _quantity(server: Server, request: Request, body: bodies.QuantityRequest) -> dict[str, Any]:
+async def _quantity(server: Server, request: Request, body: bodies.QuantityBody) -> dict[str, Any]:
     return await asyncio.to_thread(parts.quantity, body.model_dump())
 
 
@@ -214,7 +214,7 @@ ENDPOINTS = (
     Endpoint("POST", "/api/study/rename", "Other names of elements", _rename, bodies.RenameElements),
     Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),
     Endpoint("POST", "/api/network/parse", "A network as a tree with places", _parse, bodies.ParseNetwork),
-    Endpoint("POST", "/api/quantity", "A quantity read or written", _quantity, bodies.QuantityRequest),
+    Endpoint("POST", "/api/quantity", "A quantity read or written", _quantity, bodies.QuantityBody),
     Endpoint("POST", "/api/quantities", "Several of them", _quantities, bodies.Quantities),
     Endpoint("POST", "/api/panel/{name}", "A quick answer, the newest wins", _panel, bodies.PanelRequest),
     Endpoint("POST", "/api/work", "Begin long work", _add_work, bodies.WorkRequest),

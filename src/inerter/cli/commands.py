@@ -33,6 +33,7 @@ from inerter.report.page import write_report
 from inerter.report.sections import design_sections, task_sections
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text, wrap_text
+from inerter.statements import Statement
 
 _MOST = 20  # designs that are told one by one
 
@@ -46,8 +47,8 @@ def run(
     resume: bool,
     force: bool,
     as_json: bool,
-) -> int:
-    """Run a study file into a folder; returns the exit code."""
+) -> tuple[Statement, ...]:
+    """Run a study file into a folder; returns its status."""
     loaded = load_study(study)
     folder = output or Path(f"{study.stem}-results")
     processes = _processes(jobs)
@@ -88,7 +89,8 @@ def run(
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         told = conclusion_sentences(result.data, loaded, result.answers)
         print("\n".join(["", *(line for text in told for line in wrap_text(text, subsequent_indent="  "))]))
-    return _judge(result)
+    _report_failures(result)
+    return (result.status,)
 
 
 def _pace(study: Study) -> Pace:
@@ -98,10 +100,9 @@ def _pace(study: Study) -> Pace:
     return Pace(free, study.indices, cases(study).points, parts)
 
 
-def papers() -> int:
-    """Print the available papers with their parts; returns the exit code."""
+def papers() -> None:
+    """Print the available papers with their parts."""
     print("\n\n".join(_describe_paper(paper) for paper in PAPERS.values()))
-    return 0
 
 
 def _describe_paper(paper: Paper) -> str:
@@ -120,8 +121,8 @@ def reproduce(
     resume: bool,
     force: bool,
     as_json: bool,
-) -> int:
-    """Reproduce the paper of that name, or some parts of it; returns the exit code."""
+) -> tuple[Statement, ...]:
+    """Reproduce the paper of that name, or some parts of it; returns the statuses of its studies."""
     paper = PAPERS[name]
     folder = output or Path(f"{name}-results")
     processes = _processes(jobs)
@@ -132,7 +133,9 @@ def reproduce(
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     _say(f"report: {folder / REPORT}")
     print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
-    return max([_judge(result) for result in found.studies.values()], default=0)
+    for result in found.studies.values():
+        _report_failures(result)
+    return tuple(result.status for result in found.studies.values())
 
 
 def _continuation_clause(
@@ -150,13 +153,12 @@ def _processes(jobs: int | None) -> int:
     return jobs or os.cpu_count() or 1
 
 
-def _judge(result: StudyResult) -> int:
-    """Report designs whose status is not ok on stderr; returns 1 if a case has no number at all, else 0."""
+def _report_failures(result: StudyResult) -> None:
+    """Report designs whose status is not ok on stderr."""
     for line in islice(result.iterate_failures(), _MOST):
         _say(line)
     if result.n_failures > _MOST:
         _say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")
-    return int(result.failed)
 
 
 def _say(message: str) -> None:

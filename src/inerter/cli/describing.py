@@ -26,21 +26,20 @@ _ROWS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHOD
 _PLACE, _UNIT = 32, 11  # columns of the table of keys
 
 
-def schema() -> int:
-    """Print the JSON Schema of study files; returns the exit code."""
+def schema() -> None:
+    """Print the JSON Schema of study files."""
     print(json.dumps(study_schema(), indent=2, ensure_ascii=False))
-    return 0
 
 
-def explain(wanted: str | None) -> int:
-    """Tell a key of study files, or all; returns the exit code.
+def explain(wanted: str | None) -> None:
+    """Print the description of a key of study files, or of all.
 
     Raises `StudyError` for one that there is not.
     """
     keys = keys_of(study_schema())
     if wanted is None:
         print("\n".join(_table(keys)))
-        return 0
+        return
     section = wanted.partition(".")[0]
     if kind_with(section) is not None and all(key.place != section for key in keys):
         raise StudyError(_unknown(wanted, keys))
@@ -49,7 +48,6 @@ def explain(wanted: str | None) -> int:
     if not told:
         raise StudyError(_unknown(wanted, keys))
     print("\n\n".join("\n".join(lines) for lines in told))
-    return 0
 
 
 def _words() -> dict[str, Mapping[str, Any]]:

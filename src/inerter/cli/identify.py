@@ -24,6 +24,7 @@ from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import identification_text
 from inerter.report.options import as_options
+from inerter.statements import Statement
 from inerter.units import parse_quantity
 
 _CHANNELS = {"displacement": "displacement", "force_channel": "force", "time": "time"}  # by the option
@@ -50,8 +51,8 @@ def identify(
     *,
     force: bool,
     as_json: bool,
-) -> int:
-    """Identify a device from records into a folder; returns the exit code."""
+) -> tuple[Statement, ...]:
+    """Identify a device from records into a folder; returns the status of the fit."""
     for path in paths:
         check_measurements(path)
     request = _request(paths, model, config, options, settings)
@@ -82,8 +83,7 @@ def identify(
     print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
     if not found.fit.status.ok:
         print(f"inerter: {found.title}: {found.fit.status}", file=sys.stderr, flush=True)
-        return 1
-    return 0
+    return (found.fit.status,)
 
 
 def _request(

@@ -12,7 +12,8 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
-INTERRUPTED = 130  # the exit code that shells give what Ctrl-C has ended
+from inerter.statements import INTERRUPTED
+
 _PATIENCE = 1.2  # [s] that work has to put its things away
 _kept: list[Callable[[], str]] = []
 _came, _told = threading.Event(), threading.Event()

@@ -1,6 +1,6 @@
 """The command `inerter`. Results go to stdout, progress and problems to stderr.
 
-Exit codes: 0 done; 1 the work failed; 2 the request was wrong; 130 interrupted by Ctrl-C.
+Exit codes are those of `inerter.statements`.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from cyclopts import App, CycloptsError, Parameter
 from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.atomic_io import remove_temporary_folders
-from inerter.cli.interrupts import INTERRUPTED, came, heed, interruptible, tell
+from inerter.cli.interrupts import came, heed, interruptible, tell
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem
-from inerter.errors import InerterError, WorkError
+from inerter.errors import InerterError, StudyError, WorkError
+from inerter.statements import INTERRUPTED, Statement, exit_code
 
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
@@ -67,7 +68,7 @@ def run(
     resume: Resume = False,
     force: Force = False,
     json: Json = False,
-) -> int:
+) -> tuple[Statement, ...]:
     """Optimise all layouts of a study file, and write tables, figures and a report.
 
     The folder, by default STUDY-results, then holds report.html, summary.csv,
@@ -88,7 +89,7 @@ def run(
   inerter check examples/half-car.toml
   inerter check examples/stick_slip.toml"""
 )
-def check(file: Path, /) -> int:
+def check(file: Path, /) -> None:
     """Check a file: keys, units, bounds, networks, and whether every layout can be analysed or simulated.
 
     Parameters
@@ -98,7 +99,7 @@ def check(file: Path, /) -> int:
     """
     from inerter.cli.check import check as command
 
-    return command(file)
+    command(file)
 
 
 @app.command(
@@ -118,7 +119,7 @@ def new(
     force: Annotated[
         bool, Parameter(negative=(), show_default=False, help="Replace a template that has not been edited.")
     ] = False,
-) -> int:
+) -> None:
     """Create a commented template of a study file. Existing files are not overwritten.
 
     Parameters
@@ -128,7 +129,7 @@ def new(
     """
     from inerter.cli.new import new as command
 
-    return command(vehicle, output, force)
+    command(vehicle, output, force)
 
 
 @app.command(
@@ -137,7 +138,7 @@ def new(
   inerter explain road.speed
   inerter explain sweep"""
 )
-def explain(key: str | None = None, /) -> int:
+def explain(key: str | None = None, /) -> None:
     """Show the meaning, unit, default and an example of a key of study files.
 
     Parameters
@@ -147,11 +148,11 @@ def explain(key: str | None = None, /) -> int:
     """
     from inerter.cli.describing import explain as command
 
-    return command(key)
+    command(key)
 
 
 @app.command(help_epilogue="Example: inerter schema > study.schema.json")
-def schema() -> int:
+def schema() -> None:
     """Print the JSON Schema of study files, with which editors complete and check them.
 
     An editor that knows TOML (those with Taplo do) reads it where the first line
@@ -159,7 +160,7 @@ def schema() -> int:
     """
     from inerter.cli.describing import schema as command
 
-    return command()
+    command()
 
 
 @app.command(
@@ -178,7 +179,7 @@ def simulate(
     ] = None,
     force: Force = False,
     json: Json = False,
-) -> int:
+) -> tuple[Statement, ...]:
     """Simulate a time history with dry friction and backlash, and write tables and a figure.
 
     The folder, by default FILE-results, then holds trajectory.csv,
@@ -219,7 +220,7 @@ def identify(
     cluster: ClusterOptions = OWN,
     force: Force = False,
     json: Json = False,
-) -> int:
+) -> tuple[Statement, ...]:
     """Estimate the parameters of a device from measured records, with confidence intervals and identifiability.
 
     The folder, by default RECORD-results, then holds report.html, fit.json,
@@ -251,7 +252,7 @@ def rig(
     force: Annotated[
         bool, Parameter(negative="", show_default=False, help="Replace a record that this command wrote.")
     ] = False,
-) -> int:
+) -> None:
     """Generate the records of a virtual test rig from a known device.
 
     Parameters
@@ -261,7 +262,7 @@ def rig(
     """
     from inerter.cli.rig import rig as command
 
-    return command(config, output, force=force)
+    command(config, output, force=force)
 
 
 @app.command(
@@ -281,7 +282,7 @@ def serve(
     folder: Annotated[
         Path | None, Parameter(help="Folder for jobs and records; default: a temporary folder, deleted at the end.")
     ] = None,
-) -> int:
+) -> None:
     """Open the interactive workbench in the browser.
 
     It listens on this machine alone, and prints its link. Ctrl-C ends it.
@@ -293,7 +294,7 @@ def serve(
     """
     from inerter.cli.serve import serve as command
 
-    return command(study, port, folder, (limit, record_limit), browser=browser)
+    command(study, port, folder, (limit, record_limit), browser=browser)
 
 
 app.command(
@@ -324,21 +325,21 @@ def call(arguments: list[str]) -> int:
     """Run the command line with `arguments`, and turn errors into a sentence and an exit code, which is returned."""
     try:
         with interruptible():
-            code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+            statements = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
         if (lost := problem()) is not None:
             written = " The results are written all the same." if _writes(arguments) else ""
-            return _fail(f"standard output: {lost.strerror}.{written}", 1)
-        return code if isinstance(code, int) else 0
+            return _fail(WorkError(f"standard output: {lost.strerror}.{written}"))
+        return exit_code(statements or ())
     except KeyboardInterrupt as error:
         tell(error)
         return INTERRUPTED
     except CycloptsError as error:
-        return _fail(f"{error}\nTry: {' '.join(('inerter', *_command(arguments)))} --help", 2)
+        return _fail(StudyError(f"{error}\nTry: {' '.join(('inerter', *_command(arguments)))} --help"))
     except InerterError as error:
-        return _fail(str(error), 1 if isinstance(error, WorkError) else 2)
+        return _fail(error)
     except OSError as error:
-        return _fail(f"{error.filename or 'system'}: {error.strerror or error}", 1)
+        return _fail(WorkError(f"{error.filename or 'system'}: {error.strerror or error}"))
     except Exception:
         if came():  # some library made another error of it
             tell()
@@ -357,6 +358,6 @@ def _writes(arguments: list[str]) -> bool:
     return command is not None and "output" in signature(command).parameters
 
 
-def _fail(message: str, code: int) -> int:
-    print(f"inerter: {message}", file=sys.stderr, flush=True)
-    return code
+def _fail(error: InerterError) -> int:
+    print(f"inerter: {error.sentence}", file=sys.stderr, flush=True)
+    return exit_code([error])

@@ -13,8 +13,8 @@ from inerter.files.study.starting import starting_text
 _STDOUT = Path("-")
 
 
-def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
-    """Write a template study file, of the first available vehicle by default; returns the exit code.
+def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
+    """Write a template study file, of the first available vehicle by default.
 
     Raises `StudyError` for an unknown vehicle, or where a file is there already that `force` may not replace: it
     replaces what this command has written, as it was written.
@@ -24,7 +24,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
     text = starting_text(vehicle, "STUDY.toml" if path == _STDOUT else path.name)
     if path == _STDOUT:
         print(text, end="")
-        return 0
+        return
     try:
         if force and path.exists():
             _check_own(path)
@@ -40,7 +40,6 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> int:
     except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
         raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
     print(f"inerter: wrote {path}; run it: inerter run {path}", file=sys.stderr)
-    return 0
 
 
 def _check_own(path: Path) -> None:

@@ -9,6 +9,7 @@ from cyclopts import App, Parameter
 from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
 from inerter.errors import StudyError
 from inerter.papers.registry import PAPERS
+from inerter.statements import Statement
 
 _EXAMPLES = [f"inerter reproduce {p.name} {options}" for p in PAPERS.values() for options in ("-o paper", *p.examples)]
 
@@ -41,7 +42,7 @@ def reproduce(
     resume: Resume = False,
     force: Force = False,
     json: Json = False,
-) -> int:
+) -> tuple[Statement, ...]:
     """Recompute a published paper and compare it with the printed numbers, designs, figures and claims.
 
     Parameters
@@ -55,5 +56,6 @@ def reproduce(
     if paper is None:
         if only or output or jobs or resume or force or json or cluster != OWN:
             raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
-        return papers()
+        papers()
+        return ()
     return command(paper, only, output, jobs, cluster, resume=resume, force=force, as_json=json)

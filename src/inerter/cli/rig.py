@@ -15,8 +15,8 @@ from inerter.records.writers import WRITERS, write_record
 from inerter.report.rig import rig_text
 
 
-def rig(config: Path, output: Path, *, force: bool) -> int:
-    """Run the virtual rig of a file, and write what its sensors read; returns the exit code."""
+def rig(config: Path, output: Path, *, force: bool) -> None:
+    """Run the virtual rig of a file, and write what its sensors read."""
     request = load_rig(config)
     inputs = (config, *request.signal.inputs)
     _check_output(output)
@@ -27,7 +27,6 @@ def rig(config: Path, output: Path, *, force: bool) -> int:
             write_record(record, draft)
     print(rig_text(request, record))
     print(f"inerter: record: {output}", file=sys.stderr)
-    return 0
 
 
 def _check_output(output: Path) -> None:

@@ -7,11 +7,10 @@ from pathlib import Path
 from inerter.app.serve import serve as served
 
 
-def serve(study: Path | None, port: int | None, folder: Path | None, limits: tuple[int, int], *, browser: bool) -> int:
-    """Serve the workbench until Ctrl-C; returns the exit code."""
+def serve(study: Path | None, port: int | None, folder: Path | None, limits: tuple[int, int], *, browser: bool) -> None:
+    """Serve the workbench until Ctrl-C."""
 
     def tell(link: str) -> None:
         print(link, flush=True)
 
     served(study, port=port, browser=browser, limit=limits[0], record_limit=limits[1], folder=folder, tell=tell)
-    return 0

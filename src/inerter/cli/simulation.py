@@ -17,10 +17,13 @@ from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.running import SimulationResult, run_simulation
 from inerter.formatting import format_number, format_quantity
 from inerter.report.simulation import simulation_data, simulation_text
+from inerter.statements import Statement
 
 
-def simulate(file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool) -> int:
-    """Run a simulation file into a folder; returns the exit code."""
+def simulate(
+    file: Path, output: Path | None, window: str | None, *, force: bool, as_json: bool
+) -> tuple[Statement, ...]:
+    """Run a simulation file into a folder; returns its status."""
     request = load_simulation(file)
     wanted = None if window is None else _window(window, request)
     folder = output or Path(f"{file.stem}-results")
@@ -36,8 +39,7 @@ def simulate(file: Path, output: Path | None, window: str | None, *, force: bool
     print(f"inerter: results: {folder}", file=sys.stderr)
     if not result.run.status.ok:
         print(f"inerter: {file.name}: {result.run.status}", file=sys.stderr, flush=True)
-        return 1
-    return 0
+    return (result.run.status,)
 
 
 def _figure_window(result: SimulationResult, wanted: Window | None) -> Window | None:

@@ -7,8 +7,8 @@ import os
 import signal
 import sys
 
-from inerter.cli.interrupts import INTERRUPTED
 from inerter.cli.streams import endure
+from inerter.statements import INTERRUPTED
 from inerter.work.own_process import leave, look_for_garbage_seldom
 
 

@@ -15,19 +15,20 @@ from numpy.typing import NDArray
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
 from inerter.identification.arguments import checked_records, model_of
 from inerter.identification.conclusions import fit_of
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit
 from inerter.identification.identify import solution_of
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
 from inerter.identification.solving import SolvedFit, part
+from inerter.identification.statements.findings import FitFinding
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
+from inerter.statements import Severity
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
@@ -141,7 +142,7 @@ class _Selection:
             try:
                 self._add_solution(name, solution_of(self.records, model, self.asked, self._part_progress(done)))
             except InerterError as error:
-                self.failed.append(Finding(FitFinding.FAILED, "warning", name, {"error": error.args}))
+                self.failed.append(Finding(FitFinding.FAILED, Severity.WARNING, name, {"error": error.args}))
         if not self.fits:
             why = " ".join(finding.sentence for finding in self.failed)
             raise IdentificationError(f"No candidate can be fitted. {why}")
@@ -154,7 +155,8 @@ class _Selection:
         fit = self.fits[name] = fit_of(self.solutions[name])
         values = {n: p.best for n, p in fit.parameters.items()}
         stuck = (
-            Finding(FitFinding.NOT_REACHED, "warning", c, {"other": o}) for c, o in _not_converged(ranked, self.fits)
+            Finding(FitFinding.NOT_REACHED, Severity.WARNING, c, {"other": o})
+            for c, o in _not_converged(ranked, self.fits)
         )
         return ModelSelection(
             name=name,
@@ -275,7 +277,7 @@ def _selection_finding(ranked: Sequence[Candidate], name: str) -> Finding:
         "next": others[0].name if others else None,
         "ratio": others[0].loss / best.loss if others else None,
     }
-    return Finding(FitFinding.BEST if chosen is best else FitFinding.FEWEST_UNKNOWNS, "info", name, numbers)
+    return Finding(FitFinding.BEST if chosen is best else FitFinding.FEWEST_UNKNOWNS, Severity.INFO, name, numbers)
 
 
 def _not_converged(ranked: Sequence[Candidate], fits: Mapping[str, Fit]) -> Iterator[tuple[str, str]]:

@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.identification.diagnosis import explanations
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
-from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import BestFit
 from inerter.identification.localising import localisation_of
 from inerter.identification.models import without_mount
@@ -21,6 +19,8 @@ from inerter.identification.options import FitOptions
 from inerter.identification.planning import recommended_experiments
 from inerter.identification.problem import FitProblem
 from inerter.identification.solving import SolvedFit
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.identification.sticking import is_unobservable
 from inerter.identification.verdicts import identifiability, suggestions
 from inerter.networks.elements import Element, Free
@@ -28,6 +28,7 @@ from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
 from inerter.records.saturation import saturated_samples
+from inerter.statements import Severity
 from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
@@ -94,13 +95,13 @@ def find_doubt(fit: Fit) -> Finding | None:
     best = _main_cause(fit)
     if fit.predicted < ENOUGH and best is None:
         changed = 100.0 * min(1.0 - fit.predicted, 1.0)
-        return Finding(FitFinding.UNPREDICTABLE, "warning", numbers={"changed": changed})
+        return Finding(FitFinding.UNPREDICTABLE, Severity.WARNING, numbers={"changed": changed})
     if fit.misfit.is_noise_limited and best is not None:
-        return Finding(FitFinding.SUSPECTED, "warning", numbers={"likeliest": best})
+        return Finding(FitFinding.SUSPECTED, Severity.WARNING, numbers={"likeliest": best})
     if not fit.misfit.is_noise_limited or fit.variance_explained < ENOUGH:
         return _misfit_finding(fit, best)
     if lost > _SATURATED:
-        return Finding(FitFinding.SATURATED, "warning", numbers={"share": lost})
+        return Finding(FitFinding.SATURATED, Severity.WARNING, numbers={"share": lost})
     return None
 
 
@@ -119,7 +120,7 @@ def _misfit_finding(fit: Fit, best: Explanation | None) -> Finding:
     numbers = {
         "times": fit.misfit.worst, "explained": explained, "likeliest": best, "as_good": as_good, "where": where,
     }  # fmt: skip
-    return Finding(FitFinding.MISFIT, "warning", numbers=numbers)
+    return Finding(FitFinding.MISFIT, Severity.WARNING, numbers=numbers)
 
 
 def _offset_findings(
@@ -132,7 +133,7 @@ def _offset_findings(
     )
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
-            yield Finding(FitFinding.OFFSET, "info", c.record.source, {"offset": c.offset})
+            yield Finding(FitFinding.OFFSET, Severity.INFO, c.record.source, {"offset": c.offset})
 
 
 def _mass_findings(problem: FitProblem) -> Iterator[Finding]:
@@ -140,7 +141,7 @@ def _mass_findings(problem: FitProblem) -> Iterator[Finding]:
     names = zip(problem.space.names, problem.space.kinds, strict=True)
     free = [name for name, kind in names if kind is not None and kind.linear is LinearRole.MASS]
     if free and any(e.record.fixture_mass is None for e in problem.experiments):
-        yield Finding(FitFinding.MOVING_MASS, "info", ", ".join(free))
+        yield Finding(FitFinding.MOVING_MASS, Severity.INFO, ", ".join(free))
 
 
 def _withhold(p: Parameter, verdict: Identifiability, fit: Fit) -> tuple[Parameter, Identifiability]:
@@ -213,7 +214,7 @@ def _scale_finding(solution: SolvedFit) -> Finding:
     options = solution.options
     scales = {n: getattr(options, n) for n in ("force_scale", "displacement_scale")}
     masses = [m for e in solution.problem.experiments if (m := e.record.fixture_mass_error) is not None]
-    return Finding(FitFinding.INCLUDED, "info", "", {**scales, "fixture_mass_error": max(masses, default=None)})
+    return Finding(FitFinding.INCLUDED, Severity.INFO, "", {**scales, "fixture_mass_error": max(masses, default=None)})
 
 
 def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:

@@ -22,11 +22,11 @@ from inerter.identification.hypotheses import Hypothesis, Values, sensor_hypothe
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
 from inerter.identification.parameter_space import Space, space_of
-from inerter.identification.possible_causes import Suspect
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import faulty_samples, recording_faults
 from inerter.identification.residual_tests import NoiseReference
 from inerter.identification.search import improve
+from inerter.identification.statements.causes import Suspect
 from inerter.networks.elements import Free
 from inerter.records.dropouts import find_dropouts, insert_samples
 from inerter.vehicle.rig import Rig

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, Status
 from inerter.identification.experiment import Experiment
-from inerter.identification.identifiability import Identifiability
-from inerter.identification.misfit_patterns import MisfitPattern
-from inerter.identification.possible_causes import Details, Suspect
+from inerter.identification.statements.causes import Details, Suspect
+from inerter.identification.statements.identifiability import Identifiability
+from inerter.identification.statements.patterns import MisfitPattern
 from inerter.networks.elements import Network
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.remedy import in_python
+from inerter.statements import Statement
 
 Matrix = NDArray[np.float64]
 
@@ -67,7 +68,7 @@ class NormalisedResidual:
 
 
 @dataclass(frozen=True)
-class Explanation:
+class Explanation(Statement):
     """A hypothesis about the device or its sensors, and the share of a misfit that it explains."""
 
     name: Suspect
@@ -134,11 +135,16 @@ class RecordFit:
 
 
 @dataclass(frozen=True)
-class Localisation:
+class Localisation(Statement):
     """Patterns in the residual of one record, those that explain most of it first."""
 
     source: str
     patterns: tuple[Finding, ...] = ()
+
+    @property
+    def about(self) -> str:
+        """The record."""
+        return self.source
 
     @property
     def sentence(self) -> str:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from inerter.identification.experiment import Experiment
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.initial_estimate import Chain
-from inerter.identification.possible_causes import Details, Suspect
+from inerter.identification.statements.causes import Details, Suspect
 from inerter.kernels.decorators import kernel, part
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spring, Tied, free
 from inerter.networks.parser import format_expression

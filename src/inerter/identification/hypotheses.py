@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.possible_causes import Details, Suspect
+from inerter.identification.statements.causes import Details, Suspect
 from inerter.networks.elements import Network
 
 Matrix = NDArray[np.float64]

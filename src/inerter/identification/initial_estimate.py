@@ -19,11 +19,12 @@ from scipy.optimize import lsq_linear
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.finding_texts import FitFinding
+from inerter.identification.statements.findings import FitFinding
 from inerter.networks.elements import Element, Free, Network, Parallel, Series
 from inerter.networks.elements.roles import LinearRole
 from inerter.records.filtering import low_pass
 from inerter.records.finding import Finding
+from inerter.statements import Severity
 
 Matrix = NDArray[np.float64]
 _ROUNDS = 4
@@ -110,7 +111,7 @@ def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, li
         right = share >= 0.0
     if right:
         return experiment, []
-    return turned, [Finding(FitFinding.FORCE_REVERSED, "info", experiment.record.source)]
+    return turned, [Finding(FitFinding.FORCE_REVERSED, Severity.INFO, experiment.record.source)]
 
 
 def _regress(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[Element | None, float, float]]]:

@@ -19,9 +19,10 @@ from scipy.ndimage import label, maximum_filter1d
 from scipy.signal import get_window
 
 from inerter.identification.fit import Localisation, RecordFit
-from inerter.identification.misfit_patterns import FRICTION, TRAVEL, MisfitPattern
+from inerter.identification.statements.patterns import FRICTION, TRAVEL, MisfitPattern
 from inerter.records.finding import Finding
 from inerter.records.gaps import true_runs
+from inerter.statements import Severity
 
 Matrix = NDArray[np.float64]
 SURE = 0.02  # p-value, of all tests together, below which a pattern is significant
@@ -170,7 +171,7 @@ def _outlier_instants(s: LocalisedSamples) -> Iterator[Finding]:
         "leaps": float(np.median(leap[peaks] / np.abs(s.residual[peaks]))) > _LEAPS,
         "largest": float(np.abs(s.residual[peaks]).max()), "at": float(s.time[np.argmax(square)]),
     }  # fmt: skip
-    yield Finding(MisfitPattern.INSTANTS, "info", numbers=numbers)
+    yield Finding(MisfitPattern.INSTANTS, Severity.INFO, numbers=numbers)
 
 
 def _level_changes(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
@@ -199,14 +200,14 @@ def _level_changes(s: LocalisedSamples, random: np.random.Generator) -> Iterator
     if of_step > 1.1 * of_trend:
         begins, ends = math.sqrt(before) < _NONE, math.sqrt(after) < _NONE
         kind = MisfitPattern.BEGINS if begins else MisfitPattern.ENDS if ends else MisfitPattern.LEVEL_STEP
-        yield Finding(kind, "info", numbers={**numbers, "share": of_step, "p": p_step})
+        yield Finding(kind, Severity.INFO, numbers={**numbers, "share": of_step, "p": p_step})
     else:
         ends_of = {"before": math.exp(0.5 * float(line[0])), "after": math.exp(0.5 * float(line[-1]))}
         size = np.log(np.maximum(np.bincount(s.block, s.motion["acceleration"] ** 2) / sizes, 1e-300))
         varies = min(float(np.ptp(size)), float(np.ptp(log))) > _VARIES
         alike = varies and float(np.corrcoef(log, size)[0, 1]) > _ALIKE
         yield Finding(
-            MisfitPattern.GROWS, "info", numbers={**ends_of, "share": of_trend, "p": p_trend, "motion": alike}
+            MisfitPattern.GROWS, Severity.INFO, numbers={**ends_of, "share": of_trend, "p": p_trend, "motion": alike}
         )
 
 
@@ -269,11 +270,11 @@ def _coefficients(s: LocalisedSamples, random: np.random.Generator) -> Iterator[
         }  # fmt: skip
         if _explained_share(constant, of_step) > 1.1 * _explained_share(constant, of_trend):
             p = _p_value(_cusum(score), _cusum(score[order]))
-            yield Finding(MisfitPattern.COEFFICIENT_STEP, "info", name, {**shares, "p": p})
+            yield Finding(MisfitPattern.COEFFICIENT_STEP, Severity.INFO, name, {**shares, "p": p})
         else:
             p = _p_value(_slope(score), _slope(score[order]))
             size = {"share": _explained_share(square, of_trend), "change": float(linear[1]) * (s.blocks - 1)}
-            yield Finding(MisfitPattern.COEFFICIENT_TREND, "info", name, {**size, "p": p})
+            yield Finding(MisfitPattern.COEFFICIENT_TREND, Severity.INFO, name, {**size, "p": p})
 
 
 def _coefficient_split(both: Matrix, own: Matrix, square: float) -> tuple[int, float, float]:
@@ -317,7 +318,7 @@ def _mean_dependence(s: LocalisedSamples, random: np.random.Generator) -> tuple[
             "at_least": float(centre[low]), "at_most": float(centre[high]),
             "centres": tuple(centre.tolist()), "means": tuple(means.tolist()),
         }  # fmt: skip
-        found.append(Finding(MisfitPattern.MEAN, "info", name, numbers))
+        found.append(Finding(MisfitPattern.MEAN, Severity.INFO, name, numbers))
     found.sort(key=lambda f: -f.numbers["share"])
     best = found[0]
     others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * best.numbers["share"])
@@ -363,7 +364,7 @@ def _scatter_dependence(s: LocalisedSamples, random: np.random.Generator) -> Ite
         means, count = (np.bincount(bins, square) / np.maximum(count, 1))[count > 0], count[count > 0]
         share = _log_share(means, count)
         numbers = {"share": share, "p": p, "low": math.sqrt(means[0]), "high": math.sqrt(means[-1])}
-        found.append(Finding(MisfitPattern.SPREAD, "info", name, numbers))
+        found.append(Finding(MisfitPattern.SPREAD, Severity.INFO, name, numbers))
     found.sort(key=lambda f: -f.numbers["share"])
     others = tuple(f.about for f in found[1:] if f.numbers["share"] > _AS_GOOD * found[0].numbers["share"])
     yield replace(found[0], numbers={**found[0].numbers, "others": others})
@@ -393,7 +394,9 @@ def _misfit_positions(s: LocalisedSamples, square: Matrix, within: Matrix, signs
         return
     centres = low + (np.arange(_PLACES) + 0.5) * (high - low) / _PLACES
     at = tuple(float(np.average(centres[number == i], weights=means[number == i])) for i in range(1, places + 1))
-    yield Finding(MisfitPattern.POSITIONS, "info", "displacement", {"share": share, "p": p, "places": at, "held": held})
+    yield Finding(
+        MisfitPattern.POSITIONS, Severity.INFO, "displacement", {"share": share, "p": p, "places": at, "held": held}
+    )
 
 
 def _channel_dependences(s: LocalisedSamples, random: np.random.Generator) -> Iterator[Finding]:
@@ -409,7 +412,7 @@ def _channel_dependences(s: LocalisedSamples, random: np.random.Generator) -> It
         r = float(usual @ rank) / max(float(np.linalg.norm(usual) * np.linalg.norm(rank - rank.mean())), 1e-300)
         p = _p_value(np.array(abs(float(usual @ rank))), np.abs(rank[order] @ usual))
         share = _explained_share(float(np.mean(np.exp(log))), math.exp(float(np.mean(log)))) * r**2
-        yield Finding(MisfitPattern.CHANNEL, "info", name, {"share": share, "p": p, "correlation": r})
+        yield Finding(MisfitPattern.CHANNEL, Severity.INFO, name, {"share": share, "p": p, "correlation": r})
 
 
 def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
@@ -448,7 +451,7 @@ def _spectral(s: LocalisedSamples, c: RecordFit) -> Iterator[Finding]:
             "frequency": float(frequency[peak]), "amplitude": float(amplitude[peak]), "p": chance, "multiple": multiple,
             "share": share if foreign and not resonates else 0.5 * share, "foreign": foreign, "resonates": resonates,
         }  # fmt: skip
-        yield Finding(MisfitPattern.LINE, "info", numbers=numbers)
+        yield Finding(MisfitPattern.LINE, Severity.INFO, numbers=numbers)
     yield from _band(frequency, excess, total, highest, resonance)
 
 
@@ -487,4 +490,4 @@ def _band(
         resonates = both > 0.5 * (high - low)
         share = 0.7 * float(part[-1]) / total * (0.5 if resonates else 1.0)
         numbers = {"low": low, "high": high, "highest": highest, "share": share, "resonates": resonates}
-        yield Finding(MisfitPattern.BAND, "info", numbers=numbers)
+        yield Finding(MisfitPattern.BAND, Severity.INFO, numbers=numbers)

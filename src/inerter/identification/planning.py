@@ -17,15 +17,16 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.identification.experiment import MOST_SAMPLES, Experiment, experiment_of
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Parameter
 from inerter.identification.intervals import steps_of
 from inerter.identification.noise import noise_whitening
 from inerter.identification.sensors import encoder_noise, noise_residuals
 from inerter.identification.solving import SolvedFit
+from inerter.identification.statements.findings import FitFinding
 from inerter.records.finding import Finding
 from inerter.records.smoothing import resolution
 from inerter.signals.signal import Signal
+from inerter.statements import Severity
 from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
@@ -61,7 +62,7 @@ def recommended_experiments(solution: SolvedFit, parameters: Mapping[str, Parame
         width = p.interval[1] - p.interval[0]
         fixed = 0.0 if solution.scales is None else solution.scales.width(i)
         if fixed > _TARGET * width:
-            yield Finding(FitFinding.CALIBRATE, "info", name, {"width": width, "fixed": fixed, "unit": p.unit})
+            yield Finding(FitFinding.CALIBRATE, Severity.INFO, name, {"width": width, "fixed": fixed, "unit": p.unit})
             continue
         moving = math.sqrt(width**2 - fixed**2)
         wanted = math.sqrt((_TARGET * width) ** 2 - fixed**2) / moving
@@ -71,7 +72,7 @@ def recommended_experiments(solution: SolvedFit, parameters: Mapping[str, Parame
             best, ratio, times = min(found, key=lambda f: (_motion_effort(f[0], f[2]), f[1]))
             expected = math.hypot(moving * ratio / math.sqrt(max(times, 1)), fixed)
             yield Finding(
-                FitFinding.NARROWER, "info", name, _motion_numbers(solution, best, max(times, 1), p, expected)
+                FitFinding.NARROWER, Severity.INFO, name, _motion_numbers(solution, best, max(times, 1), p, expected)
             )
 
 

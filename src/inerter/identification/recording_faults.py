@@ -17,9 +17,9 @@ from scipy.signal import bilinear, lfilter
 from inerter.identification.experiment import Experiment, experiment_of, load_cell_output
 from inerter.identification.fit import Localisation
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
-from inerter.identification.misfit_patterns import MisfitPattern
-from inerter.identification.possible_causes import Details, Suspect
 from inerter.identification.problem import FitProblem
+from inerter.identification.statements.causes import Details, Suspect
+from inerter.identification.statements.patterns import MisfitPattern
 from inerter.records.instants import Instant
 from inerter.records.record import Record
 from inerter.records.repair import faulty_instants, repair

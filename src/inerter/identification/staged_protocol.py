@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, Status
 from inerter.formatting import format_number, format_quantity, format_range
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Fit, Parameter
-from inerter.identification.friction_law import FrictionLaw, friction_law
-from inerter.identification.identifiability import Identifiability, Verdict
+from inerter.identification.friction_law import friction_law
 from inerter.identification.identify import identify
 from inerter.identification.models import MODELS
 from inerter.identification.response import linear_response, model_response
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.statements.friction import FrictionLaw
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.networks.elements import Element, Free, Network, free
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import map_elements, with_values
@@ -31,6 +32,7 @@ from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
+from inerter.statements import Severity
 from inerter.validation import check_positive
 from inerter.vehicle.rig import Rig
 
@@ -259,19 +261,19 @@ def _findings(
 ) -> Iterator[Finding]:
     low, high = law.interval
     level = {"level": law.level, "lower": low, "upper": high}
-    yield Finding(FitFinding.FRICTION_LEVEL, "info", _FRICTION, level)
-    yield Finding(FitFinding.FRICTION_LAW, "info", _FRICTION, {"law": law})
+    yield Finding(FitFinding.FRICTION_LEVEL, Severity.INFO, _FRICTION, level)
+    yield Finding(FitFinding.FRICTION_LAW, Severity.INFO, _FRICTION, {"law": law})
     friction = found.parameters[_FRICTION]
     inner = friction.interval
     if inner[1] < within.lower * 1.0001 or inner[0] > within.upper * 0.9999:
-        yield Finding(FitFinding.OTHER_FRICTION, "warning", _FRICTION, {"best": friction.best})
+        yield Finding(FitFinding.OTHER_FRICTION, Severity.WARNING, _FRICTION, {"best": friction.best})
     if inertance is not None:
-        yield Finding(FitFinding.GIVEN_INERTANCE, "info", _INERTANCE, {"inertance": inertance})
+        yield Finding(FitFinding.GIVEN_INERTANCE, Severity.INFO, _INERTANCE, {"inertance": inertance})
     yield from found.findings
     if check is not None and saturated_samples(check).any():
         share = float(saturated_samples(check).mean())
-        yield Finding(FitFinding.SATURATED_CHECK, "warning", check.source, {"share": share})
+        yield Finding(FitFinding.SATURATED_CHECK, Severity.WARNING, check.source, {"share": share})
     if response is not None:
         differ = sum(not band.agrees for band in response.bands)
         numbers = {"differ": differ, "octaves": len(response.bands)}
-        yield Finding(FitFinding.RESPONSE, "warning" if differ else "info", numbers=numbers)
+        yield Finding(FitFinding.RESPONSE, Severity.WARNING if differ else Severity.INFO, numbers=numbers)

@@ -6,13 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from inerter.identification.finding_texts import FitFinding
 from inerter.identification.fit import Parameter, RecordFit
-from inerter.identification.identifiability import Identifiability, Verdict
 from inerter.identification.intervals import CostProfile
 from inerter.identification.parameter_space import Space
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.networks.elements.roles import LinearRole
 from inerter.records.finding import Finding
+from inerter.statements import Severity
 
 _WIDE = 3.0  # ends of an interval this far apart, as a ratio, give an order of magnitude only
 _ROOM = 1.5  # times the largest force: a load cell with a larger range has a margin
@@ -59,14 +60,14 @@ def suggestions(
             continue
         held = identifiable[name].held
         if held is not None:
-            yield Finding(FitFinding.BREAK_AWAY, "info", name, {**motion, "held": held})
+            yield Finding(FitFinding.BREAK_AWAY, Severity.INFO, name, {**motion, "held": held})
             continue
         if kind.linear is LinearRole.CLOSED:
             width = {"width": 2.0 * parameters[name].interval[1]}
-            yield Finding(FitFinding.FASTER_REVERSALS, "info", name, {**motion, **width})
+            yield Finding(FitFinding.FASTER_REVERSALS, Severity.INFO, name, {**motion, **width})
         elif kind.linear is LinearRole.OPEN:
-            yield Finding(FitFinding.SLOW_COSINE, "info", name, {"travel": max(travel, 1e-3)})
+            yield Finding(FitFinding.SLOW_COSINE, Severity.INFO, name, {"travel": max(travel, 1e-3)})
         elif kind.linear is LinearRole.MASS:
-            yield Finding(FitFinding.LARGER_ACCELERATIONS, "info", name, {"travel": 2.0 * travel})
+            yield Finding(FitFinding.LARGER_ACCELERATIONS, Severity.INFO, name, {"travel": 2.0 * travel})
         else:
-            yield Finding(FitFinding.HIGHER_FREQUENCIES, "info", name, motion)
+            yield Finding(FitFinding.HIGHER_FREQUENCIES, Severity.INFO, name, motion)

@@ -82,7 +82,7 @@ class Equivalent:
 
 def poorly_represented(what: str, bound: float) -> Status:
     """Status inaccurate because of `what`, with the error bound if below 1."""
-    most = f", by {format_share(bound, 2)} at most" if bound < 1.0 else ""
+    most = f", but not {format_share(bound, 2)}" if bound < 1.0 else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 

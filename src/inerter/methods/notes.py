@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from inerter.formatting import format_number
+from inerter.statements import Statement
 
 Parts = tuple[str | float, ...]  # words, and the numbers between them
 
 
-class Note(str):
+class Note(str, Statement):
     """A text made of words and numbers, which `parts` keeps apart.
 
     >>> Note("friction taken as a damper of ", 1234.5678, " N s/m").parts[1]

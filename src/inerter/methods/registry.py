@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Container, Mapping
 from typing import Any
 
+from inerter.errors import Status, StatusKind
 from inerter.field_metadata import Field, fields_of
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.expected_value import ExpectedValue
@@ -30,6 +31,7 @@ METHODS: Registry[type[Method]] = Registry(
     {"words": "description", "sees": "nonlinearity_support", "searches": "supports_optimisation"},
 )
 DEFAULT = Norm.name  # judges the designs of a study that names no method
+_UNCERTAIN = (StatusKind.INACCURATE, StatusKind.FAILED)  # of an approximate method: simulation may find a value
 
 
 def is_blind(name: str) -> bool:
@@ -79,10 +81,14 @@ def without_roads(name: str, *, has_play: bool) -> str:
     return DEFAULT if is_blind(name) or has_play else StatisticalLinearisation.name
 
 
-def decisive_method_clause(name: str, message: str) -> str:
-    """Clause on the method that can decide an uncertain result, to follow the message of its status."""
+def decisive_method_clause(name: str, status: Status) -> str:
+    """Clause on the method that can decide an uncertain result, to follow the message of its status.
+
+    Empty for a status that simulation confirms, such as that of an infinite variance.
+    """
     others = [other for other in METHODS if nonlinearities_of(other) is NonlinearitySupport.BOTH]
-    if nonlinearities_of(name) is NonlinearitySupport.BOTH or not others or any(other in message for other in others):
+    named = any(other in status.message for other in others)
+    if status.kind not in _UNCERTAIN or nonlinearities_of(name) is NonlinearitySupport.BOTH or not others or named:
         return ""
     return f"; {others[0]} simulates it, and can decide"
 

@@ -280,7 +280,8 @@ def _status(
     """The worst status of all compared estimates; without an end, the values for which the design is better."""
     bad, said = worst_of(statuses), _sentence(ranges, parameter, unit)
     if not bad.ok:
-        tentative = "" if end is not None else f". Nevertheless, {said}"
+        is_compared = any(one.better is not None for one in ranges)
+        tentative = f". Nevertheless, {said}" if end is None and is_compared else ""
         return Status(bad.kind, f"{bad.message.rstrip('.')}{tentative}")
     return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Any, Protocol
 
-from inerter.records.remedy import Text, in_python
-
-Severity = Literal["info", "warning", "error"]
+from inerter.records.remedy import Remedy, Text, in_python
+from inerter.statements import Severity, Statement
 
 
 class Kind(Protocol):
@@ -20,14 +19,14 @@ class Kind(Protocol):
 
 
 @dataclass(frozen=True)
-class Finding:
+class Finding(Statement):
     """One finding of a record or an identification.
 
     `error`: no model can be fitted to the record; `warning`: results may be affected; `info`: no action required.
     """
 
     kind: Kind
-    severity: Severity
+    severity: Severity = Severity.INFO
     about: str = ""  # a channel, a parameter, a record or a model
     numbers: Mapping[str, Any] = field(default_factory=dict)
 
@@ -40,3 +39,8 @@ class Finding:
     def sentence(self) -> str:
         """The sentence with remedies in Python."""
         return in_python(self.text)
+
+    @property
+    def remedy(self) -> str:
+        """The remedies of the sentence, in Python."""
+        return "; ".join(str(part).strip() for part in self.text if isinstance(part, Remedy))

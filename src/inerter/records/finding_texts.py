@@ -16,6 +16,7 @@ from inerter.formatting import (
 from inerter.records.finding import Finding
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
+from inerter.statements import Severity
 
 COARSE = 20.0  # resolution steps over the range of a channel, below which its resolution is coarse
 LARGE = 0.5  # of the amplitude: a mean that may be an offset
@@ -289,7 +290,7 @@ def _delay_text(f: Finding) -> Text:
             f"Record a sweep or multisine, or an acceleration, or leave the delay free when the model is fitted.",
         )
     late, error = n["delay"], n["standard_error"]
-    if f.severity == "info":
+    if f.severity is Severity.INFO:
         known = format_quantity(error, "s", 2)
         return (f"No significant delay between force and motion (standard error {known}).",)
     size, known = format_with_error(abs(late), error, "s")

@@ -11,7 +11,7 @@ from scipy.signal import welch
 from inerter.records import polarity_delay
 from inerter.records.clocks import clock_drift, jitter
 from inerter.records.dropouts import find_dropouts
-from inerter.records.finding import Finding, Severity
+from inerter.records.finding import Finding
 from inerter.records.finding_texts import COARSE, LARGE, RecordFinding
 from inerter.records.instants import Instant
 from inerter.records.record import UNIFORM, Record
@@ -19,6 +19,7 @@ from inerter.records.repair import faulty_instants
 from inerter.records.saturation import plateaus, saturated_samples
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import isolated_line
+from inerter.statements import Severity, by_severity
 
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
@@ -42,12 +43,11 @@ def findings(record: Record) -> list[Finding]:
         *_constant(record),
         *_implausible_sizes(record),
     ]
-    if not any(finding.severity == "error" for finding in found):
+    if Severity.ERROR not in by_severity(found):
         found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
         if record.uniform:
             found += _motion_findings(record, smooth_displacement(record))
-    order = ("error", "warning", "info")
-    return sorted(found, key=lambda finding: order.index(finding.severity))
+    return [finding for group in by_severity(found).values() for finding in group]
 
 
 def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
@@ -59,7 +59,7 @@ def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
         *_clock(record, motion),
         *polarity_delay.polarity_finding(record, motion),
         *polarity_delay.delay_finding(record, motion),
-        Finding(RecordFinding.BANDWIDTH, "info", numbers={name: getattr(motion, name) for name in names}),
+        Finding(RecordFinding.BANDWIDTH, Severity.INFO, numbers={name: getattr(motion, name) for name in names}),
     ]
 
 
@@ -68,13 +68,17 @@ def _undersampling(record: Record, motion: Motion) -> list[Finding]:
     limit = 0.5 / record.interval
     if motion.highest < _FOLDED * limit:
         return []
-    return [Finding(RecordFinding.UNDERSAMPLED, "warning", "displacement", {"highest": motion.highest, "limit": limit})]
+    return [
+        Finding(
+            RecordFinding.UNDERSAMPLED, Severity.WARNING, "displacement", {"highest": motion.highest, "limit": limit}
+        )
+    ]
 
 
 def _count(record: Record) -> list[Finding]:
     if record.time.size >= FEW:
         return []
-    return [Finding(RecordFinding.FEW_SAMPLES, "warning", numbers={"samples": float(record.time.size)})]
+    return [Finding(RecordFinding.FEW_SAMPLES, Severity.WARNING, numbers={"samples": float(record.time.size)})]
 
 
 def _sampling(record: Record) -> list[Finding]:
@@ -82,19 +86,19 @@ def _sampling(record: Record) -> list[Finding]:
     usual = float(np.median(steps))
     numbers = {"interval": usual, "samples": float(record.time.size), "duration": record.duration}
     if record.uniform:
-        return [Finding(RecordFinding.SAMPLING, "info", numbers={**numbers, "even": True})]
+        return [Finding(RecordFinding.SAMPLING, Severity.INFO, numbers={**numbers, "even": True})]
     gaps = steps > 1.5 * usual
     result = []
     if gaps.any():
         lost = int(np.sum(np.round(steps[gaps] / usual) - 1))
         numbers |= {"gaps": float(gaps.sum()), "lost": float(lost), "longest": float(steps.max())}
         first = {"first": float(record.time[int(np.argmax(gaps))])}
-        result.append(Finding(RecordFinding.GAPS, "warning", numbers={**numbers, **first}))
+        result.append(Finding(RecordFinding.GAPS, Severity.WARNING, numbers={**numbers, **first}))
     jitter = float(np.std(steps[~gaps])) / usual
     if jitter > UNIFORM:
         scatter = {"jitter": jitter, "step": resolution(record.time)}
-        result.append(Finding(RecordFinding.JITTER, "warning", numbers={**numbers, **scatter}))
-    return result or [Finding(RecordFinding.SAMPLING, "info", numbers={**numbers, "even": False})]
+        result.append(Finding(RecordFinding.JITTER, Severity.WARNING, numbers={**numbers, **scatter}))
+    return result or [Finding(RecordFinding.SAMPLING, Severity.INFO, numbers={**numbers, "even": False})]
 
 
 def _dropouts(record: Record) -> list[Finding]:
@@ -103,7 +107,7 @@ def _dropouts(record: Record) -> list[Finding]:
         return []
     count, at = sum(loss.count for loss in lost), float(record.time[lost[0].after])
     numbers = {"places": float(len(lost)), "samples": float(count), "first": at}
-    return [Finding(RecordFinding.LOST_SAMPLES, "warning", "displacement", numbers)]
+    return [Finding(RecordFinding.LOST_SAMPLES, Severity.WARNING, "displacement", numbers)]
 
 
 def _instants(record: Record) -> list[Finding]:
@@ -115,7 +119,7 @@ def _instants(record: Record) -> list[Finding]:
         RecordFinding.JOINED: {"displacement": faulty.joints},
     }
     return [
-        Finding(kind, "warning", role, _instant_summary(record, instants))
+        Finding(kind, Severity.WARNING, role, _instant_summary(record, instants))
         for kind, by_role in kinds.items()
         for role, instants in by_role.items()
         if instants
@@ -136,9 +140,9 @@ def _filled_samples(record: Record) -> list[Finding]:
     result = []
     for role, (count, longest) in record.meta.get("filled", {}).items():
         numbers = {"samples": float(count), "longest": float(longest)}
-        result.append(Finding(RecordFinding.FILLED, "warning", role, numbers))
+        result.append(Finding(RecordFinding.FILLED, Severity.WARNING, role, numbers))
     if record.meta.get("cut"):
-        result.append(Finding(RecordFinding.CUT, "warning"))
+        result.append(Finding(RecordFinding.CUT, Severity.WARNING))
     return result
 
 
@@ -147,7 +151,7 @@ def _constant(record: Record) -> list[Finding]:
     for role in ("displacement", "force"):
         values = getattr(record, role)
         if np.ptp(values) <= 1e-12 * np.max(np.abs(values)):
-            result.append(Finding(RecordFinding.CONSTANT, "error", role, {"value": float(values[0])}))
+            result.append(Finding(RecordFinding.CONSTANT, Severity.ERROR, role, {"value": float(values[0])}))
     return result
 
 
@@ -156,7 +160,7 @@ def _implausible_sizes(record: Record) -> list[Finding]:
     for role, most in PLAUSIBLE.items():
         size = 0.5 * float(np.ptp(getattr(record, role)))
         if size > most:
-            result.append(Finding(RecordFinding.IMPLAUSIBLE, "warning", role, {"amplitude": size}))
+            result.append(Finding(RecordFinding.IMPLAUSIBLE, Severity.WARNING, role, {"amplitude": size}))
     return result
 
 
@@ -169,7 +173,7 @@ def _saturation(record: Record) -> list[Finding]:
         where: dict[str, object] = {"limit": record.force_range}
     else:
         where = {"extremes": [(plateau.value, plateau.longest) for plateau in plateaus(record)]}
-    return [Finding(RecordFinding.SATURATION, "warning", "force", {"share": share, **where})]
+    return [Finding(RecordFinding.SATURATION, Severity.WARNING, "force", {"share": share, **where})]
 
 
 def _steps(record: Record) -> list[Finding]:
@@ -181,7 +185,7 @@ def _steps(record: Record) -> list[Finding]:
             continue
         levels = float(np.ptp(values)) / step
         kind = RecordFinding(f"{role}-steps")
-        severity: Severity = "warning" if levels < COARSE else "info"
+        severity = Severity.WARNING if levels < COARSE else Severity.INFO
         result.append(Finding(kind, severity, role, {"step": step, "levels": levels}))
     return result
 
@@ -191,7 +195,7 @@ def _offsets(record: Record) -> list[Finding]:
     for role in ("displacement", "force"):
         values = getattr(record, role)
         offset, size = float(np.mean(values)), 0.5 * float(np.ptp(values))
-        severity: Severity = "warning" if abs(offset) > LARGE * size else "info"
+        severity = Severity.WARNING if abs(offset) > LARGE * size else Severity.INFO
         numbers = {"mean": offset, "amplitude": size}
         result.append(Finding(RecordFinding(f"{role}-offset"), severity, role, numbers))
     return result
@@ -214,7 +218,7 @@ def _drift(record: Record) -> list[Finding]:
         change, size = min(changes, key=abs), float(np.ptp(values))
         if changes[0] * changes[1] > 0.0 and abs(change) > 0.1 * size:
             numbers = {"change": change, "range": size}
-            result.append(Finding(RecordFinding(f"{role}-drift"), "warning", role, numbers))
+            result.append(Finding(RecordFinding(f"{role}-drift"), Severity.WARNING, role, numbers))
     return result
 
 
@@ -227,7 +231,7 @@ def _swapped_columns(record: Record) -> list[Finding]:
     rough = {role: _roughness(getattr(record, role)) for role in ("displacement", "force")}
     if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
         return []
-    return [Finding(RecordFinding.SWAPPED, "warning", numbers=rough)]
+    return [Finding(RecordFinding.SWAPPED, Severity.WARNING, numbers=rough)]
 
 
 def _roughness(values: Vector) -> float:
@@ -258,7 +262,7 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
         exceeds = float(np.max(density[line])) > 4.0 * float(np.max(density[nearby]))
         if exceeds and amplitude > 1e-3 * float(np.std(record.force)):
             numbers = {"frequency": mains, "amplitude": amplitude}
-            return [Finding(RecordFinding.HUM, "warning", "force", numbers)]
+            return [Finding(RecordFinding.HUM, Severity.WARNING, "force", numbers)]
     return []
 
 
@@ -268,7 +272,7 @@ def _line(record: Record, motion: Motion) -> list[Finding]:
     if line is None:
         return []
     numbers = {"frequency": line.frequency, "amplitude": line.amplitude, "rate": 1.0 / record.interval}
-    return [Finding(RecordFinding.LINE, "warning", "force", numbers)]
+    return [Finding(RecordFinding.LINE, Severity.WARNING, "force", numbers)]
 
 
 def _clock(record: Record, motion: Motion) -> list[Finding]:
@@ -276,9 +280,9 @@ def _clock(record: Record, motion: Motion) -> list[Finding]:
     scatter = jitter(record, motion)
     if scatter is not None:
         numbers = {"jitter": scatter, "interval": record.interval}
-        result.append(Finding(RecordFinding.HIDDEN_JITTER, "warning", "displacement", numbers))
+        result.append(Finding(RecordFinding.HIDDEN_JITTER, Severity.WARNING, "displacement", numbers))
     drift = clock_drift(record, motion)
     if drift is not None:
         numbers = {"growth": drift.growth, "standard_error": drift.error, "rate": drift.rate}
-        result.append(Finding(RecordFinding.CLOCK_DRIFT, "warning", numbers=numbers))
+        result.append(Finding(RecordFinding.CLOCK_DRIFT, Severity.WARNING, numbers=numbers))
     return result

@@ -12,6 +12,7 @@ from inerter.records.finding import Finding
 from inerter.records.finding_texts import CLEAR, SEEN, RecordFinding
 from inerter.records.record import Record
 from inerter.records.smoothing import Motion
+from inerter.statements import Severity
 
 Vector = NDArray[np.float64]
 STIFF = 0.3  # of the mass: more than that is elasticity near its resonance
@@ -30,8 +31,8 @@ def polarity_finding(record: Record, motion: Motion) -> list[Finding]:
     numbers = {"with_acceleration": inertia, "with_velocity": loss}
     clear = max(abs(inertia), abs(loss)) >= CLEAR
     if clear and ((inertia < -CLEAR and loss < 0.05) or (loss < -CLEAR and inertia < CLEAR)):
-        return [Finding(RecordFinding.FORCE_REVERSED, "warning", "force", numbers)]
-    return [Finding(RecordFinding.SIGN, "info", "force", numbers)]
+        return [Finding(RecordFinding.FORCE_REVERSED, Severity.WARNING, "force", numbers)]
+    return [Finding(RecordFinding.SIGN, Severity.INFO, "force", numbers)]
 
 
 def delay_finding(record: Record, motion: Motion) -> list[Finding]:
@@ -91,11 +92,11 @@ def _fit_delay(found: RatioLines, powers: tuple[int, ...]) -> tuple[float, float
 def _delay_finding(record: Record, late: float, error: float, by: str) -> Finding:
     unseen = abs(late) < SEEN * error or abs(late) < 0.05 * record.interval
     numbers = {"delay": late, "standard_error": error}
-    return Finding(RecordFinding.DELAY, "info" if unseen else "warning", by, numbers)
+    return Finding(RecordFinding.DELAY, Severity.INFO if unseen else Severity.WARNING, by, numbers)
 
 
 def _unknown_delay(by: str) -> Finding:
-    return Finding(RecordFinding.DELAY, "info", by)
+    return Finding(RecordFinding.DELAY, Severity.INFO, by)
 
 
 def _correlation(a: Vector, b: Vector) -> float:

@@ -58,7 +58,7 @@ def parse_uncertain(text: object, unit: str = "") -> Uncertain:
     >>> parse_uncertain("1 +- 2 % (k = 2)"), parse_uncertain("0.3 kg +- 10 g", "kg").uncertainty
     (Uncertain(value=1.0, uncertainty=0.01, unit=''), 0.01)
     """
-    example = f"0.3 {unit} +- 3 %" if unit else "1 +- 1 %"
+    example = f'"0.3 {unit}" or "0.3 {unit} +- 3 %"' if unit else '"1" or "1 +- 1 %"'
     if isinstance(text, Uncertain):
         return text
     if is_number(text) and not unit:
@@ -96,4 +96,4 @@ def _parse_number(part: str, text: object, example: str) -> float:
 
 
 def _refusal_message(text: object, example: str) -> str:
-    return f'Got {quote_value(text)}; expected a value and its standard uncertainty, such as "{example}".'
+    return f"Got {quote_value(text)}; expected a value, alone or with its standard uncertainty, such as {example}."

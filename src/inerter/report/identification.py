@@ -35,11 +35,12 @@ from inerter.report.identification_text import (
 from inerter.report.identified_values import ResultKind, elements_block, result_kind, value_and_interval
 from inerter.report.options import as_options
 from inerter.report.page import PageFigure, environment, inline
+from inerter.statements import Severity, by_severity
 from inerter.work.origin import versions
 
 RESPONSE = "response.json"
 OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
-_SEVERITIES = {"error": "Errors", "warning": "Warnings", "info": "Good to know"}
+_HEADINGS = {Severity.ERROR: "Errors", Severity.WARNING: "Warnings", Severity.INFO: "Good to know"}
 _MOST_FIGURES = 5  # of one record, and two of all
 
 
@@ -127,15 +128,14 @@ def _answers(found: IdentificationResult) -> Iterator[str]:
 
 def _records(found: IdentificationResult) -> Iterator[RecordText]:
     for number, (reading, comparison) in enumerate(zip(found.readings, found.fit.comparisons, strict=True)):
-        by_severity = {
-            title: [as_options(f.text) for f in reading.findings if f.severity == severity]
-            for severity, title in _SEVERITIES.items()
-        }
         yield RecordText(
             reading.used.source,
             sampling_summary(reading),
             list(processing_notes(found, reading, comparison)),
-            {title: sentences for title, sentences in by_severity.items() if sentences},
+            {
+                _HEADINGS[severity]: [as_options(finding.text) for finding in group]
+                for severity, group in by_severity(reading.findings).items()
+            },
             number,
         )
 

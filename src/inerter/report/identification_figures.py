@@ -23,7 +23,7 @@ from inerter.figures.misfit import ResidualSamples, misfit_figure
 from inerter.files.identification.running import IdentificationResult, Responses
 from inerter.formatting import choose_scale, format_quantity, format_range
 from inerter.identification.fit import Localisation, RecordFit
-from inerter.identification.misfit_patterns import MisfitPattern
+from inerter.identification.statements.patterns import MisfitPattern
 from inerter.report.identified_values import ResultKind, result_kind, value_and_interval
 
 Matrix = NDArray[np.float64]

@@ -12,6 +12,7 @@ from inerter.report.identification_tables import candidate_table, cause_texts, g
 from inerter.report.identified_values import elements_block
 from inerter.report.options import as_options
 from inerter.report.text import WIDTH, table_lines
+from inerter.statements import Severity, by_severity
 
 INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
 
@@ -67,7 +68,7 @@ def unreliability_reason(found: IdentificationResult) -> str:
     status = found.fit.status
     if status.ok:
         return ""
-    warned = [r.used.source for r in found.readings if any(f.severity == "warning" for f in r.findings)]
+    warned = [r.used.source for r in found.readings if Severity.WARNING in by_severity(r.findings)]
     doubt = found.fit.reliability_warning
     if not warned or doubt is None or doubt.numbers.get("likeliest") is not None:
         return status.message
@@ -111,10 +112,9 @@ def _record_lines(found: IdentificationResult) -> Iterator[str]:
         yield from wrap(f"  {reading.used.source}: {sampling_summary(reading)}", WIDTH, subsequent_indent="    ")
         for sentence in processing_notes(found, reading, comparison):
             yield from wrap(sentence, WIDTH, initial_indent="    ", subsequent_indent="    ")
-        for finding in reading.findings:
-            if finding.severity == "warning":
-                said = f"Warning: {as_options(finding.text)}"
-                yield from wrap(said, WIDTH, initial_indent="    ", subsequent_indent="    ")
+        for warning in by_severity(reading.findings).get(Severity.WARNING, ()):
+            said = f"Warning: {as_options(warning.text)}"
+            yield from wrap(said, WIDTH, initial_indent="    ", subsequent_indent="    ")
 
 
 def _candidate_lines(found: IdentificationResult) -> Iterator[str]:

@@ -71,7 +71,8 @@ def doubt_of(results: xr.Dataset, index: str) -> str:
     _, message = Status.parts(next(iter(unsure.values()))[0])
     many = len(next(iter(texts.values())))
     of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
-    decided = decisive_method_clause(methods(results)[0], message) if len(methods(results)) == 1 else ""
+    unsure_status = Status(StatusKind.INACCURATE, message)
+    decided = decisive_method_clause(methods(results)[0], unsure_status) if len(methods(results)) == 1 else ""
     return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}{decided}). "
 
 
@@ -82,7 +83,8 @@ def best_layout(results: xr.Dataset, index: str) -> str | None:
 
 def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    row = one_method(results).sel(index=index).squeeze()
+    row = one_method(results).sel(index=index)
+    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name != "layout"])
     values = np.atleast_1d(row["value"].values).tolist()
     least = equally_least(values)
     if not least:

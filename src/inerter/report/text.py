@@ -51,7 +51,7 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     while len(grid.columns) > 1:
         count = _count_fitting(grid, width)
         yield from _lines(replace(grid, columns=grid.columns[:count]), labels, width)
-        grid = replace(grid, columns=[grid.columns[0], *grid.columns[count:]])
+        grid = _Grid([replace(row, status="") for row in grid.rows], [grid.columns[0], *grid.columns[count:]])
     for line in table.failures:
         yield from wrap(line, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 

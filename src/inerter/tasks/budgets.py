@@ -56,10 +56,8 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         )
         method = study.method(budget_method(study), threads)
         found = element_break_even(study, design, baseline, self.index, self.parameter, method)
-        said = found.status.message
-        sure = found.status.kind in (StatusKind.OK, StatusKind.UNBOUNDED)
-        more = "" if sure else decisive_method_clause(budget_method(study), said)
-        return self._answer(study, found, found.status.kind.value, said + more)
+        message = found.status.message + decisive_method_clause(budget_method(study), found.status)
+        return self._answer(study, found, found.status.kind.value, message)
 
     def failed_result(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""

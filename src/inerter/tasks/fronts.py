@@ -190,8 +190,7 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
         status=found.status.kind.value,
-        message=found.status.message
-        + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),
+        message=found.status.message + decisive_method_clause(method, found.status),
     )
 
 

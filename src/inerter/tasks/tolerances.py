@@ -60,8 +60,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             status=found.status.kind.value,
-            message=found.status.message
-            + ("" if found.status.ok else decisive_method_clause(method, found.status.message)),
+            message=found.status.message + decisive_method_clause(method, found.status),
         )
 
     def failed_result(self, study: Study, message: str) -> ToleranceAnswer:

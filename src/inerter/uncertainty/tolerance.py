@@ -173,7 +173,7 @@ def _analyse(
     both, mixed_values = values[: 2 * samples], values[2 * samples : (2 + count) * samples].reshape(count, samples)
     extreme, factors = np.append(both, values[(2 + count) * samples :]), np.vstack([a, b, corners])
     status, known = here.status, bool(np.all(np.isfinite(values)))
-    if not known:
+    if not known and (here.status.ok or np.isfinite(here.value)):
         lost = int(np.sum(~np.isfinite(values)))
         status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
     names = scatter.names

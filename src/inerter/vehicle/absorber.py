@@ -41,9 +41,10 @@ class Absorber(VehicleModel):
 
     def mechanism(self) -> Mechanism:
         """The same absorber as a `Mechanism`."""
-        support: Network = Spring(self.primary_stiffness)
+        # named, or an element of the study that is called k would be taken for this one
+        support: Network = Spring(self.primary_stiffness, name="primary_stiffness")
         if self.primary_damping != 0.0:
-            support = support | Damper(self.primary_damping)
+            support = support | Damper(self.primary_damping, name="primary_damping")
         primary, absorber = {"primary": 1.0}, {"absorber": 1.0}
         struts = [Strut("support", support, upper=primary, lower=GROUND)]
         struts += [Strut("mount", self.mount, upper=absorber, lower=primary)]

@@ -354,18 +354,20 @@ def check_values(mechanism: Mechanism) -> None:
     for mount in mechanism.mounts():
         for element in mount.network.elements():
             if not isinstance(element.value, Free | Tied):
-                _check_size("value", element.label, element.value, element.unit)
+                large = "Replace such a large element by a rigid joint."
+                _check_size(f"value of {element.label!r}", element.value, element.unit, "element", large)
     for coordinate in mechanism.coordinates:
         if not isinstance(coordinate.inertia, Free):
-            _check_size("inertia", coordinate.name, coordinate.inertia, coordinate.unit)
+            large = "Fix such a heavy body to the ground."
+            _check_size(f"inertia of {coordinate.name!r}", coordinate.inertia, coordinate.unit, "inertia", large)
 
 
-def _check_size(what: str, of: str, value: float, unit: str) -> None:
+def _check_size(what: str, value: float, unit: str, kind: str, if_large: str) -> None:
     if value != 0.0 and not _SMALLEST <= value <= _LARGEST:
+        remedy = f"Omit such a small {kind}." if value < _SMALLEST else if_large
         raise MechanismError(
-            f"The {what} of {of!r} is {format_quantity(value, unit, 6)}; double precision supports "
-            f"{format_range(_SMALLEST, _LARGEST, unit)}. Omit such a small element, and replace "
-            f"such a stiff one by a rigid joint."
+            f"The {what} is {format_quantity(value, unit, 6)}; double precision supports "
+            f"{format_range(_SMALLEST, _LARGEST, unit)}. {remedy}"
         )
 
 

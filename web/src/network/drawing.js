@@ -1,12 +1,12 @@
 // Where everything in the drawing of a network is: the upper end at the top, parallel parts side by side between bars,
 // series parts in a column, as in the figures of reports. Lengths in points, y downwards.
 
-/** @typedef {import("./algebra.js").Tree} Tree */
-/** @typedef {import("./algebra.js").Path} Path */
+/** @import { Tree, Path } from "./algebra.js" */
 /** @typedef {[number, number]} Point */
 /** @typedef {{name: string, path: Path, x: number, y: number}} Placed  an element with the middle of its symbol */
 /** @typedef {{path: Path, left: number, right: number, top: number, bottom: number}} Box  what a part covers */
-/** @typedef {{left: number, right: number, height: number, placed: Placed[], boxes: Box[], lines: Point[][]}} Drawing */
+/** @typedef {{left: number, right: number, height: number}} Size */
+/** @typedef {Size & {placed: Placed[], boxes: Box[], lines: Point[][]}} Drawing */
 
 export const HALF_WIDTH = 8;
 export const HALF_HEIGHT = 20;
@@ -77,14 +77,15 @@ function inAColumn(parts) {
   return together(parts, places, size, []);
 }
 
-/** @param {Drawing[]} parts @param {Point[]} places @param {{left: number, right: number, height: number}} size @param {Point[][]} lines @returns {Drawing} */
+/** @param {Drawing[]} parts @param {Point[]} places @param {Size} size @param {Point[][]} lines @returns {Drawing} */
 function together(parts, places, size, lines) {
   /** @type {Drawing} */
   const whole = { ...size, placed: [], boxes: [], lines: [...lines] };
   parts.forEach((part, i) => {
     const [x, y] = places[i];
     whole.placed.push(...part.placed.map((one) => ({ ...one, x: one.x + x, y: one.y + y })));
-    whole.boxes.push(...part.boxes.map((box) => ({ ...box, left: box.left + x, right: box.right + x, top: box.top + y, bottom: box.bottom + y })));
+    whole.boxes.push(...part.boxes.map(({ path, left, right, top, bottom }) =>
+      ({ path, left: left + x, right: right + x, top: top + y, bottom: bottom + y })));
     whole.lines.push(...part.lines.map((line) => line.map(([a, b]) => /** @type {Point} */ ([a + x, b + y]))));
   });
   return whole;

@@ -1,44 +1,39 @@
 // The indices of the strut beside the baseline, and what may be done about them at once.
 
-import { elementsIn, kindOf, unchosenIn } from "../library.js";
+import { elementsIn, kindOf } from "../library.js";
 import { seek } from "../asking.js";
 import { judging, methodsOf, quickMethod } from "../methods.js";
 import { answerOf, baselineOf, shownDesigns, soughtAnswer } from "../questions.js";
 import { estimated, placed, printed, shown, withUnit } from "../state/scale.js";
 import { Being, Moving } from "../parts/clock.js";
 import { Doubts, Unchosen, doubted, isOk } from "../parts/doubts.js";
+import { Select, Table, useChoice, formHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { AskedPanel } from "./asked.js";
-import { otherProblems } from "./values.js";
+import { otherProblems, problemsOf } from "./values.js";
 import { optimise } from "../working.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
+/** @import { Document } from "../state/document.js" */
 
-/** @param {{store: Store, api: import("../api.js").Api}} props */
+/** @param {{store: Store, api: Api}} props */
 export function AnswersPanel({ store, api }) {
   const state = store.get();
   const shown = answerOf(state, "indices");
   const { value, sentence } = shown;
   const document = state.history.present;
   const baseline = baselineOf(document).layout;
-  const problems = answerOf(state, "check").value?.problems ?? [];
+  const problems = problemsOf(state);
   useShown("indices", state);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${shown.is === "coming"}>
     <div class="head"><h2 id="answers-title">Answers</h2><${Being} shown=${shown} /></div>
-    <div class="row">
-      <label>Judged <select value=${judging(state)?.name}
-        onChange=${(/** @type {Event} */ event) =>
-          store.dispatch({ type: "viewed",
-            view: { method: /** @type {HTMLSelectElement} */ (event.currentTarget).value } })}>
-        ${methodsOf(state).map((method) => html`<option key=${method.name} value=${method.name}>${methodTitle(method)}
-          </option>`)}
-      </select></label>
-    </div>
+    <div class="row"><${Select} label="Judged" value=${judging(state)?.name}
+      choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
+      set=${(/** @type {string} */ method) => store.look({ method })} /></div>
     ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
-    <${Unchosen}
-      designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
+    <${Unchosen} state=${state} designs=${shownDesigns(document)} />
     <${Doubts} members=${membersOf(value)} />
     <${Indices} state=${state} shown=${shown} layout=${document.layout} baseline=${baseline} />
     <${Limits} value=${value} />
@@ -64,6 +59,9 @@ export function indicesOf(state) {
     ?? { symbol, title: symbol });
 }
 
+/** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */
+export const indexChoices = (indices) => indices.map(({ symbol, title }) => [symbol, `${symbol}: ${title}`]);
+
 /** What the answers of designs are made of: each value, and each limit. @param {any} value
  * @returns {import("../parts/doubts.js").Member[]} */
 export const membersOf = (value) =>
@@ -83,15 +81,14 @@ function Indices({ state, shown: { is, value, before }, layout, baseline }) {
   const missing = is === "coming" ? "…" : "–";
   /** @param {any} result */
   const measured = (result) => (result ? html`<${Measured} result=${result} />` : missing);
-  return html`<div class="scroll" tabindex="0" role="region" aria-label="Indices"><table class=${before ? "stale" : ""}>
-    <thead><tr><th scope="col">index</th><th scope="col" title=${layout}>${layout}</th>
-      ${!alone && html`<th scope="col" title=${`${baseline}, the baseline`}>${baseline} ★</th>
-        <th scope="col">better by</th>`}</tr></thead>
-    <tbody>${rows.map((/** @type {any} */ result) => {
+  const heads = [["index"], [layout, layout],
+    ...(alone ? [] : [[`${baseline} ★`, `${baseline}, the baseline`], ["better by"]])];
+  return html`<${Table} label="Indices" class=${before ? "stale" : ""} heads=${heads}>
+    ${rows.map((/** @type {any} */ result) => {
       const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
       return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}
-          </span> ${design && html`<${Notes} result=${result} />`}</th>
+        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span>
+          ${" "}${design && html`<${Notes} result=${result} />`}</th>
         <td class="number" data-index=${result.index} data-value=${result.value}>${measured(design && result)}</td>
         ${!alone && html`<td class="number">${measured(reference)}</td>
           <td class=${`number ${better(result)}`} data-better=${result.improvement_percent}>
@@ -99,8 +96,7 @@ function Indices({ state, shown: { is, value, before }, layout, baseline }) {
               unchosen=${[design, other].some(({ unchosen }) => unchosen.length > 0)} />` : missing}${result.tie
                 ? html`<div class="scatter">as good</div>` : null}</td>`}
       </tr>`;
-    })}</tbody>
-  </table></div>`;
+    })}<//>`;
 }
 
 /** A value, above it its status where that is not ok, and below it its standard error where that is more than its
@@ -165,39 +161,32 @@ const LIMIT_WORDS = { true: "kept", false: "broken", null: "not known" };
 /** @type {{[kept: string]: string}} */
 const LIMIT_CLASSES = { true: "good", false: "bad", null: "quiet" };
 
-/** @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+/** @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
 function Optimise({ store, api, indices }) {
   const state = store.get();
   const { study, layout } = state.history.present;
-  const [index, setIndex] = useState("");
-  const [told, setTold] = useState(/** @type {{text: any, of: import("../state/document.js").Document | null}} */ ({
-    text: "", of: null }));
-  const chosen = indices.some(({ symbol }) => symbol === index) ? index : indices[0]?.symbol;
+  const [chosen, setIndex] = useChoice(indices.map(({ symbol }) => symbol));
+  const nothing = { text: "", of: null };
+  const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
   if (!chosen || !method) return null;
-  return html`<form class="row optimise" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
-    event.preventDefault();
-    const all = /** @type {SubmitEvent} */ (event).submitter?.getAttribute("value") === "all";
-    const of = state.history.present;
-    setTold({ text: html`<${Moving} what="Searching" />`, of });
+  return html`<form class="row optimise" onSubmit=${formHandler(async (_, { submitter }) => {
+    const all = submitter?.getAttribute("value") === "all";
+    setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
     const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
       index: chosen, method: method.name });
     const { present } = store.get().history;
-    setTold(present.study === study ? { text, of: present } : { text: "", of: null });
-  }}>
-    <label>Best values for <select name="index" value=${chosen}
-      onChange=${(/** @type {Event} */ event) =>
-        setIndex(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
-      ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
-    </select></label>
+    setTold(present.study === study ? { text, of: present } : nothing);
+  })}>
+    <${Select} label="Best values for" name="index" value=${chosen} choices=${indexChoices(indices)} set=${setIndex} />
     <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
     <p class="quiet" role="status">${told.of === state.history.present && told.text}</p>
   </form>`;
 }
 
 /** How much of an element the design bears before the baseline is as good.
- * @param {{store: Store, api: import("../api.js").Api, indices: {symbol: string, title: string}[]}} props */
+ * @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
 function Budget({ store, api, indices }) {
   const state = store.get();
   const document = state.history.present;
@@ -207,15 +196,10 @@ function Budget({ store, api, indices }) {
   const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
   const { is, value, sentence } = soughtAnswer(state, "budget");
   return html`<details class="budget"><summary>Break-even values</summary>
-    <form class="row" aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
-    event.preventDefault();
-    const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") });
-  }}>
-    <label>How much of <select name="parameter" key=${document.layout} defaultValue=${switching}>
-      ${names.map((name) => html`<option key=${name} selected=${name === switching}>${name}</option>`)}</select></label>
-    <label>by <select name="index">${indices.map(({ symbol }) => html`<option key=${symbol}>${symbol}</option>`)}
-      </select></label>
+    <form class="row" aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
+      void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
+    <${Select} label="How much of" name="parameter" key=${document.layout} choices=${names} selected=${switching} />
+    <${Select} label="by" name="index" choices=${indices.map(({ symbol }) => symbol)} />
     <button>Compute</button>
     <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
       ? budgetTold(value, document.layout, baseline) : sentence}</p>
@@ -240,6 +224,6 @@ function OtherProblems({ state }) {
   return problems.length === 0
     ? null
     : html`<div class="problems" role="alert"><h3>In the study</h3><ul>
-      ${problems.map((/** @type {any} */ problem) => html`<li class="problem">${placed(problem)}${problem.sentence}
+      ${problems.map((problem) => html`<li class="problem">${placed(problem)}${problem.sentence}
         </li>`)}</ul></div>`;
 }

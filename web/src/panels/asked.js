@@ -1,13 +1,13 @@
 // What is asked of the study: its indices, and the limits that every design keeps.
 
 import { numbersOf } from "../library.js";
+import { Chip, Select, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { answerOf } from "../questions.js";
 import { entryAt } from "../state/document.js";
 import { Entry } from "./values.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
+/** @import { Store, State } from "../state/store.js" */
 /** @typedef {{path: string[], sense: string, value: string | number}} Limit  of what, as the keys of its table say
  * it */
 
@@ -29,9 +29,9 @@ export function AskedPanel({ store }) {
     value: limited(study.study?.subject_to, [...path, sense], value) });
   return html`<details class="asked"><summary>Indices and limits</summary>
     <div class="row" role="group" aria-label="Indices of the study">
-      ${indexNames(state).map(({ symbol, title }) => html`<button type="button" class="chip" key=${symbol}
-        title=${title} aria-pressed=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
-          onClick=${() => toggle(symbol)}>${symbol}</button>`)}
+      ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
+        on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
+        set=${() => toggle(symbol)}>${symbol}<//>`)}
     </div>
     ${limits.map((limit) => {
       const label = [...limit.path, limit.sense.replace("_", " ")].join(" ");
@@ -40,19 +40,15 @@ export function AskedPanel({ store }) {
         <button type="button" aria-label=${`Delete the limit: ${label}`}
           onClick=${() => place(limit, undefined)}>Delete</button></p>`;
     })}
-    <form class="row" onSubmit=${(/** @type {SubmitEvent} */ event) => {
-      event.preventDefault();
-      const form = /** @type {HTMLFormElement} */ (event.currentTarget);
-      const [of, sense, value] = ["of", "sense", "value"].map((name) => String(new FormData(form).get(name)
-        ?? "").trim());
+    <form class="row" onSubmit=${formHandler((form, { currentTarget }) => {
+      const [of, sense, value] = ["of", "sense", "value"].map((name) => String(form.get(name) ?? "").trim());
       if (!value) return;
       place({ path: of.split("."), sense, value }, value);
-      form.reset();
-    }}>
-      <label>Limit <select name="of">${limitable(state).map((of) => html`<option key=${of}>${of}</option>`)}</select>
-        </label>
-      <select name="sense" aria-label="Which side">
-        ${SENSES.map((sense) => html`<option key=${sense} value=${sense}>${sense.replace("_", " ")}</option>`)}</select>
+      /** @type {HTMLFormElement} */ (currentTarget).reset();
+    })}>
+      <${Select} label="Limit" name="of" choices=${limitable(state)} />
+      <${Select} name="sense" aria-label="Which side"
+        choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
         autocomplete="off" /> <button>Add</button>
     </form>

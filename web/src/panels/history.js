@@ -1,55 +1,49 @@
 // The simulated road: histories with stick and open gaps shaded, and the car in motion.
 
 import { Plot } from "../plot.js";
-import { unchosenIn } from "../library.js";
 import { answerOf, designOf } from "../questions.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
-import { html, useMemo, useState } from "../parts/html.js";
+import { Select, useChoice } from "../parts/controls.js";
+import { html, useMemo } from "../parts/html.js";
+import { problemsOf } from "./values.js";
 import { Motion } from "./motion.js";
 import { shown, withUnit } from "../state/scale.js";
 
+/** @import { Store } from "../state/store.js" */
+/** @import { Band } from "../plot.js" */
+
 const SHADED = ["stick", "open"];
 
-/** @param {{store: import("../state/store.js").Store}} props */
+/** @param {{store: Store}} props */
 export function HistoryPanel({ store }) {
   const state = store.get();
   const document = state.history.present;
-  const faulty = (answerOf(state, "check").value?.problems ?? []).length > 0;
+  const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
   const mechanism = answerOf(state, "mechanism").value;
-  const [picked, setPicked] = useState("");
+  /** @type {{name: string, label: string, unit: string, time: number[], values: number[]}[]} */
   const signals = value?.signals ?? [];
-  const signal = signals.find((/** @type {any} */ { name }) => name === picked) ?? signals[0];
-  const bands = useMemo(
-    () =>
-      (value?.shaded ?? [])
-        .filter((/** @type {any} */ each) => SHADED.includes(each.state))
-        .flatMap((/** @type {any} */ each) => each.intervals.map((/** @type {[number, number]} */ [from, to]) =>
-          ({ from, to, kind: each.state }))),
-    [value],
-  );
+  const [picked, setPicked] = useChoice(signals.map(({ name }) => name));
+  const signal = signals.find(({ name }) => name === picked);
+  const bands = useMemo(() => bandsOf(value?.shaded ?? []), [value]);
   const curves = useMemo(() => (signal ? [{ label: signal.label, values: signal.values }] : []), [signal]);
   /** @param {string} key @param {string} label @param {number} number @param {{min: number, max: number}} range */
   const setting = (key, label, number, range) => html`<label>
     ${label} <${Field} type="number" class="short" ...${range} text=${String(number)}
       done=${(/** @type {string} */ text) => {
     const entered = Number(text);
-    if (entered >= range.min && entered <= range.max) store.dispatch({ type: "viewed", view: { [key]: entered } });
+    if (entered >= range.min && entered <= range.max) store.look({ [key]: entered });
   }} /></label>`;
   return html`<div class=${answer.before ? "stale" : ""} aria-busy=${answer.is === "coming"}>
     <${Being} shown=${answer} />
-    <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />
+    <${Unchosen} state=${state} designs=${[designOf(document)]} />
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
     <div class="row">
-      <label>Show <select value=${signal?.name ?? ""}
-        onChange=${(/** @type {Event} */ event) =>
-          setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
-        ${signals.map((/** @type {any} */ each) => html`<option key=${each.name} value=${each.name}>${each.label}
-          </option>`)}
-      </select></label>
+      <${Select} label="Show" value=${signal?.name ?? ""} choices=${signals.map(({ name, label }) => [name, label])}
+        set=${setPicked} />
       ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
       ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     </div>
@@ -66,3 +60,8 @@ export function HistoryPanel({ store }) {
     ${value?.motion && mechanism && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
   </div>`;
 }
+
+/** The intervals in which friction sticks or a gap is open.
+ * @param {{state: string, intervals: [number, number][]}[]} shaded @returns {Band[]} */
+const bandsOf = (shaded) => shaded.filter(({ state }) => SHADED.includes(state)).flatMap(({ state, intervals }) =>
+  intervals.map(([from, to]) => ({ from, to, kind: state })));

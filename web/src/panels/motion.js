@@ -2,11 +2,17 @@
 
 import { drawing } from "../network/drawing.js";
 import { kindOf, numbersOf } from "../library.js";
+import { Select } from "../parts/controls.js";
 import { html, useEffect, useRef, useState } from "../parts/html.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
+/** @import { Store } from "../state/store.js" */
 /** @typedef {{time: number[], coordinates: {[name: string]: number[]}, roads: {[name: string]: number[]}}} Motions */
 /** @typedef {{[name: string]: number}} Pose  of coordinates and roads, at one time */
+/** @typedef {{[name: string]: number}} Port  a place that moves: how much of each coordinate it has */
+/** @typedef {{port: Port, road: string, x: number}} Tyre */
+/** @typedef {{network: any, upper: {port: Port, x: number}, lower: {port: Port}}} Strut */
+/** @typedef {{tyres: Tyre[], struts: Strut[], roads: {name: string, distance?: number}[],
+ * coordinates: {name: string, angle: boolean}[]}} Mechanism */
 
 const HEIGHT = 320;
 const BODY = 40; // [px] from the top at rest
@@ -19,7 +25,7 @@ const THICK = 26; // [px] of a body
 const SPEED = "road.speed"; // which moves the road along
 const SPEEDS = [1, 0.5, 0.25, 0.1];
 
-/** @param {{store: Store, motion: Motions, mechanism: any}} props */
+/** @param {{store: Store, motion: Motions, mechanism: Mechanism}} props */
 export function Motion({ store, motion, mechanism }) {
   const canvas = useRef(/** @type {HTMLCanvasElement | null} */ (null));
   const clock = useRef({ at: 0, frames: 0 });
@@ -52,27 +58,23 @@ export function Motion({ store, motion, mechanism }) {
     return () => cancelAnimationFrame(frame);
   }, [view.playing, motion, mechanism, view.theme]);
 
-  /** @param {any} more */
-  const set = (more) => store.dispatch({ type: "viewed", view: more });
   return html`<figure class="motion">
     <canvas ref=${canvas} role="img" aria-label="The car on its road, drawn"
       style=${{ width: "100%", height: `${HEIGHT}px` }}></canvas>
     <figcaption class="row">
-      <button type="button" aria-pressed=${view.playing} onClick=${() => set({ playing: !view.playing })}>
+      <button type="button" aria-pressed=${view.playing} onClick=${() => store.look({ playing: !view.playing })}>
         ${view.playing ? "Pause" : "Play"}</button>
-      <label>at <select value=${String(view.speed)}
-        onChange=${(/** @type {Event} */ event) =>
-          set({ speed: Number(/** @type {HTMLSelectElement} */ (event.currentTarget).value) })}>
-        ${SPEEDS.map((each) => html`<option key=${each} value=${String(each)}>
-          ${each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`}</option>`)}
-      </select></label>
+      <${Select} label="at" value=${String(view.speed)}
+        choices=${SPEEDS.map((each) => [String(each),
+          each === 1 ? "the true speed" : `1/${Math.round(1 / each)} of the speed`])}
+        set=${(/** @type {string} */ speed) => store.look({ speed: Number(speed) })} />
       <span class="quiet">Motions drawn ${Math.round(scene.current.stretch / metreOf(endsOf(scene.current),
         width))} times as large.</span>
     </figcaption>
   </figure>`;
 }
 
-/** @typedef {{motion: Motions, mechanism: any, store: Store, travel: number, stretch: number}} Scene */
+/** @typedef {{motion: Motions, mechanism: Mechanism, store: Store, travel: number, stretch: number}} Scene */
 
 /** Pixels of a metre up and down, so that the largest motion is well seen. @param {Motions} motion */
 function stretchOf({ coordinates, roads }) {
@@ -90,9 +92,12 @@ function poseAt({ time, coordinates, roads }, at) {
   return Object.fromEntries(all.map(([name, values]) => [name, values[i] + share * (values[i + 1] - values[i])]));
 }
 
-/** The height of a port. @param {{[name: string]: number}} port @param {Pose} pose */
-const heightOf = (port, pose) => Object.entries(port).reduce((sum, [name, lever]) => sum + lever * (pose[name] ?? 0),
-  0);
+/** The height of a port. @param {Port} port @param {Pose} pose */
+const heightOf = (port, pose) =>
+  Object.entries(port).reduce((sum, [name, lever]) => sum + lever * (pose[name] ?? 0), 0);
+
+/** Whether two ports move with a coordinate in common. @param {Port} one @param {Port} other */
+const shareCoordinate = (one, other) => Object.keys(one).some((name) => name in other);
 
 /** @param {HTMLCanvasElement} canvas @param {Scene} scene @param {number} at */
 function paint(canvas, scene, at) {
@@ -133,7 +138,7 @@ function paint(canvas, scene, at) {
 }
 
 /** Where the tyres are along the car. @param {Scene} scene @returns {number[]} */
-const endsOf = (scene) => scene.mechanism.tyres.map((/** @type {any} */ tyre) => placeOf(scene, tyre));
+const endsOf = (scene) => scene.mechanism.tyres.map((tyre) => placeOf(scene, tyre));
 
 /** Pixels of a metre along the car, so that all of it is seen. @param {number[]} ends @param {number} width */
 function metreOf(ends, width) {
@@ -143,27 +148,24 @@ function metreOf(ends, width) {
 }
 
 /** Where a tyre is along the car: by its lever where the strut above it is, else by the distance of its road.
- * @param {Scene} scene @param {any} tyre */
+ * @param {Scene} scene @param {Tyre} tyre */
 function placeOf({ mechanism }, tyre) {
-  const above = mechanism.struts.find((/** @type {any} */ strut) =>
-    Object.keys(strut.lower.port).some((name) => name in tyre.port));
-  const road = mechanism.roads.find((/** @type {any} */ each) => each.name === tyre.road);
+  const above = mechanism.struts.find((strut) => shareCoordinate(strut.lower.port, tyre.port));
+  const road = mechanism.roads.find((each) => each.name === tyre.road);
   const levers = above ? above.upper.x : 0;
   return levers !== 0 ? levers + tyre.x : -(road?.distance ?? 0);
 }
 
-/** @param {Scene} scene @param {any} strut */
+/** @param {Scene} scene @param {Strut} strut */
 function strutPlace(scene, strut) {
-  const below = scene.mechanism.tyres.find((/** @type {any} */ tyre) =>
-    Object.keys(tyre.port).some((name) => name in strut.lower.port));
+  const below = scene.mechanism.tyres.find((tyre) => shareCoordinate(tyre.port, strut.lower.port));
   return below && strut.upper.x === 0 ? placeOf(scene, below) : strut.upper.x;
 }
 
-/** Where a port is drawn: on a wheel, on the ground, or on a body. @param {Scene} scene
- * @param {{[name: string]: number}} port @param {Pose} pose */
+/** Where a port is drawn: on a wheel, on the ground, or on a body.
+ * @param {Scene} scene @param {Port} port @param {Pose} pose */
 function levelOf(scene, port, pose) {
-  const wheel = scene.mechanism.tyres.some((/** @type {any} */ tyre) =>
-    Object.keys(tyre.port).some((name) => name in port));
+  const wheel = scene.mechanism.tyres.some((tyre) => shareCoordinate(tyre.port, port));
   const rest = Object.keys(port).length === 0 ? GROUND : wheel ? WHEEL - RADIUS : BODY + 26;
   return rest - scene.stretch * heightOf(port, pose);
 }
@@ -174,47 +176,51 @@ function drawRoad(pen, { motion, travel, stretch, mechanism }, at, width, across
   const first = mechanism.roads[0];
   if (!first) return;
   const heights = motion.roads[first.name];
-  const place = ends[mechanism.tyres.findIndex((/** @type {any} */ tyre) => tyre.road === first.name)] ?? 0;
+  const place = ends[mechanism.tyres.findIndex((tyre) => tyre.road === first.name)] ?? 0;
   const step = motion.time[1] - motion.time[0];
-  pen.beginPath();
+  const points = [];
   for (let x = 0; x <= width; x += 2) {
     const time = at + (x - across(place)) / metre / travel;
     const i = Math.min(heights.length - 1, Math.max(0, time / step));
     const [below, share] = [Math.floor(i), i - Math.floor(i)];
     const height = heights[below] + share * ((heights[below + 1] ?? heights[below]) - heights[below]);
-    pen.lineTo(x, GROUND - stretch * height);
+    points.push([x, GROUND - stretch * height]);
   }
-  pen.stroke();
+  drawLine(pen, points);
 }
 
 /** @param {CanvasRenderingContext2D} pen @param {number} x @param {number} y @param {number} ground */
 function drawWheel(pen, x, y, ground) {
   const squeezed = Math.max(8, (ground - y) / 2);
+  drawShape(pen, () => pen.ellipse(x, (y + ground) / 2, RADIUS, squeezed, 0, 0, 2 * Math.PI));
+  drawShape(pen, () => pen.arc(x, y, 6, 0, 2 * Math.PI));
+  drawLine(pen, [[x, y - 6], [x, y - RADIUS]]);
+}
+
+/** @param {CanvasRenderingContext2D} pen @param {number[][]} points */
+function drawLine(pen, points) {
   pen.beginPath();
-  pen.ellipse(x, (y + ground) / 2, RADIUS, squeezed, 0, 0, 2 * Math.PI);
-  pen.fill();
+  for (const [x, y] of points) pen.lineTo(x, y);
   pen.stroke();
+}
+
+/** Something with an outline, which hides what is behind it. @param {CanvasRenderingContext2D} pen
+ * @param {() => void} outline */
+function drawShape(pen, outline) {
   pen.beginPath();
-  pen.arc(x, y, 6, 0, 2 * Math.PI);
+  outline();
   pen.fill();
-  pen.stroke();
-  pen.beginPath();
-  pen.moveTo(x, y - 6);
-  pen.lineTo(x, y - RADIUS);
   pen.stroke();
 }
 
 /** What joins a strut to wheels that are not below it. @param {CanvasRenderingContext2D} pen @param {Scene} scene
- * @param {any} strut @param {Pose} pose @param {(x: number) => number} across */
+ * @param {Strut} strut @param {Pose} pose @param {(x: number) => number} across */
 function drawBogie(pen, scene, strut, pose, across) {
   const [x, y] = [across(strutPlace(scene, strut)), levelOf(scene, strut.lower.port, pose)];
   for (const tyre of scene.mechanism.tyres) {
     const aside = across(placeOf(scene, tyre));
-    if (aside === x || !Object.keys(tyre.port).some((name) => name in strut.lower.port)) continue;
-    pen.beginPath();
-    pen.moveTo(x, y);
-    pen.lineTo(aside, WHEEL - RADIUS - scene.stretch * heightOf(tyre.port, pose));
-    pen.stroke();
+    if (aside === x || !shareCoordinate(tyre.port, strut.lower.port)) continue;
+    drawLine(pen, [[x, y], [aside, WHEEL - RADIUS - scene.stretch * heightOf(tyre.port, pose)]]);
   }
 }
 
@@ -226,9 +232,8 @@ function drawStrut(pen, store, tree, x, top, bottom) {
   const tall = (bottom - top) / plan.height;
   const wide = Math.min(1, 150 / (plan.left + plan.right));
   /** @param {readonly (readonly [number, number])[]} line @param {number} dx @param {number} dy @param {number} sign */
-  const trace = (line, dx, dy, sign) => line.forEach(([a, b], i) =>
-    (i ? pen.lineTo(x + wide * (a + dx), top + tall * (sign * b + dy))
-      : pen.moveTo(x + wide * (a + dx), top + tall * (sign * b + dy))));
+  const trace = (line, dx, dy, sign) =>
+    line.forEach(([a, b], i) => pen[i ? "lineTo" : "moveTo"](x + wide * (a + dx), top + tall * (sign * b + dy)));
   pen.beginPath();
   for (const line of plan.lines) trace(line, 0, 0, 1);
   for (const one of plan.placed) {
@@ -239,12 +244,11 @@ function drawStrut(pen, store, tree, x, top, bottom) {
 }
 
 /** The struts that stand between two places. Between others, such as an anti-roll bar, something is only as far as
- * two places part. @param {Scene} scene @returns {any[]} */
+ * two places part. @param {Scene} scene @returns {Strut[]} */
 function standing({ mechanism }) {
-  const angles = new Set(mechanism.coordinates.filter((/** @type {any} */ { angle }) =>
-    angle).map((/** @type {any} */ { name }) => name));
-  return mechanism.struts.filter((/** @type {any} */ { upper }) =>
-    Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : Number(lever)), 0) > 0.5);
+  const angles = new Set(mechanism.coordinates.filter(({ angle }) => angle).map(({ name }) => name));
+  return mechanism.struts.filter(({ upper }) =>
+    Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : lever), 0) > 0.5);
 }
 
 /** The end of a body beyond the first or the last of its mounts, in line with the one next to it.
@@ -261,16 +265,15 @@ function beyond(mounts, end) {
  * @param {CanvasRenderingContext2D} pen @param {Scene} scene @param {Pose} pose
  * @param {(x: number) => number} across */
 function drawBody(pen, scene, pose, across) {
-  const mounts = standing(scene).map((/** @type {any} */ strut) =>
+  const mounts = standing(scene).map((strut) =>
     [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
   if (mounts.length === 0) return;
-  mounts.sort((/** @type {number[]} */ a, /** @type {number[]} */ b) => a[0] - b[0]);
+  mounts.sort((a, b) => a[0] - b[0]);
   const [front, back] = [0, mounts.length - 1].map((end) => beyond(mounts, end));
   const below = [front, ...mounts, back];
   const above = below.map(([x, y]) => [x, y - THICK]).reverse();
-  pen.beginPath();
-  for (const [x, y] of [...below, ...above]) pen.lineTo(x, y);
-  pen.closePath();
-  pen.fill();
-  pen.stroke();
+  drawShape(pen, () => {
+    for (const [x, y] of [...below, ...above]) pen.lineTo(x, y);
+    pen.closePath();
+  });
 }

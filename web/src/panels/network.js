@@ -1,30 +1,18 @@
 // The strut as a drawn network, and as text; both are the same value, and either can be edited.
 
-import {
-  element as leaf,
-  freshName,
-  joinAt,
-  leaves,
-  moveTo,
-  names,
-  partAt,
-  removeAt,
-  replaceAt,
-  shiftAt,
-  written,
-} from "../network/algebra.js";
+import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
+import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
+import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../api.js").Api} Api */
-/** @typedef {import("../network/algebra.js").Tree} Tree */
-/** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {import("../network/algebra.js").Joint} Joint */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
+/** @import { Tree, Path, Joint } from "../network/algebra.js" */
+/** @import { Placed, Box } from "../network/drawing.js" */
 
 const MARGIN = 14;
 const TERMINAL = 1.6;
@@ -43,10 +31,8 @@ export function NetworkPanel({ store, api }) {
     <${Layouts} store=${store} />
     ${mounts.length > 0 &&
     html`<div class="row struts" role="group" aria-label="Struts">
-      ${parted.map(
-        (strut) => html`<button type="button" class="chip" aria-pressed=${strut === document.strut}
-          onClick=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}</button>`,
-      )}
+      ${parted.map((strut) => html`<${Chip} on=${strut === document.strut}
+          set=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}<//>`)}
       ${parted.length === 0
         ? html`<span class="quiet">The same strut everywhere.</span> <button type="button"
           onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
@@ -61,40 +47,34 @@ export function NetworkPanel({ store, api }) {
 function Layouts({ store }) {
   const { history } = store.get();
   const document = history.present;
-  const baseline = document.study.study?.baseline ?? Object.keys(document.study.layouts ?? {})[0];
+  const layouts = Object.keys(document.study.layouts ?? {});
+  const baseline = document.study.study?.baseline ?? layouts[0];
   const [renaming, setRenaming] = useState(false);
   return html`<div class="row layouts" role="group" aria-label="Layouts">
-    ${Object.keys(document.study.layouts ?? {}).map(
-      (layout) => html`<button type="button" key=${layout} class="chip" aria-pressed=${layout === document.layout}
+    ${layouts.map((layout) => html`<${Chip} key=${layout} on=${layout === document.layout}
         title=${layout === baseline ? `${layout}, the baseline` : layout}
-          onClick=${() => store.change({ type: "selected", layout })}>
-            ${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}
-        </button>`,
-    )}
+        set=${() => store.change({ type: "selected", layout })}>
+          ${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}<//>`)}
     <button type="button" title="A new layout like this one"
       onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>+ layout</button>
     ${document.layout &&
-    html`<details class="menu">
-      <summary>${"This layout"}</summary>
-      <div class="menu-body">
+    html`<${DropDown} title="This layout">
         <button type="button" onClick=${() => setRenaming(!renaming)}>Rename…</button>
         ${renaming &&
-        html`<form onSubmit=${(/** @type {SubmitEvent} */ event) => {
-          event.preventDefault();
-          const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
-          if (name && !(name in (document.study.layouts ?? {}))) store.change({ type: "layoutRenamed", name });
+        html`<form onSubmit=${formHandler((form) => {
+          const name = String(form.get("name")).trim();
+          if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
           setRenaming(false);
-        }}>
+        })}>
           <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}
             autocomplete="off" /></label> <button>Rename</button>
         </form>`}
         <button type="button" disabled=${document.layout === baseline}
           onClick=${() => store.change({ type: "placed", place: ["study", "baseline"],
             value: document.layout })}>Make it the baseline</button>
-        <button type="button" disabled=${Object.keys(document.study.layouts ?? {}).length < 2}
+        <button type="button" disabled=${layouts.length < 2}
           onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
-      </div>
-    </details>`}
+    <//>`}
   </div>`;
 }
 
@@ -122,9 +102,8 @@ function Editor({ store, api }) {
       : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path}
         stale=${wrongIn(state) !== null && tree === null} />`}
     ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
-      && html`<button type="button" class="chip" aria-pressed=${state.view.across}
-        onClick=${() =>
-          store.dispatch({ type: "viewed", view: { across: !state.view.across } })}>Across the page</button>`}
+      && html`<${Chip} on=${state.view.across}
+        set=${() => store.look({ across: !state.view.across })}>Across the page<//>`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
     <${Text} store=${store} text=${text} />`;
@@ -139,7 +118,7 @@ function Trail({ store, tree, path }) {
       const part = partAt(tree, path.slice(0, depth));
       const text = depth === 0 ? "the whole" : part ? written(part) : "";
       return html`<button type="button" class="link" key=${depth} aria-pressed=${depth === path.length}
-        onClick=${() => store.dispatch({ type: "viewed", view: { path: path.slice(0, depth) } })}>
+        onClick=${() => store.look({ path: path.slice(0, depth) })}>
           ${text.length > 24 ? `${text.slice(0, 23)}…` : text}</button>`;
     })}
   </div>`;
@@ -150,6 +129,10 @@ const described = (part) => (part.kind === "element" ? `${part.name} is selected
   : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
 
 /** @typedef {{store: Store, api: Api, how: Joint}} Editing */
+/** @typedef {{key: string, symbol: string, example: string, quantity: string, drawing: any[]}} ElementKind */
+
+/** @param {State} state @returns {ElementKind[]} */
+const kindsOf = ({ about }) => about?.elements ?? [];
 
 /** What is selected in a tree: the whole of it where there is no such part. @param {Tree | null} tree
  * @param {State} state @returns {Path} */
@@ -168,7 +151,7 @@ function draw(store, tree, path, added) {
   const text = written(tree);
   store.dispatch({ type: "planted", text, tree });
   store.change({ type: "drawn", text, added });
-  store.dispatch({ type: "viewed", view: { path } });
+  store.look({ path });
 }
 
 /** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name
@@ -187,13 +170,16 @@ function add({ store, how }, name, added, by = "join") {
   draw(store, next, placeOf(next, name), added);
 }
 
-/** A new element of a kind, with the value of its example. @param {Editing} editing
- * @param {{symbol: string, example: string, key: string, quantity: string}} kind @param {"join" | "replace"} [by] */
+/** A new element of a kind, with the value of its example. @param {Editing} editing @param {ElementKind} kind
+ * @param {"join" | "replace"} [by] */
 function addKind(editing, kind, by) {
-  const { study } = editing.store.get().history.present;
-  const name = freshName(kind.symbol, Object.keys(study.elements ?? {}));
+  const name = newName(editing.store, kind);
   add(editing, name, { [name]: kind.example }, by);
 }
+
+/** @param {Store} store @param {ElementKind} kind */
+const newName = (store, { symbol }) =>
+  freshName(symbol, Object.keys(store.get().history.present.study.elements ?? {}));
 
 /** @param {Store} store */
 function remove(store) {
@@ -216,47 +202,38 @@ function shift(store, step) {
 function Toolbar({ editing, off, selected, setHow }) {
   const { store, how } = editing;
   const state = store.get();
-  const kinds = state.about?.elements ?? [];
+  const kinds = kindsOf(state);
   const known = Object.keys(state.history.present.study.elements ?? {});
   const where = how === "series" ? "in series with" : "in parallel to";
   return html`<div class="toolbar" role="toolbar" aria-label="Edit the network">
     <div class="row" role="group" aria-label="How a part is joined to what is selected">
-      ${/** @type {Joint[]} */ (["series", "parallel"]).map(
-        (kind) => html`<button type="button" class="chip" aria-pressed=${how === kind}
-          onClick=${() => setHow(kind)}>in ${kind}</button>`,
-      )}
+      ${/** @type {Joint[]} */ (["series", "parallel"]).map((kind) =>
+        html`<${Chip} on=${how === kind} set=${() => setHow(kind)}>in ${kind}<//>`)}
     </div>
     <div class="row palette" role="group" aria-label="Add a part">
-      ${kinds.map(
-        (/** @type {any} */ kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off}
+      ${kinds.map((kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off}
           title=${`Add a ${kind.key} ${where} what is selected; drag it to a place`}
           aria-label=${`Add a ${kind.key}`} draggable=${!off}
           onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)}
           onClick=${() => addKind(editing, kind)}>
           <svg viewBox="-12 -22 24 44" width="18" height="33" aria-hidden="true"><path d=${symbolPath(kind)} /></svg>
           <span>${kind.key}</span>
-        </button>`,
-      )}
+        </button>`)}
     </div>
     <div class="row">
-      <label>Add <select value="" disabled=${off || known.length === 0} onChange=${(/** @type {Event} */ event) => {
-        const target = /** @type {HTMLSelectElement} */ (event.currentTarget);
-        add(editing, target.value);
-        target.value = "";
-      }}>
+      <label>Add <select value="" disabled=${off || known.length === 0}
+        onChange=${pickHandler((name) => add(editing, name))}>
         <option value="">again…</option>
         ${known.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}
       </select></label>
       <label>Replace by <select value="" disabled=${off || selected === null}
-        onChange=${(/** @type {Event} */ event) => {
-        const target = /** @type {HTMLSelectElement} */ (event.currentTarget);
-        const kind = kinds.find((/** @type {any} */ each) => `new ${each.key}` === target.value);
+        onChange=${pickHandler((name) => {
+        const kind = kinds.find((each) => `new ${each.key}` === name);
         if (kind) addKind(editing, kind, "replace");
-        else add(editing, target.value, undefined, "replace");
-        target.value = "";
-      }}>
+        else add(editing, name, undefined, "replace");
+      })}>
         <option value="">…</option>
-        ${kinds.map((/** @type {any} */ kind) => html`<option key=${kind.key}
+        ${kinds.map((kind) => html`<option key=${kind.key}
           value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
         ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
       </select></label>
@@ -266,16 +243,20 @@ function Toolbar({ editing, off, selected, setHow }) {
   </div>`;
 }
 
+/** A handler that hands on what is picked, after which nothing is. @param {(value: string) => void} act
+ * @returns {(event: Event) => void} */
+const pickHandler = (act) => (event) => {
+  textHandler(act)(event);
+  /** @type {HTMLSelectElement} */ (event.currentTarget).value = "";
+};
+
 /** @param {{store: Store, api: Api, selected: Tree | null}} props */
 function Rename({ store, api, selected }) {
   const [told, setTold] = useState("");
   // the form stays: a drawing that moves cannot be dragged in
   const old = selected?.kind === "element" ? selected.name : "";
-  return html`<form class="row" key=${old} onSubmit=${(/** @type {SubmitEvent} */ event) => {
-    event.preventDefault();
-    const name = String(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)).get("name")).trim();
-    void renameElement(store, api, old, name).then(setTold);
-  }}>
+  return html`<form class="row" key=${old} onSubmit=${formHandler((form) =>
+    void renameElement(store, api, old, String(form.get("name")).trim()).then(setTold))}>
     <label>Name <input id="element-name" class="name" name="name" disabled=${old === ""} defaultValue=${old}
       autocomplete="off" spellcheck=${false} /></label>
     <button disabled=${old === ""}>Rename</button>${told && html`<span class="problem" role="alert">${told}</span>`}
@@ -339,7 +320,7 @@ function Schematic({ editing, tree, path, stale }) {
   </div>`;
 }
 
-/** @param {{one: import("../network/drawing.js").Placed, state: State, chosen: boolean, entrance: boolean, store:
+/** @param {{one: Placed, state: State, chosen: boolean, entrance: boolean, store:
  * Store, drag: (event: PointerEvent, path: Path) => void}} props */
 function Symbol({ one, state, chosen, entrance, store, drag }) {
   const kind = kindOf(state, one.name);
@@ -348,7 +329,7 @@ function Symbol({ one, state, chosen, entrance, store, drag }) {
   const unknown = !kind && (!(one.name in elements) || layoutsWith(state, one.name) !== null);
   const label = [one.name, kind?.key ?? (unknown ? "unknown element" : ""), value].filter(Boolean).join(", ");
   const select = () => same(store.get().view.path, one.path)
-    || store.dispatch({ type: "viewed", view: { path: one.path } });
+    || store.look({ path: one.path });
   return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""}`}
     transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen}
       tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
@@ -390,15 +371,15 @@ function onKey(event, editing) {
   const { tree, path } = present(store);
   if (tree === null) return;
   /** @param {Path} to */
-  const select = (to) => store.dispatch({ type: "viewed", view: { path: to } });
+  const select = (to) => store.look({ path: to });
   const all = leaves(tree).map((one) => one.path);
   const at = all.findIndex((each) => path.every((i, level) => each[level] === i));
+  /** @param {-1 | 1} step */
+  const stepBy = (step) => () =>
+    (event.altKey ? shift(store, step) : select(all[(at + step + all.length) % all.length]));
   /** @type {{[key: string]: () => void}} */
   const keys = {
-    ArrowRight: () => (event.altKey ? shift(store, 1) : select(all[(at + 1) % all.length])),
-    ArrowDown: () => (event.altKey ? shift(store, 1) : select(all[(at + 1) % all.length])),
-    ArrowLeft: () => (event.altKey ? shift(store, -1) : select(all[(at - 1 + all.length) % all.length])),
-    ArrowUp: () => (event.altKey ? shift(store, -1) : select(all[(at - 1 + all.length) % all.length])),
+    ArrowRight: stepBy(1), ArrowDown: stepBy(1), ArrowLeft: stepBy(-1), ArrowUp: stepBy(-1),
     Home: () => select(all[0]),
     End: () => select(all[all.length - 1]),
     Escape: () => select(path.slice(0, -1)),
@@ -408,8 +389,7 @@ function onKey(event, editing) {
   };
   if (event.ctrlKey || event.metaKey) return;
   const joint = event.key === event.key.toUpperCase() ? "parallel" : "series";
-  const kind = store.get().about?.elements.find((/** @type {any} */ { symbol }) =>
-    symbol[0] === event.key.toLowerCase());
+  const kind = kindsOf(store.get()).find(({ symbol }) => symbol[0] === event.key.toLowerCase());
   if (keys[event.key]) keys[event.key]();
   else if (kind) addKind({ ...editing, how: joint }, kind);
   else return;
@@ -427,7 +407,7 @@ function targetAt(x, y) {
   return { path, kind, before: kind === "series" ? dy < 0 : dx < 0 };
 }
 
-/** A line where a part would come to lie. @param {import("../network/drawing.js").Box} box
+/** A line where a part would come to lie. @param {Box} box
  * @param {{kind: Joint, before: boolean}} over */
 function landing(box, { kind, before }) {
   const y = before ? box.top : box.bottom;
@@ -440,13 +420,12 @@ function dropKind(event, store, setOver) {
   event.preventDefault();
   setOver(null);
   const key = event.dataTransfer?.getData("text/x-element");
-  const state = store.get();
   const { tree } = present(store);
-  const kind = state.about?.elements.find((/** @type {any} */ each) => each.key === key);
+  const kind = kindsOf(store.get()).find((each) => each.key === key);
   const target = targetAt(event.clientX, event.clientY);
   if (!kind || !target || tree === null || partAt(tree, target.path) === null) return;
   event.stopPropagation();
-  const name = freshName(kind.symbol, Object.keys(state.history.present.study.elements ?? {}));
+  const name = newName(store, kind);
   const next = joinAt(tree, target.path, target.kind, leaf(name), target.before);
   draw(store, next, placeOf(next, name), { [name]: kind.example });
 }
@@ -486,16 +465,14 @@ function Text({ store, text }) {
   const tree = treeOf(state, text);
   const { elements = {} } = state.history.present.study;
   const missing = tree === null ? [] : names(tree).filter((name) => !(name in elements));
-  const kinds = state.about?.elements ?? [];
+  const kinds = kindsOf(state);
   return html`<div class="text">
     <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>
     <div class="underlined">
       <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off"
         aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
-        onInput=${(/** @type {Event} */ event) =>
-          store.dispatch({ type: "changed", change: { type: "drawn",
-            text: /** @type {HTMLTextAreaElement} */ (event.currentTarget).value.replace(/[\r\n]+/g, " ") },
-              gesture: "text" })}
+        onInput=${textHandler((entered) =>
+          store.change({ type: "drawn", text: entered.replace(/[\r\n]+/g, " ") }, "text"))}
         onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && event.preventDefault()}
         onBlur=${() => store.dispatch({ type: "rested" })} />
       <div class="marks" aria-hidden="true">
@@ -503,11 +480,9 @@ function Text({ store, text }) {
           : text}${" "}</div>
     </div>
     ${wrong && html`<p id="network-problem" class="problem" role="alert">${wrong.sentence}</p>`}
-    ${missing.map(
-      (name) => html`<p class="row" key=${name}>Add ${name} as
-        ${kinds.map((/** @type {any} */ kind) => html` <button type="button" key=${kind.key}
+    ${missing.map((name) => html`<p class="row" key=${name}>Add ${name} as
+        ${kinds.map((kind) => html` <button type="button" key=${kind.key}
           onClick=${() => store.change({ type: "placed", place: ["elements", name], value: kind.example })}>${kind.key}
-            </button>`)}</p>`,
-    )}
+            </button>`)}</p>`)}
   </div>`;
 }

@@ -3,35 +3,34 @@ import { withUnit } from "../state/scale.js";
 import { Being } from "../parts/clock.js";
 import { Unchosen } from "../parts/doubts.js";
 import { Plot } from "../plot.js";
-import { unchosenIn } from "../library.js";
 import { answerOf, shownDesigns } from "../questions.js";
-import { html, useMemo, useState } from "../parts/html.js";
+import { IndexChips, useChoice } from "../parts/controls.js";
+import { html, useMemo } from "../parts/html.js";
+import { problemsOf } from "./values.js";
 import { useShown } from "../parts/shown.js";
 
 /** @param {{store: import("../state/store.js").Store}} props */
 export function ResponsePanel({ store }) {
   const state = store.get();
-  const faulty = (answerOf(state, "check").value?.problems ?? []).length > 0;
+  const faulty = problemsOf(state).length > 0;
   const shown = answerOf(state, "response");
   const { value, sentence } = shown;
-  const indices = [...new Set((value?.curves ?? []).map((/** @type {any} */ { index }) => index))];
-  const [picked, setPicked] = useState("");
-  const index = indices.includes(picked) ? picked : indices[0];
+  /** @type {any[]} */
+  const found = value?.curves ?? [];
+  const indices = [...new Set(found.map((curve) => curve.index))];
+  const [index, setIndex] = useChoice(indices);
   const document = state.history.present;
   const { layout } = document;
-  const curves = useMemo(() => curvesOf((value?.curves ?? []).filter((/** @type {any} */ curve) =>
-    curve.index === index), layout), [value, index, layout]);
-  const first = value?.curves.find((/** @type {any} */ curve) => curve.index === index);
+  const curves = useMemo(() => curvesOf(found.filter((curve) => curve.index === index), layout),
+    [value, index, layout]);
+  const first = found.find((curve) => curve.index === index);
   useShown("response", state);
   return html`<div class=${shown.before ? "stale" : ""} aria-busy=${shown.is === "coming"}>
     <${Being} shown=${shown} />
-    <${Unchosen}
-      designs=${shownDesigns(document).map((design) => ({ ...design, unchosen: unchosenIn(state, design) }))} />
+    <${Unchosen} state=${state} designs=${shownDesigns(document)} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
-    <div class="row" role="group" aria-label="Index">
-      ${indices.map((each) => html`<button type="button" class="chip" key=${each} aria-pressed=${each === index}
-        onClick=${() => setPicked(String(each))}>${each}</button>`)}</div>
+    <${IndexChips} indices=${indices} picked=${index} pick=${setIndex} />
     ${!first && html`<div class="plot empty"></div>`}
     ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]"
       yLabel=${withUnit("gain", first.unit)} log=${true} logY=${true} title=${`Frequency response of ${index}`}

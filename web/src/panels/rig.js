@@ -3,14 +3,15 @@
 import { Doubts } from "../parts/doubts.js";
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
+import { Select, Table, useChoice, formHandler } from "../parts/controls.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { shown, withUnit } from "../state/scale.js";
 import { Files } from "./files.js";
-import { begin, stop, takeFitted, withheld } from "../working.js";
-import { Progress } from "./work.js";
+import { takeFitted, tryToBegin, withheld } from "../working.js";
+import { JobHead } from "./work.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store, Job } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 /** @param {{store: Store, api: Api}} props */
 export function RigPanel({ store, api }) {
@@ -27,21 +28,14 @@ export function RigPanel({ store, api }) {
       ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
         record=${record} />`)}</ul>
     ${state.records.length > 0 &&
-    html`<form class="row" onSubmit=${async (/** @type {SubmitEvent} */ event) => {
-      event.preventDefault();
-      const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-      try {
-        const body = { records: state.records.map(({ id }) => id), model: form.get("model") };
-        await begin(store, api,
-          { kind: "identify", title: `Identify ${state.records.map(({ name }) => name).join(", ")}`, study: {},
-            ...body });
-        setTold("");
-      } catch (error) {
-        setTold(/** @type {Error} */ (error).message);
-      }
-    }}>
-      <label>Model <select name="model">
-        ${models.map((/** @type {string} */ name) => html`<option key=${name}>${name}</option>`)}</select></label>
+    html`<form class="row" onSubmit=${formHandler(async (form) => setTold(await tryToBegin(store, api, {
+      kind: "identify",
+      title: `Identify ${state.records.map(({ name }) => name).join(", ")}`,
+      study: {},
+      records: state.records.map(({ id }) => id),
+      model: form.get("model"),
+    })))}>
+      <${Select} label="Model" name="model" choices=${models} />
       <button class="main">Identify</button>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
@@ -51,16 +45,14 @@ export function RigPanel({ store, api }) {
 
 /** @param {{store: Store, api: Api, record: any}} props */
 function RecordRow({ store, api, record }) {
+  /** @type {{name: string, unit: string, time: number[], values: number[]}[]} */
   const channels = record.channels ?? [];
-  const [picked, setPicked] = useState("");
-  const channel = channels.find((/** @type {any} */ { name }) => name === picked) ?? channels[0];
+  const [picked, setPicked] = useChoice(channels.map(({ name }) => name));
+  const channel = channels.find(({ name }) => name === picked);
   const curves = useMemo(() => (channel ? [{ label: channel.name, values: channel.values }] : []), [channel]);
   return html`<li><div class="row"><b>${record.name}</b> ${shown(record.samples)} samples, ${shown(record.duration)} s.
-      ${channels.length > 0 && html`<label>Show <select value=${channel.name}
-        onChange=${(/** @type {Event} */ event) =>
-          setPicked(/** @type {HTMLSelectElement} */ (event.currentTarget).value)}>
-            ${channels.map((/** @type {any} */ { name }) => html`<option key=${name}>${name}</option>`)}</select>
-              </label>`}
+      ${channel && html`<${Select} label="Show" value=${channel.name} choices=${channels.map(({ name }) => name)}
+        set=${setPicked} />`}
       <button type="button" aria-label=${`Remove ${record.name}`}
         onClick=${() => forget(store, api, record.id)}>Remove</button></div>
     <ul>${(record.findings ?? []).map((/** @type {any} */ { severity, about, sentence }) => html`<li
@@ -80,28 +72,23 @@ async function forget(store, api, id) {
 /** @param {Store} store @param {Api} api @param {any} fit */
 async function takeIn(store, api, fit) {
   const text = await takeFitted(store, api, fit, fit.device).catch((/** @type {Error} */ error) => error.message);
-  store.dispatch({ type: "said", about: "device", text });
+  store.say(text, "device");
 }
 
-/** @param {{store: Store, api: Api, job: import("../state/store.js").Job}} props */
+/** @param {{store: Store, api: Api, job: Job}} props */
 function Fit({ store, api, job }) {
-  const running = job.state === "waiting" || job.state === "running";
   const { result } = job;
   return html`<section class="fit" data-state=${job.state}>
-    <div class="row"><b>${job.title}</b> <span class="state">${job.state}
-      </span> <button type="button" onClick=${() => stop(store, api, job.id)}>${running ? "Stop" : "Forget"}</button>
-        </div>
-    ${running && html`<${Progress} job=${job} />`}
+    <${JobHead} store=${store} api=${api} job=${job} />
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
     ${result &&
     html`<${Doubts} members=${[{ of: result.model, status: result.status }]} />
-      <div class="scroll" tabindex="0" role="region" aria-label="Identified values"><table>
-        <thead><tr><th scope="col"></th><th scope="col">value</th><th scope="col">95 % interval</th><th scope="col">
-          </th></tr></thead>
-        <tbody>${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}><th scope="row">
-          ${name}</th><td class="number">${result.shown[name][0]}</td><td class="number">${result.shown[name][1]}</td>
-            <td>${each.identified ? "" : each.sentence}</td></tr>`)}</tbody>
-      </table></div>
+      <${Table} label="Identified values" heads=${["", "value", "95 % interval", ""]}>
+        ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
+          <th scope="row">${name}</th>
+          ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}
+          <td>${each.identified ? "" : each.sentence}</td></tr>`)}
+      <//>
       ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">
         ${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
       ${result.device

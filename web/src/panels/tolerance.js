@@ -1,18 +1,18 @@
 // What scatter of its elements makes of an index of the design, and which of them matters.
 
 import { seek } from "../asking.js";
-import { elementsIn, unchosenIn } from "../library.js";
+import { elementsIn } from "../library.js";
 import { designOf, soughtAnswer, soughtOf } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
+import { Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { download } from "../remembering.js";
 import { shown, withUnit } from "../state/scale.js";
-import { indicesOf, percent } from "./answers.js";
+import { indexChoices, indicesOf, percent } from "./answers.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../api.js").Api} Api */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
 
 const USUAL = 10; // [%] that a value lies above or below its own at the most
 
@@ -26,29 +26,25 @@ export function TolerancePanel({ store, api }) {
   const { is, value, sentence } = answer;
   if (names.length === 0 || indices.length === 0) return html`<p
     class="quiet">There is no element, or no index, to analyse.</p>`;
-  return html`<form aria-busy=${is === "coming"} onSubmit=${(/** @type {SubmitEvent} */ event) => {
-    event.preventDefault();
-    const form = new FormData(/** @type {HTMLFormElement} */ (event.currentTarget));
-    void seek(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) });
-  }}>
+  const save = async () => download(
+    await api.blob("export/csv", { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }),
+    `tolerance-${value.index}.csv`);
+  return html`<form aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
+    void seek(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) }))}>
     <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally
       likely. What is empty does not scatter.</p>
     <div class="row spreads">
       ${names.map((name) => html`<label key=${name}><span>
         ${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any"
           defaultValue=${USUAL} /> %</label>`)}</div>
-    <div class="row"><label>Index <select name="index">
-      ${indices.map(({ symbol, title }) => html`<option key=${symbol} value=${symbol}>${symbol}: ${title}</option>`)}
-        </select></label> <button>Compute</button></div>
+    <div class="row"><${Select} label="Index" name="index" choices=${indexChoices(indices)} />
+      ${" "}<button>Compute</button></div>
     <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
-  <${Unchosen} designs=${[{ name: document.layout, unchosen: unchosenIn(state, designOf(document)) }]} />
+  <${Unchosen} state=${state} designs=${[designOf(document)]} />
   ${value &&
     html`<${Scattered} value=${value} />
-    <p class="row"><button type="button"
-      onClick=${async () => download(await api.blob("export/csv",
-        { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }),
-          `tolerance-${value.index}.csv`)}>Save (CSV)</button></p>`}`;
+    <p class="row"><button type="button" onClick=${save}>Save (CSV)</button></p>`}`;
 }
 
 /** By what part of themselves values scatter. @param {string[]} names @param {FormData} form */
@@ -70,23 +66,20 @@ function Scattered({ value }) {
   return html`<${Doubts}
     members=${[{ of: `the scatter of ${value.index}`, status: value.status, message: value.message }]} />
     <div class="scattered">
-      <div class="scroll" tabindex="0" role="region" aria-label="Distribution"><table data-scatter=${value.index}>
-        <thead><tr><th scope="col">${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}</th>
-          <th scope="col">value</th></tr></thead>
-        <tbody>${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
-          <td class="number" data-value=${number}>${shown(number)}</td></tr>`)}</tbody>
-      </table></div>
+      <${Table} label="Distribution" data-scatter=${value.index}
+        heads=${[`${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
+        ${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
+          <td class="number" data-value=${number}>${shown(number)}</td></tr>`)}
+      <//>
       <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />
-      <div class="scroll" tabindex="0" role="region" aria-label="Which value matters"><table>
-        <thead><tr><th scope="col">Sobol' index of</th>
-          <th scope="col" title="first-order Sobol' index: effect of the value alone">first order</th>
-            <th scope="col" title="total-order Sobol' index: with all interactions">total order</th><th scope="col"></th></tr>
-              </thead>
-        <tbody>${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th><td class="number">
-          ${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td><td class="measure">
-            <span class="measured" style=${{ width: `${100 * Math.min(1, Math.max(0, value.total[name] ?? 0))}%` }}>
-              </span></td></tr>`)}</tbody>
-      </table></div>
+      <${Table} label="Which value matters" heads=${[["Sobol' index of"],
+        ["first order", "first-order Sobol' index: effect of the value alone"],
+        ["total order", "total-order Sobol' index: with all interactions"], [""]]}>
+        ${names.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
+          <td class="number">${share(value.main[name])}</td><td class="number">${share(value.total[name])}</td>
+          <td class="measure"><span class="measured"
+            style=${{ width: `${100 * Math.min(1, Math.max(0, value.total[name] ?? 0))}%` }}></span></td></tr>`)}
+      <//>
     </div>`;
 }
 

@@ -3,15 +3,16 @@
 
 import { layoutsWith, numbersOf } from "../library.js";
 import { quickMethod } from "../methods.js";
+import { Chip, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, unitKey } from "../questions.js";
 import { entryAt, isRange } from "../state/document.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 
-/** @typedef {import("../state/store.js").Store} Store */
-/** @typedef {import("../state/store.js").State} State */
-/** @typedef {import("../state/document.js").Change} Change */
-/** @typedef {import("../library.js").NumberRow} NumberRow */
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Change } from "../state/document.js" */
+/** @import { NumberRow } from "../library.js" */
+/** @import { Problem } from "../api.js" */
 
 const DECADE = 10;
 
@@ -47,7 +48,7 @@ export function ValuesPanel({ store }) {
       return html`<h3 key=${section}>${titleOf(section, study[section]?.model)}</h3>
         ${tables.map((table) => {
           const several = inside.filter((row) => tableOf(row) === table);
-          return html`<${Table} key=${table} table=${table} rows=${several}>${amounts(several)}<//>`;
+          return html`<${NumberTable} key=${table} table=${table} rows=${several}>${amounts(several)}<//>`;
         })}`;
     })}
   </section>`;
@@ -66,7 +67,7 @@ function titleOf(section, model) {
 const tableOf = ({ path }) => (path.length > 2 ? path[1] : "");
 
 /** The numbers of one table. @param {{table: string, rows: NumberRow[], children: any}} props */
-function Table({ table, rows, children }) {
+function NumberTable({ table, rows, children }) {
   if (table === "") return children;
   const deep = rows.some(({ path }) => path.length > 3);
   const open = !deep && rows.length <= FEW;
@@ -153,25 +154,22 @@ function AmountRow({ store, amount }) {
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
-  const problems = problemsAt(state, row.path);
+  const problems = problemsOf(state).filter((problem) => isAt(problem, row.path));
   const gesture = `slide ${id}`;
-  /** @param {Event} event */
-  function slide(event) {
+  const slide = textHandler((position) => {
     if (!usable) return;
-    const position = Number(/** @type {HTMLInputElement} */ (event.currentTarget).value);
     if (!free && !(id in state.history.present.ranges)) {
       store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
     }
-    store.change(set(inUnitOf(state, text, unit, valueAt(position, lower, upper))), gesture);
-  }
-  const enter = (/** @type {string} */ value) => store.change(set(value));
+    store.change(set(inUnitOf(state, text, unit, valueAt(Number(position), lower, upper))), gesture);
+  });
   return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence || row.words}>
     <label for=${`slider ${id}`}>${label}</label>
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS}
       value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
       onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      done=${enter} />
+      done=${(/** @type {string} */ value) => store.change(set(value))} />
     <${Bounds} store=${store} amount=${amount} />
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
   </div>`;
@@ -192,11 +190,9 @@ function Bounds({ store, amount }) {
     <div class="menu-body">
       ${row.may_be_free &&
       html`<div class="row" role="group" aria-label=${`${label} is`}>
-        <button type="button" class="chip" aria-pressed=${!free}
-          onClick=${() => free && store.change({ type: "fixed", place, name, text })}>fixed</button>
-        <button type="button" class="chip" aria-pressed=${free}
-          onClick=${() => !free && store.change({ type: "freed", place, name, ...range,
-            method: judging })}>free</button>
+        <${Chip} on=${!free} set=${() => free && store.change({ type: "fixed", place, name, text })}>fixed<//>
+        <${Chip} on=${free} set=${() =>
+          !free && store.change({ type: "freed", place, name, ...range, method: judging })}>free<//>
       </div>`}
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
         done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
@@ -227,8 +223,7 @@ export function Entry({ id, label, text, wrong = false, done }) {
   };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text}
     value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
-    onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)}
-      onFocus=${enter}
+    onInput=${textHandler(setTyped)} onFocus=${enter}
     onBlur=${() => {
       finish();
       setInside(false);
@@ -237,18 +232,14 @@ export function Entry({ id, label, text, wrong = false, done }) {
       (event.key === "Enter" ? finish() : event.key === "Escape" && setTyped(null))} />`;
 }
 
-/** The problems of the study that no field of the page tells. @param {State} state
- * @returns {import("../api.js").Problem[]} */
+/** The problems of the study. @param {State} state @returns {Problem[]} */
+export const problemsOf = (state) => answerOf(state, "check").value?.problems ?? [];
+
+/** The problems of the study that no field of the page tells. @param {State} state */
 export function otherProblems(state) {
   const fields = numbersOf(state).map(({ path }) => path);
-  return (answerOf(state, "check").value?.problems
-    ?? []).filter((/** @type {any} */ problem) => !fields.some((place) =>
-      place.every((key, level) => problem.place[level] === key)));
+  return problemsOf(state).filter((problem) => !fields.some((place) => isAt(problem, place)));
 }
 
-/** The problems of the study at a place, or below it. @param {State} state @param {string[]} place
- * @returns {import("../api.js").Problem[]} */
-export function problemsAt(state, place) {
-  const problems = answerOf(state, "check").value?.problems ?? [];
-  return problems.filter((/** @type {any} */ problem) => place.every((key, level) => problem.place[level] === key));
-}
+/** Whether a problem is at a place, or below it. @param {Problem} problem @param {string[]} place */
+const isAt = (problem, place) => place.every((key, level) => problem.place[level] === key);

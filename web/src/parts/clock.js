@@ -4,7 +4,8 @@ import { html, useEffect, useState } from "./html.js";
 const OFTEN = 500; // [ms] between two looks at the clock
 const SOON = 1; // [s] from where the time is told
 
-/** How long something has gone on; since it is shown, where nothing says since when. @param {{since?: number | null}} props  `since`: in ms since 1970 */
+/** How long something has gone on; since it is shown, where nothing says since when.
+ * @param {{since?: number | null}} props  `since`: in ms since 1970 */
 export function Clock({ since = null }) {
   const [begun] = useState(Date.now());
   const [now, setNow] = useState(Date.now());
@@ -13,12 +14,14 @@ export function Clock({ since = null }) {
     return () => clearInterval(ticking);
   }, []);
   const seconds = Math.floor((now - (since ?? begun)) / 1000);
-  return seconds < SOON ? null : html`<span class="clock">${seconds < 100 ? `${seconds} s` : `${Math.floor(seconds / 60)} min ${seconds % 60} s`}</span>`;
+  const text = seconds < 100 ? `${seconds} s` : `${Math.floor(seconds / 60)} min ${seconds % 60} s`;
+  return seconds < SOON ? null : html`<span class="clock">${text}</span>`;
 }
 
 const AT_LAST = 300; // [ms] until something moves: a step of a slider is answered before that
 
-/** Something that goes on: at once in words, then with a bar that moves, and the time. @param {{what: string, since?: number | null}} props */
+/** Something that goes on: at once in words, then with a bar that moves, and the time.
+ * @param {{what: string, since?: number | null}} props */
 export function Moving({ what, since = null }) {
   const [begun] = useState(Date.now());
   const [moves, setMoves] = useState(false);
@@ -26,12 +29,14 @@ export function Moving({ what, since = null }) {
     const waiting = setTimeout(() => setMoves(true), AT_LAST);
     return () => clearTimeout(waiting);
   }, []);
-  return html`<span class="moving">${what}${moves && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
+  return html`<span class="moving">${what}${moves
+    && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
 }
 
 const WORDS = { current: "current", coming: "coming", none: "no answer" };
+const BEFORE = "coming; below are the numbers of before";
 
-/** Whether what stands below is the answer to what is asked now. @param {{shown: import("../state/answers.js").Shown}} props */
-export function Being({ shown: { is, before } }) {
-  return html`<span class="being" data-being=${is}>${is === "coming" ? html`<${Moving} what=${before ? "coming; below are the numbers of before" : WORDS.coming} />` : WORDS[is]}</span>`;
-}
+/** Whether what stands below is the answer to what is asked now.
+ * @param {{shown: import("../state/answers.js").Shown}} props */
+export const Being = ({ shown: { is, before } }) => html`<span class="being" data-being=${is}>
+  ${is === "coming" ? html`<${Moving} what=${before ? BEFORE : WORDS.coming} />` : WORDS[is]}</span>`;

@@ -1,4 +1,5 @@
 // What makes an answer doubtful stands before it: an answer is no better than the worst of what it is made of.
+import { unchosenIn } from "../library.js";
 import { html } from "./html.js";
 
 /** Something an answer is made of, with its status: a word, or a word, a colon and a message.
@@ -35,9 +36,12 @@ export function Doubts({ members }) {
     ${doubts.map((doubt) => html`<p key=${doubt}><b>Unreliable.</b> ${doubt}</p>`)}</div>`;
 }
 
-/** What is no answer, since nobody has chosen it. @param {{designs: {name: string, unchosen: string[]}[]}} props */
-export function Unchosen({ designs }) {
-  const found = designs.filter(({ unchosen }) => unchosen.length > 0);
+/** What is no answer, since nobody has chosen it; `unchosen` where the state does not tell it of a design.
+ * @param {{state: import("../state/store.js").State, designs: {name: string, layout: string,
+ * values: {[element: string]: string}, unchosen?: string[]}[]}} props */
+export function Unchosen({ state, designs }) {
+  const found = designs.map((design) => ({ name: design.name, unchosen: design.unchosen ?? unchosenIn(state, design) }))
+    .filter(({ unchosen }) => unchosen.length > 0);
   const listed = found.map(({ name, unchosen }) => `${unchosen.join(", ")} of ${name}`).join("; ");
   return found.length === 0
     ? null

@@ -1,14 +1,14 @@
 // A field of which the text is taken over with Enter, or on leaving it.
+import { textHandler } from "./controls.js";
 import { html, useState } from "./html.js";
 
 /** What is being typed stays while answers arrive and the page is drawn anew.
  * @param {{text: string, done: (text: string) => void, [attribute: string]: unknown}} props */
 export function Field({ text, done, ...attributes }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
-  /** @param {Event} event */
-  const finish = ({ currentTarget }) => {
+  const finish = textHandler((entered) => {
     setTyped(null);
-    done(/** @type {HTMLInputElement} */ (currentTarget).value);
-  };
-  return html`<input ...${attributes} value=${typed ?? text} onInput=${(/** @type {Event} */ event) => setTyped(/** @type {HTMLInputElement} */ (event.currentTarget).value)} onChange=${finish} />`;
+    done(entered);
+  });
+  return html`<input ...${attributes} value=${typed ?? text} onInput=${textHandler(setTyped)} onChange=${finish} />`;
 }

@@ -1,12 +1,15 @@
 // Answers, kept by what was asked: none of them is ever taken for the answer to another question.
 
+import { mapValues } from "./document.js";
 import { takenApart } from "./scale.js";
 
-/** What came of a question: an answer, or the sentence why there is none. @typedef {{question: string, value: any, sentence: string | null}} Kept */
-/** Of a panel the newest answers, newest first; the question under way, if one is; and whether the newest answer is one since the study
- * was last opened or undone. @typedef {{kept: Kept[], underWay: string | null, recent: boolean}} Answers */
-/** What a panel shows. `before` says that the value belongs to other numbers of the same design, as long as its own is coming.
- * @typedef {{is: "current" | "coming" | "none", value: any, sentence: string | null, before: boolean}} Shown */
+/** What came of a question: an answer, or the sentence why there is none.
+ * @typedef {{question: string, value: any, sentence: string | null}} Kept */
+/** Of a panel the newest answers, newest first; the question under way, if one is; and whether the newest answer is one
+ * since the study was last opened or undone.
+ * @typedef {{kept: Kept[], underWay: string | null, recent: boolean}} Answers */
+/** What a panel shows. `before` says that the value belongs to other numbers of the same design, as long as its own is
+ * coming. @typedef {{is: "current" | "coming" | "none", value: any, sentence: string | null, before: boolean}} Shown */
 
 const MOST = 8; // answers of a panel that are kept, so that undoing finds them again
 
@@ -16,7 +19,8 @@ const NOTHING = { kept: [], underWay: null, recent: false };
 /** @type {Shown} */
 const NONE = { is: "none", value: null, sentence: null, before: false };
 
-/** The answers once a question is asked; what was refused may be asked again. @param {Answers | undefined} answers @param {string} question @returns {Answers} */
+/** The answers once a question is asked; what was refused may be asked again.
+ * @param {Answers | undefined} answers @param {string} question @returns {Answers} */
 export function asked(answers = NOTHING, question) {
   return { ...answers, kept: answers.kept.filter(({ sentence }) => sentence === null), underWay: question };
 }
@@ -30,32 +34,39 @@ export function answered(answers = NOTHING, found) {
 
 /** All answers, none of which may stand in for a question of the study that is there from now on.
  * @param {{[panel: string]: Answers}} answers @returns {{[panel: string]: Answers}} */
-export const turned = (answers) => Object.fromEntries(Object.entries(answers).map(([panel, each]) => [panel, { ...each, underWay: null, recent: false }]));
+export const turned = (answers) => mapValues(answers, (each) => ({ ...each, underWay: null, recent: false }));
 
 /** Whether a question is answered, or refused. @param {Answers | undefined} answers @param {string} question */
 export const isSettled = (answers, question) => answers?.kept.some((each) => each.question === question) ?? false;
 
-/** What there is to show of a question that is asked by itself, whenever it changes. @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
+/** What there is to show of a question that is asked by itself, whenever it changes.
+ * @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
 export function shownOf(answers = NOTHING, question) {
   if (question === null) return NONE;
   const found = answers.kept.find((each) => each.question === question);
-  if (found) return { is: found.sentence === null ? "current" : "none", value: found.value, sentence: found.sentence, before: false };
+  if (found) {
+    const { value, sentence } = found;
+    return { is: sentence === null ? "current" : "none", value, sentence, before: false };
+  }
   const [latest] = answers.kept;
   const before = answers.recent && latest?.sentence === null && shape(latest.question) === shape(question);
   return { is: "coming", value: before ? latest.value : null, sentence: null, before };
 }
 
-/** The same of a question that is asked by a button: it comes only if it is under way. @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
+/** The same of a question that is asked by a button: it comes only if it is under way.
+ * @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
 export function soughtIn(answers = NOTHING, question) {
   const shown = shownOf(answers, question);
   return shown.is === "coming" ? { ...NONE, is: answers.underWay === question ? "coming" : "none" } : shown;
 }
 
-/** A question without its numbers: what it has in common with that of another step of the same slider. @param {string} question */
+/** A question without its numbers: what it has in common with that of another step of the same slider.
+ * @param {string} question */
 function shape(question) {
   const known = SHAPES.get(question);
   if (known !== undefined) return known;
-  const found = JSON.stringify(JSON.parse(question), (_, value) => (typeof value === "number" || takenApart(value) !== null ? 0 : value));
+  const found = JSON.stringify(JSON.parse(question), (_, value) =>
+    (typeof value === "number" || takenApart(value) !== null ? 0 : value));
   if (SHAPES.size >= REMEMBERED) SHAPES.clear();
   SHAPES.set(question, found);
   return found;

@@ -44,11 +44,9 @@ export const empty = () => ({ study: {}, layout: "", strut: null, values: {}, ra
 const CHANGES = {
   opened: (document, { study }) => standing({ ...empty(), designs: document.designs, study }),
   restored: (_, { document }) => standing(document),
-  placed: (document, { place, value }) => ({ ...document, study: placed(document.study, place, value) }),
-  valued: (document, { layout, values }) => ({
-    ...document,
-    values: { ...document.values, [layout]: { ...document.values[layout], ...values } },
-  }),
+  placed: (document, { place, value }) => withEntry(document, place, value),
+  valued: (document, { layout, values }) =>
+    ({ ...document, values: { ...document.values, [layout]: { ...document.values[layout], ...values } } }),
   valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
   freed: (document, { place, name, from, to, method }) => {
@@ -67,67 +65,43 @@ const CHANGES = {
     const entry = entryAt(document.study, place);
     const bounds = isRange(entry) ? { [place.join(".")]: { from: entry.from, to: entry.to } } : {};
     const ranges = { ...document.ranges, ...bounds };
-    const values = Object.fromEntries(
-      Object.entries(document.values).map(([layout, of]) => [layout, without(of, name)]),
-    );
-    return { ...document, ranges, values, study: placed(document.study, place, text) };
+    const values = mapValues(document.values, (of) => without(of, name));
+    return withEntry({ ...document, ranges, values }, place, text);
   },
   drawn: (document, { text, added = {} }) => {
     if (document.layout === "") return document;
     const study = { ...document.study, elements: { ...document.study.elements, ...added } };
     const place = document.strut === null ? [document.layout] : [document.layout, document.strut];
-    return { ...document, study: placed(study, ["layouts", ...place], text) };
+    return withEntry({ ...document, study }, ["layouts", ...place], text);
   },
   selected: (document, { layout, strut }) => standing({ ...document, layout, strut: strut ?? null }),
   layoutAdded: (document, { name }) => {
-    const layouts = document.study.layouts ?? {};
     const values = { ...document.values, [name]: document.values[document.layout] ?? {} };
-    const like = layouts[document.layout] ?? Object.keys(document.study.elements ?? {})[0] ?? "";
-    return standing({
-      ...document,
-      values,
-      layout: name,
-      study: { ...document.study, layouts: { ...layouts, [name]: like } },
-    });
+    const like = document.study.layouts?.[document.layout] ?? Object.keys(document.study.elements ?? {})[0] ?? "";
+    return standing(withEntry({ ...document, values, layout: name }, ["layouts", name], like));
   },
   layoutRenamed: (document, { name }) => {
-    const old = document.layout;
-    const { study, values } = document;
-    if (!(old in (study.layouts ?? {})) || name in (study.layouts ?? {})) return document;
-    const settings = study.study?.baseline === old ? { ...study.study, baseline: name } : study.study;
-    const renamedStudy = {
-      ...study,
-      layouts: keyRenamed(study.layouts ?? {}, old, name),
-      ...(settings && { study: settings }),
-    };
-    return { ...document, layout: name, values: keyRenamed(values, old, name), study: renamedStudy };
+    const { study, values, layout: old } = document;
+    const layouts = study.layouts ?? {};
+    if (!(old in layouts) || name in layouts) return document;
+    const renamed = { ...document, layout: name, values: keyRenamed(values, old, name),
+      study: { ...study, layouts: keyRenamed(layouts, old, name) } };
+    return study.study?.baseline === old ? withEntry(renamed, ["study", "baseline"], name) : renamed;
   },
   layoutRemoved: (document) => {
-    const layouts = without(document.study.layouts ?? {}, document.layout);
-    const settings = document.study.study;
-    const kept = settings?.baseline === document.layout ? without(settings, "baseline") : settings;
-    const study = { ...document.study, layouts, ...(kept && { study: kept }) };
-    return standing({ ...document, study, values: without(document.values, document.layout) });
+    const { study, values, layout } = document;
+    const rest = withEntry({ ...document, values: without(values, layout) }, ["layouts", layout], undefined);
+    return standing(study.study?.baseline === layout ? withEntry(rest, ["study", "baseline"], undefined) : rest);
   },
   strutsParted: (document, { struts }) => {
     const text = textOf(document);
     const each = Object.fromEntries(struts.map((/** @type {string} */ strut) => [strut, text]));
-    return standing({
-      ...document,
-      strut: struts[0],
-      study: placed(document.study, ["layouts", document.layout], each),
-    });
+    return standing(withEntry({ ...document, strut: struts[0] }, ["layouts", document.layout], each));
   },
-  strutsJoined: (document) => ({
-    ...document,
-    strut: null,
-    study: placed(document.study, ["layouts", document.layout], textOf(document)),
-  }),
+  strutsJoined: (document) =>
+    withEntry({ ...document, strut: null }, ["layouts", document.layout], textOf(document)),
   elementRenamed: (document, { old, name, study }) => elementRenamed(document, old, name, study),
-  elementRemoved: (document, { name }) => ({
-    ...document,
-    study: { ...document.study, elements: without(document.study.elements ?? {}, name) },
-  }),
+  elementRemoved: (document, { name }) => withEntry(document, ["elements", name], undefined),
   designKept: (document, { name }) => {
     const { study, layout, values } = document;
     const others = document.designs.filter((design) => design.name !== name);
@@ -135,14 +109,11 @@ const CHANGES = {
   },
   designTaken: (document, { name }) => {
     const design = document.designs.find((each) => each.name === name);
-    return design
-      ? standing({ ...document, study: design.study, layout: design.layout, values: design.values })
-      : document;
+    if (design === undefined) return document;
+    return standing({ ...document, study: design.study, layout: design.layout, values: design.values });
   },
-  designRemoved: (document, { name }) => ({
-    ...document,
-    designs: document.designs.filter((design) => design.name !== name),
-  }),
+  designRemoved: (document, { name }) =>
+    ({ ...document, designs: document.designs.filter((design) => design.name !== name) }),
 };
 
 /** The document after a change. @param {Document} document @param {Change} change @returns {Document} */
@@ -189,9 +160,7 @@ export function nextLayout(document) {
 /** The document whose study has another name of an element: it is called so beside the study too.
  * @param {Document} document @param {string} old @param {string} name @param {Study} study @returns {Document} */
 function elementRenamed(document, old, name, study) {
-  const values = Object.fromEntries(
-    Object.entries(document.values).map(([layout, of]) => [layout, keyRenamed(of, old, name)]),
-  );
+  const values = mapValues(document.values, (of) => keyRenamed(of, old, name));
   const [before, after] = [`elements.${old}`, `elements.${name}`];
   const ranges = Object.fromEntries(
     Object.entries(document.ranges).map(([place, range]) => {
@@ -205,6 +174,10 @@ function elementRenamed(document, old, name, study) {
 /** What stands in a table at a place. @param {any} table @param {string[]} place @returns {any} */
 export const entryAt = (table, place) => place.reduce((inside, key) => inside?.[key], table);
 
+/** The document with something at a place of its study. @param {Document} document @param {string[]} place
+ * @param {unknown} value @returns {Document} */
+const withEntry = (document, place, value) => ({ ...document, study: placed(document.study, place, value) });
+
 /** A table with something at a place; `undefined` takes the key away. @param {any} table @param {string[]} place
  * @param {unknown} value @returns {any} */
 function placed(table, place, value) {
@@ -213,8 +186,14 @@ function placed(table, place, value) {
   return value === undefined ? without(table, key) : { ...table, [key]: value };
 }
 
-/** @template T @param {{[key: string]: T}} table @param {string} key @returns {{[key: string]: T}} */
-const without = (table, key) => Object.fromEntries(Object.entries(table).filter(([each]) => each !== key));
+/** A table without a key. @template T @param {{[key: string]: T}} table @param {string} key
+ * @returns {{[key: string]: T}} */
+export const without = (table, key) => Object.fromEntries(Object.entries(table).filter(([each]) => each !== key));
+
+/** A table with each of its values changed. @template T, R @param {{[key: string]: T}} table
+ * @param {(value: T) => R} change @returns {{[key: string]: R}} */
+export const mapValues = (table, change) =>
+  Object.fromEntries(Object.entries(table).map(([key, value]) => [key, change(value)]));
 
 /** A table in which a key is another one, at its place. @template T @param {{[key: string]: T}} table
  * @param {string} old @param {string} name @returns {{[key: string]: T}} */

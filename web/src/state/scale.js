@@ -39,20 +39,22 @@ export function shown(number, digits = 5) {
   const size = Math.abs(number);
   if (size !== 0 && (size >= 1e6 || size < 1e-3)) {
     const [mantissa, power] = number.toExponential(digits - 1).split("e");
-    return `${minus(Number(mantissa))}·10${superscript(Number(power))}`;
+    return `${minus(Number(mantissa))}·10${superscript(String(Number(power)))}`;
   }
   return minus(Number(number.toPrecision(digits)));
 }
 
-/** A number with so many places after the point, or before it where these are negative, as answers show it; five digits where there is no
- * number of places. @param {number | null | undefined} number @param {number | null | undefined} places */
+/** A number with so many places after the point, or before it where these are negative, as answers show it; five digits
+ * where there is no number of places. @param {number | null | undefined} number
+ * @param {number | null | undefined} places */
 export function placed(number, places) {
   if (typeof number !== "number" || typeof places !== "number" || number === 0) return shown(number);
   return shown(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
 }
 
-/** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if the first is 1; both
- * times the same power of ten. @param {number} value @param {number} error @param {number} most @returns {[string, string]} */
+/** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if
+ * the first is 1; both times the same power of ten.
+ * @param {number} value @param {number} error @param {number} most @returns {[string, string]} */
 export function estimated(value, error, most = Infinity) {
   const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
   const far = power >= 6 || power < -3;
@@ -60,8 +62,9 @@ export function estimated(value, error, most = Infinity) {
   const [number, scatter] = [value * factor, error * factor];
   const leading = scatter.toExponential(0);
   const one = -Number(leading.split("e")[1]);
-  const places = Math.min(20, Math.max(0, one, Math.min(one + (leading.startsWith("1") ? 1 : 0), most + (far ? power : 0))));
-  const times = far ? `·10${superscript(power)}` : "";
+  const wanted = one + (leading.startsWith("1") ? 1 : 0);
+  const places = Math.min(20, Math.max(0, one, Math.min(wanted, most + (far ? power : 0))));
+  const times = far ? `·10${superscript(String(power))}` : "";
   /** @param {number} each */
   const written = (each) => each.toFixed(places).replace("-", "−") + times;
   return [written(number), written(scatter)];
@@ -70,13 +73,14 @@ export function estimated(value, error, most = Infinity) {
 /** @param {number} number */
 const minus = (number) => String(number).replace("-", "−");
 
-/** @param {number} power */
-const superscript = (power) => [...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
+const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-const RAISED = /** @type {{[digit: string]: string}} */ ({ "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" });
+/** The digits and the minus sign of a number as superscripts. @param {string} text */
+const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
 /** A unit as a person writes it. @param {string} unit */
-export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => [...power].map((digit) => RAISED[digit]).join(""));
+export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));
 
-/** What a number is, with its unit in brackets if it has one. @param {string} what @param {string | null | undefined} unit */
+/** What a number is, with its unit in brackets if it has one.
+ * @param {string} what @param {string | null | undefined} unit */
 export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);

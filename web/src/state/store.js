@@ -2,17 +2,15 @@
 // nothing else changes anything.
 
 import { answered, asked, turned } from "./answers.js";
-import { after, empty, isChange } from "./document.js";
+import { after, empty, isChange, without } from "./document.js";
 import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
-/** @typedef {import("./document.js").Document} Document */
-/** @typedef {import("./document.js").Change} Change */
+/** @import { Document, Change, Study } from "./document.js" */
+/** @import { Path, Tree } from "../network/algebra.js" */
+/** @import { Parts } from "../library.js" */
+/** @import { Answers } from "./answers.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
-/** @typedef {import("../network/algebra.js").Path} Path */
-/** @typedef {import("../network/algebra.js").Tree} Tree */
-/** @typedef {import("../library.js").Parts} Parts */
-/** @typedef {import("./answers.js").Answers} Answers */
 /** What the page has to say: `about` tells which message a newer one replaces.
  * @typedef {{about: string, text: string}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
@@ -27,7 +25,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
  * known, by their texts.
  * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
- * choosing: import("./document.js").Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
+ * choosing: Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
  * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View,
  * about: any, connection: Connection, messages: Message[]}} State */
 
@@ -38,8 +36,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "refused", panel: string, question: string, sentence: string}
  *  | {type: "forgotten"}
  *  | {type: "sought", panel: string, parameters: any}
- *  | {type: "choosing", study: import("./document.js").Study}
- *  | {type: "chosen", study: import("./document.js").Study}
+ *  | {type: "choosing", study: Study}
+ *  | {type: "chosen", study: Study}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
  *  | {type: "parted", parts: Parts}
  *  | {type: "planted", text: string, tree: Tree}
@@ -53,37 +51,19 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "said", text: string, about?: string}
  *  | {type: "closed", about: string}} Action */
 
-/** @typedef {{get: () => State, dispatch: (action: Action) => void, change: (change: Change, gesture?: string |
- * null) => void, subscribe: (told: () => void) => () => void}} Store */
+/** `change` changes the document, `look` what of it is shown; `say` gives a message.
+ * @typedef {{get: () => State, dispatch: (action: Action) => void, subscribe: (told: () => void) => () => void,
+ * change: (change: Change, gesture?: string | null) => void, look: (view: Partial<View>) => void,
+ * say: (text: string, about?: string) => void}} Store */
 
 /** @returns {State} */
 export const initial = () => ({
-  history: beginning(empty()),
-  answers: {},
-  sought: {},
-  choosing: null,
-  work: {},
-  quantities: {},
-  parts: null,
-  trees: {},
-  records: [],
+  history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
+  parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [],
   view: {
-    path: [],
-    tab: "response",
-    theme: "auto",
-    method: "",
-    index: "",
-    speed: 1,
-    playing: false,
-    compared: [],
-    against: "",
-    seconds: 10,
-    seed: 0,
-    across: false,
+    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false,
+    compared: [], against: "", seconds: 10, seed: 0, across: false,
   },
-  about: null,
-  connection: "connecting",
-  messages: [],
 });
 
 const MOST = 5; // messages that stand below each other
@@ -116,31 +96,24 @@ const STEPS = {
   parted: (state, { parts }) => ({ ...state, parts, trees: { ...treesIn(parts), ...state.trees } }),
   planted: (state, { text, tree }) => ({ ...state, trees: { ...state.trees, [text]: tree } }),
   worked: (state, { job }) => ({ ...state, work: { ...state.work, [job.id]: { ...state.work[job.id], ...job } } }),
-  dropped: (state, { id }) => ({
-    ...state,
-    work: Object.fromEntries(Object.entries(state.work).filter(([each]) => each !== id)),
-  }),
-  recorded: (state, { record }) => ({
-    ...state,
-    records: [...state.records.filter(({ id }) => id !== record.id), record],
-  }),
+  dropped: (state, { id }) => ({ ...state, work: without(state.work, id) }),
+  recorded: (state, { record }) =>
+    ({ ...state, records: [...state.records.filter(({ id }) => id !== record.id), record] }),
   unrecorded: (state, { id }) => ({ ...state, records: state.records.filter((each) => each.id !== id) }),
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text }) => ({
-    ...state,
-    messages: [...without(state.messages, about), { about, text }].slice(-MOST),
-  }),
-  closed: (state, { about }) => ({ ...state, messages: without(state.messages, about) }),
+  said: (state, { text, about = text }) =>
+    ({ ...state, messages: [...others(state, about), { about, text }].slice(-MOST) }),
+  closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
 };
 
 /** The trees of networks, by their texts. @param {Parts} parts @returns {{[text: string]: Tree}} */
 const treesIn = ({ networks }) =>
   Object.fromEntries(networks.flatMap(({ text, tree }) => (tree ? [[text, canonical(tree)]] : [])));
 
-/** @param {Message[]} messages @param {string} about */
-const without = (messages, about) => messages.filter((each) => each.about !== about);
+/** The messages about other things. @param {State} state @param {string} about */
+const others = ({ messages }, about) => messages.filter((each) => each.about !== about);
 
 /** @param {State} state @param {string} panel @param {Answers} those @returns {State} */
 const answers = (state, panel, those) => ({ ...state, answers: { ...state.answers, [panel]: those } });
@@ -165,6 +138,8 @@ export function createStore(state = initial()) {
     change: (change, gesture = null) => {
       if (isChange(change)) dispatch({ type: "changed", change, gesture });
     },
+    look: (view) => dispatch({ type: "viewed", view }),
+    say: (text, about) => dispatch({ type: "said", text, about }),
     subscribe: (told) => {
       listeners.add(told);
       return () => void listeners.delete(told);

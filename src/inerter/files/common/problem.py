@@ -9,13 +9,14 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from inerter.statements import Severity, Statement
 from inerter.units import quote_value
 
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
 @dataclass(frozen=True)
-class Problem:
+class Problem(Statement):
     """Problem of an entry of a file; `said` is a complete sentence, such as that of an error, in place of the parts."""
 
     place: tuple[str, ...] = ()  # the path of keys
@@ -25,10 +26,21 @@ class Problem:
     expected: str = ""
     hint: str = ""  # what to try, a whole sentence
 
+    severity = Severity.ERROR
+
+    @property
+    def about(self) -> str:
+        """The path of keys as in a TOML file."""
+        return ".".join(key if _BARE_KEY.fullmatch(key) else quote_value(key) for key in self.place)
+
+    @property
+    def remedy(self) -> str:
+        """The hint."""
+        return self.hint
+
     def __str__(self) -> str:
         sentence = self.said or _sentence(self)
-        keys = ".".join(key if _BARE_KEY.fullmatch(key) else quote_value(key) for key in self.place)
-        return f"{keys}: {sentence[0].lower()}{sentence[1:]}" if keys else sentence
+        return f"{self.about}: {sentence[0].lower()}{sentence[1:]}" if self.place else sentence
 
 
 class EntryError(ValueError):

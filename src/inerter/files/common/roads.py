@@ -153,9 +153,8 @@ def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
         raise EntryError(got=f"{both}{', '.join(others)} and {last}", expected=f"one of the {of}")
     for name in _OF_PROFILES:
         if name in table and "profile" not in table:
-            fault = f"there is no profile that {'they are' if name in ('columns', 'units') else 'it is'} of"
             article = {"track": "a ", "interval": "an ", "sampling": "a "}.get(name, "")
-            raise EntryError(got=article + name, fault=fault, expected=f"profile, or no {name}")
+            raise EntryError(got=f"{article}{name} but no profile", expected=f"a profile, or no {name}")
     if names in (["class"], ["profile"]):
         known = ROAD_CLASSES.get(str(table.get("class")), ROAD_CLASSES["A"])
         return {**table, "roughness": f"{known.roughness!r} m^3/cycle"}

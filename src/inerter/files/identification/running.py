@@ -30,6 +30,7 @@ from inerter.records.record import Record
 from inerter.records.repair import repair
 from inerter.records.response import frequency_response
 from inerter.records.result import Response
+from inerter.statements import Severity, by_severity
 from inerter.vehicle.rig import Rig
 from inerter.work.running import running_on
 
@@ -111,8 +112,8 @@ def read(path: Path, asked: RecordRequest, progress: Progress | None = None) -> 
     if asked.detrend:
         used = detrend(used)
     found = tuple(findings(used))
-    if found and found[0].severity == "error":
-        raise RecordError(f"{used.source}: ", *found[0].text)
+    if errors := by_severity(found).get(Severity.ERROR):
+        raise RecordError(f"{used.source}: ", *errors[0].text)
     return Reading(received, used, found)
 
 

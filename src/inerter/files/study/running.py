@@ -17,7 +17,7 @@ import xarray as xr
 
 from inerter.atomic_io import write_netcdf, write_text
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import StatusKind, WorkError
+from inerter.errors import OK, Status, StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Outcome, portable
@@ -56,6 +56,11 @@ class StudyResult:
 
     not_ok = RenamedAttribute("n_failures")
     failing = RenamedAttribute("iterate_failures")
+
+    @property
+    def status(self) -> Status:
+        """`failed` if a case or a part has no number at all; the status of each design is a value of `data`."""
+        return Status(StatusKind.FAILED, "no number for some of the designs or answers") if self.failed else OK
 
     @property
     def failures(self) -> list[str]:

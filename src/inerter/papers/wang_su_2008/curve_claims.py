@@ -10,10 +10,10 @@ import numpy as np
 from inerter.papers.wang_su_2008.between import WORSE, Found, crossings, excess_there
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimPart,
     ClaimVerdict,
     EstimatedQuantity,
     Evidence,
-    Statement,
     combined_verdict,
     everywhere,
     kilo,
@@ -72,7 +72,7 @@ def _percent(found: Sequence[EstimatedQuantity]) -> list[EstimatedQuantity]:
     return [one.times(100.0) for one in found]
 
 
-def _shrinks(curves: Curves, index: str) -> list[Statement]:
+def _shrinks(curves: Curves, index: str) -> list[ClaimPart]:
     """Whether the optimum is worse with a hard shaft than with none, and worse still with a soft one, at every k."""
     parts, base = [], curves.of("S1", index)
     for layout in _LAYOUTS:
@@ -155,7 +155,7 @@ def _claim_5(curves: Curves) -> Claim:
     return Claim(5, CLAIMS[5], tuple(parts), note=f"Evaluated up to k = {kilo([_SOFT], '', 0)} kN/m.")
 
 
-def _worst(curves: Curves, layout: str, kinds: Sequence[str], index: str) -> Statement:
+def _worst(curves: Curves, layout: str, kinds: Sequence[str], index: str) -> ClaimPart:
     """Whether the last kind of a layout is nowhere better than any of the others."""
     both = layout + kinds[-1]
     gaps = [curves.uncertain_excess(layout + kind, both, index) for kind in kinds[:-1]]

@@ -10,6 +10,7 @@ import xarray as xr
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.method import evaluate
 from inerter.methods.norm import Norm
+from inerter.papers.wang_su_2008.rows import total_error
 from inerter.papers.wang_su_2008.source import index_of, study
 
 LAYOUTS = {
@@ -46,7 +47,7 @@ def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
     )
     return {
         "value": found.value,
-        "error": found.standard_error or 0.0,
+        "error": total_error(found),
         "deviations": [sample - found.value for sample in found.samples],
         "status": str(found.status),
     }

@@ -122,8 +122,8 @@ def rounding_interval(printed: float, step: float) -> tuple[float, float]:
 
 
 @dataclass(frozen=True)
-class Statement:
-    """Statement of a claim: the finding, the verdict on it, and the verdict on the printed number.
+class ClaimPart:
+    """One statement of a claim: the finding, the verdict on it, and the verdict on the printed number.
 
     `power` is the smallest detectable difference, in words; empty where nothing scatters.
     """
@@ -149,13 +149,13 @@ def statement(
     by: Sequence[EstimatedQuantity] = (),
     unit: str = "%",
     at_once: int = 1,
-) -> Statement:
+) -> ClaimPart:
     """A statement judged by quantities in `unit`; `at_once` are those compared for one verdict."""
     power = max((one.detectable(at_once) for one in by), default=0.0)
     doubts = dict.fromkeys(one.doubt for one in by if one.doubt)
     said = f"unreliable ({'; '.join(doubts)}): {found}" if doubts else found
     kept = number if verdict is ClaimVerdict.SHOWN else None
-    return Statement(said, verdict, kept, f"{power:.2g} {unit}" if power > 0.0 else "")
+    return ClaimPart(said, verdict, kept, f"{power:.2g} {unit}" if power > 0.0 else "")
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class Claim:
 
     number: int
     statement: str
-    parts: tuple[Statement, ...]
+    parts: tuple[ClaimPart, ...]
     note: str = ""
 
     @property

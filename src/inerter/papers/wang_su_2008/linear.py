@@ -63,7 +63,7 @@ def recompute(studies: dict[str, StudyResult]) -> LinearTables:
     """Every linear number of Tables 1 to 3, and the designs of Tables 1 and 2 as the studies find them."""
     rows = linear_rows()
     return LinearTables(
-        [compared_row(row) for row in rows], [_found_design(row, studies[row.study]) for row in rows if row.table < 3]
+        [compared_row(row) for row in rows], [found_design(row, studies[row.study]) for row in rows if row.table < 3]
     )
 
 
@@ -74,9 +74,10 @@ def compared_row(row: PrintedRow) -> ComparedRow:
     return ComparedRow(row, index.unit, *values)
 
 
-def _found_design(row: PrintedRow, result: StudyResult) -> FoundDesign:
+def found_design(row: PrintedRow, result: StudyResult) -> FoundDesign:
+    """Optimum of a study that belongs to a printed row, with the number of searches that found it."""
     best = result.data.sel({"layout": row.layout, "index": row.index, "method": "norm"})
     values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
     parameters = {name: value for name, value in values if np.isfinite(value)}
     unit = str(best.index_unit.item())
-    return FoundDesign(row, unit, float(best.value), parameters, int(best.n_converged), int(best.n_starts))
+    return FoundDesign(row, unit, float(best.value), parameters, int(best.agreed), int(best.starts))

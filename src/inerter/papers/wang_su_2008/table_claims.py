@@ -5,9 +5,9 @@ from __future__ import annotations
 from inerter.papers.wang_su_2008.between import WORSE
 from inerter.papers.wang_su_2008.judging import (
     Claim,
+    ClaimPart,
     EstimatedQuantity,
     Evidence,
-    Statement,
     exact_value,
     rounding_interval,
     statement,
@@ -25,7 +25,7 @@ def quarter_car_claims(evidence: Evidence) -> list[Claim]:
     return [claim(evidence) for claim in (_claim_6, _claim_7, _claim_11)]
 
 
-def _loss(what: str, cost: EstimatedQuantity, low: float, high: float) -> Statement:
+def _loss(what: str, cost: EstimatedQuantity, low: float, high: float) -> ClaimPart:
     """The statement that something costs an improvement anything, with the printed range of how much."""
     text = f"{what} loses {_points(cost)} {_POINTS}"
     return statement(text, within(cost, low=0.0), within(cost, low, high), by=[cost], unit=_POINTS)

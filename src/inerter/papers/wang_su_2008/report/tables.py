@@ -70,7 +70,12 @@ def design_tables(found: Reproduction) -> list[Table]:
     heads = [
         *_OF_DESIGN,
         *(Column(key="layout"), Column(key="unit"), Column(key="printed"), Column("Value", "found")),
-        *(Column("Lower by", "gain_percent"), Column("Agreement"), Column(key="agreed"), Column(key="starts")),
+        *(
+            Column("Lower by", "gain_percent"),
+            Column("Agreement", only_on_pages=True),
+            Column(key="agreed"),
+            Column(key="starts"),
+        ),
         *(Column(key=f"{name} printed") for name in names),
         *(Column(name, f"{name} found", listed="Values") for name in names),
     ]

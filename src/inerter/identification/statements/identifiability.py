@@ -1,4 +1,4 @@
-"""Identifiability of a parameter, as data, and its sentence."""
+"""Identifiability of parameters: verdicts and their sentences."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from enum import StrEnum
 from inerter.deprecation import RenamedAttribute
 from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements.roles import LinearRole
+from inerter.statements import Severity, Statement
 
 
 class Verdict(StrEnum):
@@ -25,8 +26,11 @@ class Verdict(StrEnum):
     UNPREDICTABLE = "unpredictable"  # the force of the device cannot be predicted
 
 
+_UNRELIABLE = (Verdict.WITHHELD, Verdict.CONDITIONAL, Verdict.UNPREDICTABLE)
+
+
 @dataclass(frozen=True)
-class Identifiability:
+class Identifiability(Statement):
     """The verdict on a parameter, with its reasons. True where the parameter is identified."""
 
     name: str
@@ -50,6 +54,16 @@ class Identifiability:
     def plain(self) -> bool:
         """Whether it is identified without reservation."""
         return self.verdict is Verdict.IDENTIFIED
+
+    @property
+    def severity(self) -> Severity:
+        """Warning for an unreliable fit; a bound, or no information, is a reliable result."""
+        return Severity.WARNING if self.verdict in _UNRELIABLE else Severity.INFO
+
+    @property
+    def about(self) -> str:
+        """The name of the parameter."""
+        return self.name
 
     @property
     def sentence(self) -> str:

@@ -1,0 +1,1 @@
+"""Kinds of statements of an identification, with their sentences."""

@@ -1,0 +1,55 @@
+// Controls and tables that the panels share, and handlers of their events.
+import { html, useState } from "./html.js";
+
+/** A handler of events that hands on the text of the control.
+ * @param {(text: string) => void} set @returns {(event: Event) => void} */
+export const textHandler = (set) => (event) => set(/** @type {HTMLInputElement} */ (event.currentTarget).value);
+
+/** A handler of the submission of a form that hands on its fields, and the event.
+ * @param {(form: FormData, event: SubmitEvent) => unknown} act @returns {(event: SubmitEvent) => void} */
+export const formHandler = (act) => (event) => {
+  event.preventDefault();
+  act(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)), event);
+};
+
+/** The name that is picked, or the first where none of them is, and the function that picks one.
+ * @param {string[]} names @returns {[string | undefined, (name: string) => void]} */
+export function useChoice(names) {
+  const [picked, setPicked] = useState("");
+  return [names.includes(picked) ? picked : names[0], setPicked];
+}
+
+/** A choice of one value; `choices` are values, or pairs of value and title. `set` is given the value that is chosen.
+ * @param {{label?: string, choices: (string | string[])[], selected?: string, set?: (value: string) => void,
+ * [attribute: string]: unknown}} props */
+export function Select({ label, choices, selected, set, ...attributes }) {
+  const select = html`<select ...${attributes} onChange=${set && textHandler(set)}>${choices.map((choice) => {
+    const [value, title = value] = [choice].flat();
+    return html`<option key=${value} value=${value} selected=${value === selected || undefined}>${title}</option>`;
+  })}</select>`;
+  return label === undefined ? select : html`<label>${label} ${select}</label>`;
+}
+
+/** A button that stays pressed while what it stands for is on.
+ * @param {{on: boolean, set: () => void, children: any, [attribute: string]: unknown}} props */
+export const Chip = ({ on, set, children, ...attributes }) =>
+  html`<button type="button" class="chip" aria-pressed=${on} onClick=${set} ...${attributes}>${children}</button>`;
+
+/** The indices of an answer, one of which is shown.
+ * @param {{indices: string[], picked: string | undefined, pick: (index: string) => void}} props */
+export const IndexChips = ({ indices, picked, pick }) => html`<div class="row" role="group" aria-label="Index">
+  ${indices.map((each) => html`<${Chip} key=${each} on=${each === picked} set=${() => pick(each)}>${each}<//>`)}</div>`;
+
+/** A menu that drops down; `onOpen` is called when it does.
+ * @param {{title: string, onOpen?: () => void, children: any}} props */
+export const DropDown = ({ title, onOpen, children }) => html`<details class="menu" onToggle=${(/** @type {Event} */
+  event) => /** @type {HTMLDetailsElement} */ (event.currentTarget).open && onOpen?.()}>
+  <summary>${title}</summary><div class="menu-body">${children}</div></details>`;
+
+/** A table that can be scrolled; `heads` are the heads of its columns, or pairs of head and explanation.
+ * @param {{label: string, heads: (string | string[])[], children: any, [attribute: string]: unknown}} props */
+export const Table = ({ label, heads, children, ...attributes }) => html`<div class="scroll" tabindex="0"
+  role="region" aria-label=${label}><table ...${attributes}><thead><tr>${heads.map((head) => {
+    const [text, title] = [head].flat();
+    return html`<th scope="col" title=${title}>${text}</th>`;
+  })}</tr></thead><tbody>${children}</tbody></table></div>`;

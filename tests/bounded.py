@@ -20,7 +20,7 @@ from random_mechanisms import FAMILIES, at_zero, drawn, logarithmic
 from strategies import random_half_car, random_network, random_quarter_car
 
 import inerter as it
-from inerter.indices.question import Index
+from inerter.indices.definition import Index
 from inerter.methods import excitation, harmonic_response, out_of_band, realisations
 from inerter.methods.steady_squares import steady_squares
 from inerter.networks.elements import Friction, Network

@@ -253,7 +253,7 @@ class Plain:
         index = study.index(name)
         if name not in ("J3", "suspension-travel", "dynamic-load-coefficient", "pushed"):
             return [index]
-        outputs = index.question(design.mechanism()).outputs
+        outputs = index.definition(design.mechanism()).outputs
         return [it.RandomResponse({one.output: one.weight}, study.road) for one in outputs]
 
     def index(self, name: str, given: dict[str, np.ndarray]) -> np.ndarray:

@@ -26,13 +26,13 @@ class TwoSources:
     is_random = True
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         return self.road.velocity_intensity
 
     def excited_mechanism(self, mechanism: Mechanism) -> Mechanism:
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         shared = [InputPath(r.name, "both", r.distance / self.road.speed, 1.0, self.shapes[0]) for r in mechanism.roads]
         turned = [
             InputPath(r.name, "apart", r.distance / self.road.speed, (-0.5) ** i, self.shapes[1])

@@ -9,7 +9,7 @@ from functools import reduce
 import numpy as np
 
 from inerter import Filter
-from inerter.indices.question import Index, IndexDefinition
+from inerter.indices.definition import Index, IndexDefinition
 from inerter.vehicle.mechanism import Mechanism
 
 
@@ -60,11 +60,11 @@ class Weighed:
     def response(self) -> str:
         return self.index.response
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
-        return replace(self.index.question(mechanism), filter=self.filter)
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
+        return replace(self.index.definition(mechanism), filter=self.filter)
 
 
-def some_filters(rng: np.random.Generator, question: IndexDefinition) -> object:
+def some_filters(rng: np.random.Generator, definition: IndexDefinition) -> object:
     """One for all outputs, or for each its own or none."""
-    found = tuple(None if rng.random() < 0.3 else random_filter(rng) for _ in question.outputs)
+    found = tuple(None if rng.random() < 0.3 else random_filter(rng) for _ in definition.outputs)
     return found if any(found) and rng.random() < 0.6 else random_filter(rng)

@@ -13,8 +13,8 @@ from fractions import Fraction
 import flint
 
 from inerter import GROUND, Damper, Inerter, Mechanism, Spring
+from inerter.indices.definition import Combination
 from inerter.indices.excitation import RoadVelocity
-from inerter.indices.question import Combination
 from inerter.networks.elements import Parallel, Series
 
 _ORDER = {Spring: 0, Damper: 1, Inerter: 2}
@@ -231,42 +231,42 @@ def _squared(p):
 
 def index_value(mechanism: Mechanism, index) -> float | str | None:
     """An index with the exact conventions; INFINITE; or None where a pole is multiple."""
-    question = index.question(mechanism)
-    on_road = isinstance(question.drive, RoadVelocity)  # the whole mechanism, never half of it
-    driven = mechanism if on_road else question.drive.excited_mechanism(mechanism)
-    arrivals, exact = question.arrivals(driven), RationalMechanism(driven)
-    if not question.drive.is_random:
-        (arrival,) = arrivals
-        top, bottom = exact.response(question.outputs[0].output, arrival.input)
-        over, under = _filter(question.filters[0])
-        found = peak_gain(top * over * (S if arrival.displacement else 1), bottom * under)
-        return found if found is INFINITE else abs(question.outputs[0].weight) * float(found)
+    definition = index.definition(mechanism)
+    on_road = isinstance(definition.drive, RoadVelocity)  # the whole mechanism, never half of it
+    driven = mechanism if on_road else definition.drive.excited_mechanism(mechanism)
+    paths, exact = definition.input_paths(driven), RationalMechanism(driven)
+    if not definition.drive.is_random:
+        (path,) = paths
+        top, bottom = exact.response(definition.outputs[0].output, path.input)
+        over, under = _filter(definition.filters[0])
+        found = peak_gain(top * over * (S if path.displacement else 1), bottom * under)
+        return found if found is INFINITE else abs(definition.outputs[0].weight) * float(found)
     sizes = []
-    for output, passed in zip(question.outputs, question.filters, strict=True):
-        square = _square(exact, arrivals, output.output, passed)
+    for output, passed in zip(definition.outputs, definition.filters, strict=True):
+        square = _square(exact, paths, output.output, passed)
         if square is INFINITE or square is None:
             return square
         sizes.append(abs(output.weight) * float(square.sqrt()))
-    power = 2 if question.combination is Combination.ROOT_OF_SQUARES else 1
-    return sum(size**power for size in sizes) ** (1.0 / power) * question.drive.size
+    power = 2 if definition.combination is Combination.ROOT_OF_SQUARES else 1
+    return sum(size**power for size in sizes) ** (1.0 / power) * definition.drive.amplitude_density
 
 
-def _square(exact: RationalMechanism, arrivals, output: str, passed):
+def _square(exact: RationalMechanism, paths, output: str, passed):
     """The mean square of an output over all sources; INFINITE; or None."""
     total, over = flint.arb(0), _filter(passed)
-    for source in {arrival.source for arrival in arrivals}:
-        own = [arrival for arrival in arrivals if arrival.source == source]
-        before = {arrival.filter: _filter(arrival.filter) for arrival in own}
+    for source in {path.source for path in paths}:
+        own = [path for path in paths if path.source == source]
+        before = {path.filter: _filter(path.filter) for path in own}
         bottom, tops = over[1], []
         for _, under in before.values():
             bottom = bottom * under
-        for arrival in own:
-            top, below = exact.response(output, arrival.input)
-            top = top * over[0] * before[arrival.filter][0] * rational(arrival.lever)
+        for path in own:
+            top, below = exact.response(output, path.input)
+            top = top * over[0] * before[path.filter][0] * rational(path.lever)
             for other, (_, under) in before.items():
-                top = top * (under if other != arrival.filter else 1)
+                top = top * (under if other != path.filter else 1)
             tops.append(top)
-        square = mean_square(tops, bottom * below, [arrival.delay for arrival in own])
+        square = mean_square(tops, bottom * below, [path.delay for path in own])
         if square is INFINITE or square is None:
             return square
         total += square

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, make_dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from inerter.methods.registry import averages, nonlinearities_of, with_gradients
 from inerter.registry import Registry, cache_until_registration
 from inerter.report.problem_statement import vehicle_rows
 from inerter.units import parse_quantity
+from inerter.work.origin import origin
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)
 ROAD = it.Road(roughness=5e-7, speed=25.0)
@@ -36,9 +38,10 @@ TABLES = {"vehicle": it.VEHICLES, "index": it.INDICES, "method": it.METHODS, "el
 @pytest.fixture(autouse=True)
 def known() -> Iterator[None]:
     """Entries removed at the end of their test do not count as sources later, as no other process has them."""
-    before = set(registry._classes)
+    before = dict(registry._sources)
     yield
-    registry._classes.intersection_update(before)
+    for added in registry._sources.keys() - before.keys():
+        del registry._sources[added]
     registry._changes += 1
 
 
@@ -83,7 +86,7 @@ def test_loading_that_is_interrupted_begins_anew(monkeypatch: pytest.MonkeyPatch
             raise KeyboardInterrupt
         return ()
 
-    monkeypatch.setattr(registry, "_entries", entries)
+    monkeypatch.setattr(registry, "_entry_points", entries)
     with pytest.raises(KeyboardInterrupt):
         registry.load_plugins()
     registry.load_plugins()
@@ -105,6 +108,38 @@ def test_values_derived_from_registries_are_recomputed_after_a_change() -> None:
     assert (listed(), listed(), len(made)) == (("one",), ("one",), 2)
     table.remove(one)
     assert (listed(), len(made)) == ((), 3)
+
+
+ENTRIES = {
+    "function": "entry = make",
+    "instance": "entry = SimpleNamespace(key=KEY, make=make)",
+    "address": "entry = SimpleNamespace(key=KEY, home=f'{__name__}_code:make')",
+}
+
+
+@pytest.mark.parametrize("kind", ENTRIES)
+def test_the_code_of_every_kind_of_entry_is_part_of_the_fingerprint(
+    kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A journal is resumed only by the code that wrote it, whether an entry is a class, a function or an address."""
+    name = f"own_{kind}_entries"
+    source = f"from types import SimpleNamespace\nKEY = {kind!r}\ndef make(): pass\nmake.key = KEY\n{ENTRIES[kind]}\n"
+    (tmp_path / f"{name}.py").write_text(source, encoding="utf-8")
+    (tmp_path / f"{name}_code.py").write_text("def make(): pass\n", encoding="utf-8")
+    code = tmp_path / (f"{name}_code.py" if kind == "address" else f"{name}.py")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    table: Registry[Any] = Registry("thing", "key")
+    without = origin()
+    entry = table.add(import_module(name).entry)
+    assert code in registry.plugin_paths()
+    known = origin()
+    assert known != without
+    code.write_text(code.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
+    table.remove(entry)
+    assert code not in registry.plugin_paths()
+    assert origin() == without
+    table.add(entry)
+    assert origin() not in {known, without}
 
 
 def test_an_invalid_entry_is_refused_with_its_missing_attributes() -> None:
@@ -251,7 +286,7 @@ def added() -> Iterator[Added]:
 def index_with(setting: str) -> type:
     """An index that has this setting, in m."""
     given = (setting, float, field(default=1.0, metadata=it.quantity("m", "A length.", "1 m")))
-    words = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    words = dict.fromkeys(("title", "unit", "response", "definition"), "x")
     return make_dataclass("Other", [given], namespace={"symbol": "X1", **words}, frozen=True)
 
 
@@ -283,7 +318,7 @@ class Heard:
     )
     symbol, title, unit, response = "X2", "loudness", "", "gain"
 
-    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+    def definition(self, mechanism: it.Mechanism) -> it.IndexDefinition:
         outputs = (*(it.OutputWeight(*one) for one in self.outputs.items()), it.OutputWeight(self.ear))
         return it.IndexDefinition(outputs, it.Combination.SUM_OF_RMS, self.cause, "", self.hearing)
 
@@ -329,7 +364,7 @@ def test_an_index_of_another_distribution_has_settings_of_all_forms(added: Added
 def test_a_setting_has_a_form_that_there_is_and_a_key_of_its_own(
     metadata: Any, words: str, added: Added, tmp_path: Path
 ) -> None:
-    words_of_it = dict.fromkeys(("title", "unit", "response", "question"), "x")
+    words_of_it = dict.fromkeys(("title", "unit", "response", "definition"), "x")
     given: list[Any] = [("road", it.Road), ("by", Any, field(default=None, metadata=metadata))]
     added(it.INDICES, make_dataclass("Third", given, namespace={"symbol": "X3", **words_of_it}, frozen=True))
     with pytest.raises(RegistryError, match=words):
@@ -476,7 +511,7 @@ def test_a_search_by_what_simulates_begins_where_a_row_with_gradients_ends(monke
 
             return Values()
 
-    monkeypatch.setitem(it.METHODS._rows, Sharp.name, Sharp)
+    monkeypatch.setitem(it.METHODS._entries, Sharp.name, Sharp)
     assert [method.name for method in with_gradients("exact")] == ["sharp", "statistical-linearisation", "norm"]
     found = it.optimise(SLIPS, it.RideComfort(ROAD), Dull("paper2008"), starts=4)
     assert {*asked} == {"paper2008"}

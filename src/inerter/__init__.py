@@ -4,23 +4,14 @@ Networks of springs, dampers, inerters, dry friction and gaps; quarter cars, hal
 norms and optimisation. Everything public is a name in this module; each is loaded when it is first used.
 """
 
-import ast
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 from inerter.deprecation import warn_renamed
+from inerter.lazy_names import homes
 
-
-def _homes() -> dict[str, str]:
-    """The module of every public name: from the imports of the stub of this file."""
-    tree = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    found = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
-    return {alias.name: str(node.module) for node in found for alias in node.names}
-
-
-_HOME = _homes()
-_OLD = {  # names of 0.1
+_HOME = homes(__file__)
+_OLD = {  # former names
     "Arrival": "InputPath",
     "Budget": "BreakEven",
     "Choice": "ModelSelection",
@@ -38,6 +29,7 @@ _OLD = {  # names of 0.1
     "Staged": "StagedIdentification",
     "Statistical": "StatisticalRole",
     "Switch": "SwitchRole",
+    "TaskRow": "TaskEntry",
     "Weighted": "OutputWeight",
     "WeightedMotion": "WeightedAcceleration",
     "assemble": "state_space",

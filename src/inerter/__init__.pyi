@@ -17,8 +17,8 @@ from inerter.files.common.signal_kinds import SignalKey as SignalKey
 from inerter.files.common.signal_kinds import SignalKind as SignalKind
 from inerter.files.study.loading import load_study as load_study
 from inerter.files.study.running import run_study as run_study
-from inerter.files.study.task_rows import TASKS as TASKS
-from inerter.files.study.task_rows import TaskRow as TaskRow
+from inerter.files.study.task_registry import TASKS as TASKS
+from inerter.files.study.task_registry import TaskEntry as TaskEntry
 from inerter.identification.choice import ModelSelection as ModelSelection
 from inerter.identification.choice import select_model as select_model
 from inerter.identification.fit import Fit as Fit
@@ -29,6 +29,9 @@ from inerter.identification.response import model_response as model_response
 from inerter.identification.staged_protocol import StagedIdentification as StagedIdentification
 from inerter.identification.staged_protocol import identify_staged as identify_staged
 from inerter.identification.virtual_rig import VirtualRig as VirtualRig
+from inerter.indices.definition import Combination as Combination
+from inerter.indices.definition import IndexDefinition as IndexDefinition
+from inerter.indices.definition import on_road as on_road
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient as DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce as ElementForce
 from inerter.indices.element_stroke import ElementStroke as ElementStroke
@@ -42,9 +45,6 @@ from inerter.indices.iso2631 import iso2631_weighting as iso2631_weighting
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
 from inerter.indices.measured_road import measured_road as measured_road
 from inerter.indices.peak_response import PeakResponse as PeakResponse
-from inerter.indices.question import Combination as Combination
-from inerter.indices.question import IndexDefinition as IndexDefinition
-from inerter.indices.question import on_road as on_road
 from inerter.indices.random_response import RandomResponse as RandomResponse
 from inerter.indices.registry import INDICES as INDICES
 from inerter.indices.ride_comfort import RideComfort as RideComfort

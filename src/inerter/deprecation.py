@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import warnings
 from collections.abc import Callable
+from operator import attrgetter
 from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -33,6 +34,20 @@ class RenamedAttribute:
             return self
         warn_renamed(self.old, self.new)
         return getattr(instance, self.new)
+
+
+def adopt_renamed(given: object, **new_names: str) -> None:
+    """Give the class of an object that has an attribute `old` but none called `new` the new one, for each `old="new"`.
+
+    For classes of other distributions, which may have been written for the previous version.
+    """
+    kind = type(given)
+    for old, new in new_names.items():
+        places = (vars(given) if hasattr(given, "__dict__") else {}, *map(vars, kind.__mro__))
+        nearest = next((one for one in places if {old, new} & one.keys()), {new: None})
+        if new not in nearest and not isinstance(nearest[old], RenamedAttribute):
+            warn_renamed(f"{kind.__name__}.{old}", new, 4)
+            setattr(kind, new, property(attrgetter(old)))
 
 
 def renamed_keywords(**new_names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:

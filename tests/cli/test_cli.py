@@ -173,10 +173,10 @@ def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys
     study, folder = tmp_path / "screw.toml", tmp_path / "out"
     study.write_text(text.replace('["J1", "J3", "J5"]', '["J1"]').replace('force = "1 kN"', ""), encoding="utf-8")
     assert call(["check", str(study)]) == 0
-    assert "3 designs to find, and 2 budgets." in " ".join(capsys.readouterr().out.split())
+    assert "3 designs to find, and 2 break-even values." in " ".join(capsys.readouterr().out.split())
     assert call(["run", str(study), "-o", str(folder), "-j", "1"]) == 0
     out, err = capsys.readouterr()
-    assert "5 designs and budgets" in err
+    assert "5 designs and break-even values" in err
     assert out.isascii()
     assert max(map(len, out.splitlines())) <= 80
     (friction,) = re.findall(r"S3 .*up to (\d+) \+- (\d+) N$", out, re.MULTILINE)

@@ -74,7 +74,7 @@ def wait(seconds: float) -> None:
 
 
 def in_progress() -> None:
-    with progress("study") as shown:
+    with progress() as shown:
         shown.kernels("a kernel", 1, 9)
         wait(0.7)
         shown.cases(0, 9, None, 0)
@@ -82,7 +82,7 @@ def in_progress() -> None:
 
 
 def in_steps() -> None:
-    with steps("paper") as show:
+    with steps() as show:
         show("table", 0, 3)
         wait(0.7)
 
@@ -124,7 +124,7 @@ def fail_within(name: str) -> None:
 
 def test_designs_that_have_ended_are_not_told_to_be_under_way(capsys: pytest.CaptureFixture[str]) -> None:
     own = Pace({"S1": 1, "S2": 1}, ("J1",), 1)
-    with progress("study", pace=own) as shown:
+    with progress(pace=own) as shown:
         shown.cases(0, 2, None, 0)
         for name in ("S1 J1", "S2 J1"):
             with within(name):
@@ -189,6 +189,51 @@ def test_designs_of_an_earlier_run_are_not_taken_for_quick_ones(monkeypatch: pyt
     span = pace.range()
     assert span is not None
     assert span[0] < 90.0 < span[1]
+
+
+def test_parts_of_tasks_count_by_their_own_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Quick designs before slow simulations: no remaining time until a simulation is done, then one that holds."""
+    clock = [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    pace = Pace({"S1": 1, "S2": 1}, ("J1",), 5, {f"break-even value {i}": "budgets" for i in range(5)})
+    pace.begin(0)
+    for done in range(10):
+        clock[0] += 4.0
+        pace.finish("S1" if done < 5 else "S2", "J1", 1)
+        assert pace.range() is None, "five simulations of unknown duration remain"
+    for done in range(5):
+        clock[0] += 60.0
+        pace.finish("", "budgets", 1)
+        low, high = pace.range() or (math.nan, math.nan)
+        left = 60.0 * (4 - done)
+        assert low <= left <= high
+    assert pace.range() == (0.0, 0.0)
+
+
+def test_parts_of_tasks_that_were_done_before_are_not_counted_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    pace = Pace({"S1": 1}, ("J1",), 2, {f"front {i}": "fronts" for i in range(4)})
+    pace.begin(4)  # two designs and two fronts
+    clock[0] = 20.0
+    pace.finish("", "fronts", 1)
+    low, high = pace.range() or (math.nan, math.nan)
+    assert low <= 20.0 <= high
+
+
+@pytest.mark.parametrize("seconds", [1.0, 5.0, 9.0])
+def test_no_remaining_time_is_given_without_a_basis(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    clock = [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    pace = Pace({"S1": 1, "S2": 6}, ("J1",), 1)
+    pace.begin(0)
+    clock[0] = seconds
+    pace.finish("S1", "J1", 1)
+    for at in (seconds, 29.0):
+        clock[0] = at
+        assert pace.words() == ""
+    clock[0] = 31.0
+    assert pace.words() != ""
 
 
 @pytest.mark.campaign

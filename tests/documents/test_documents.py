@@ -222,7 +222,7 @@ def best_of_table_1(friction: float) -> it.QuarterCar:
 
 
 FRICTION = table("methods.md", "| f [N] | J1 simulated [m/s^2] | J1 here | J3 simulated [N] | J3 here |")
-PARTING = table("methods.md", "| f [N] | statistical linearisation | expected value | approximate linear model |")
+PARTING = table("methods.md", "| f [N] | statistical linearisation | random simulation | approximate linear model |")
 
 
 @pytest.mark.parametrize("row", FRICTION, ids=lambda row: row[0])

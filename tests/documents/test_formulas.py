@@ -44,7 +44,7 @@ FULL = it.FullCar(
 
 
 def weights(index: it.RideComfort) -> dict[str, float]:
-    return {w.output.removesuffix("_acceleration"): w.weight for w in index.question(FULL.mechanism()).outputs}
+    return {w.output.removesuffix("_acceleration"): w.weight for w in index.definition(FULL.mechanism()).outputs}
 
 
 def test_levers_of_ride_comfort() -> None:

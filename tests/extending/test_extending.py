@@ -105,10 +105,10 @@ class Session:
         """What a program prints."""
         return self._asked([str(cwd), program, ()], 0)[0]
 
-    def _asked(self, question: list[object], expected: int) -> tuple[str, str]:
+    def _asked(self, request: list[object], expected: int) -> tuple[str, str]:
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        print(json.dumps(question), file=self.process.stdin, flush=True)
+        print(json.dumps(request), file=self.process.stdin, flush=True)
         code, out, err = json.loads(self.process.stdout.readline())
         assert code == expected, err
         return out, err
@@ -294,7 +294,7 @@ def test_a_task_is_worked_on_and_told_as_our_own(session: Session, tmp_path: Pat
     text += 'catalogue_of = "c"\ncatalogue = ["1 kN s/m", "2 kN s/m", "4 kN s/m"]\n'
     (tmp_path / "bought.toml").write_text(text, encoding="utf-8")
     assert "and 2 catalogues." in " ".join(session.command("check", "bought.toml", cwd=tmp_path)[0].split())
-    assert "values that are sold" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
+    assert "Values in the catalogue" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
     said = json.loads(session.command("run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path)[0])
     by = {one["layout"]: one for one in said["catalogues"]}
     assert set(by) == {"S1", "S3"}
@@ -476,7 +476,7 @@ BROKEN = {
         "from dataclasses import dataclass\n@it.INDICES.add\n@dataclass(frozen=True)\nclass T(it.RideComfort): pass",
         "'J1'",
     ),
-    "half": (f"{FROZEN}class T:\n    symbol = 'T'", "title, unit, response, question"),
+    "half": (f"{FROZEN}class T:\n    symbol = 'T'", "title, unit, response, definition"),
     "no dataclass": ("@it.INDICES.add\nclass T(it.RideComfort):\n    symbol = 'T'", "@dataclass"),
     "no key": (
         f"{FROZEN}class T(it.RideComfort):\n    symbol = ''",
@@ -536,7 +536,7 @@ class WheelTravel:
     road: it.Road
     symbol, title, unit, response = "D1", "tyre deflection", "m", "deflection per road velocity"
 
-    def question(self, mechanism):
+    def definition(self, mechanism):
         outputs = tuple(it.OutputWeight(f"{tyre.name}_deflection") for tyre in mechanism.tyres)
         return it.on_road(self, mechanism, outputs, "tyres")
 

@@ -167,7 +167,7 @@ def test_all_that_is_wrong_is_said_with_its_place(changes, said):
 
 def declarations(table: TableCodec) -> list[tuple[str, Any]]:
     """All keys of a kind of file, with their places."""
-    return [(".".join((*place, one.name)), one) for place, held in table.tables(()) for one in held.keys]
+    return [(".".join((*place, one.name)), one) for place, held in table.table_codecs(()) for one in held.keys]
 
 
 @pytest.mark.parametrize("kind", CODECS)

@@ -107,7 +107,7 @@ def cheap(identified: IdentificationResult | None = None) -> Iterator[None]:
         def change(place: str, by: object) -> None:
             stack.enter_context(patch(place, by))
 
-        change("inerter.files.study.cases.Case.answer", outcome)
+        change("inerter.files.study.cases.Case.compute", outcome)
         change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
         change("inerter.cli.commands.draw_layouts", drawn("networks.svg", "networks.png"))
         change(

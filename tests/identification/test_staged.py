@@ -88,7 +88,7 @@ def test_protocols_that_cannot_be(slow, fast):
     none = it.VirtualRig(SHAFT - it.Inerter(5.0), seed=0).run(it.cosine(1e-3, 0.1), 20.0)
     with pytest.raises(IdentificationError, match="friction is not identifiable"):
         it.identify_staged(none, fast)
-    with pytest.raises(IdentificationError, match="friction named f"):
+    with pytest.raises(IdentificationError, match="friction element named f"):
         it.identify_staged(slow, fast, model=it.Inerter(it.free(1.0, 10.0, name="b")))
     with pytest.raises(IdentificationError, match="positive"):
         it.identify_staged(slow, fast, inertance=-1.0)

@@ -159,14 +159,14 @@ def test_a_study_has_failed_where_a_status_is_and_not_where_a_word_is(
     folder = tmp_path_factory.mktemp("study")
     taken = iter([*kinds, *[StatusKind.OK] * 100])
 
-    def answer(case: Case, study: object, designs: object, threads: int) -> Outcome:
+    def compute(case: Case, study: object, designs: object, threads: int) -> Outcome:
         status = {"norm": next(taken).value}
         return Outcome(case.layout, case.index, case.point, {}, {}, {}, 0, 0, 0, {}, {}, status, f"{word}: {TOKEN}")
 
     few = {name: STUDY.layouts[name] for name in ("S1", "S2", "S3")}
     study = replace(STUDY, evaluate=("norm",), budgets=(), layouts=few, indices=("J1",))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Case, "answer", answer)
+        patch.setattr(Case, "compute", compute)
         result = running.run_study(study, folder / "out")
     assert result.failed == (StatusKind.FAILED in kinds)
     assert len(result.failures) == sum(kind is not StatusKind.OK for kind in kinds)

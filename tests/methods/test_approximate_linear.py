@@ -146,10 +146,10 @@ def test_table_2(index, strut, printed, ideal, f, front, rear):
 
 def test_the_force_grows_with_the_body():
     quarter, half = LINEAR["quarter series"].mechanism(), LINEAR["half series"].mechanism()
-    drives = [ApproximateLinear()._drive(m, J5.question(m)) for m in (quarter, half)]
+    drives = [ApproximateLinear()._drive(m, J5.definition(m)) for m in (quarter, half)]
     assert drives[0].rms == pytest.approx(447.2, abs=0.05)
     assert drives[1].rms == pytest.approx(2.0 * drives[0].rms)
-    assert ApproximateLinear()._drive(half, J1.question(half)).rms == pytest.approx(3.162e-3, rel=1e-3)
+    assert ApproximateLinear()._drive(half, J1.definition(half)).rms == pytest.approx(3.162e-3, rel=1e-3)
 
 
 def test_many_designs_are_the_same_as_one_by_one():

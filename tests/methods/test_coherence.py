@@ -58,7 +58,7 @@ def squared_gains(vehicle, road, outputs, coherence, omega):
     gains = system.C @ np.linalg.solve(s * np.eye(len(system.A)) - system.A, system.B[None]) + system.D
     late = np.array([r.distance / road.speed for r in roads.values()])
     arriving = gains * np.exp(-1j * omega[:, None, None] * late)
-    left = np.array([r.track == "left" for r in roads.values()])
+    left = np.array([r.side == "left" for r in roads.values()])
     alike = left[:, None] == left[None, :]
     cross = coherence(omega / (2 * np.pi * road.speed))[:, None, None]
     spectra = np.where(alike, 1.0, cross)

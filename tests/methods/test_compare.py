@@ -20,7 +20,7 @@ from inerter.methods.compare import Comparison, Difference, difference_of
 from inerter.methods.linear import CONVENTIONS, with_convention_filters
 from inerter.methods.method import Estimate
 from inerter.methods.perturbation import first_order
-from inerter.methods.realisations import drive, realisation_seeds, run
+from inerter.methods.realisations import random_excitation, realisation_seeds, run
 from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)
@@ -60,12 +60,12 @@ def pools(request):
     Every road has its own seed, so groups of 5 roads are as independent as runs with other seeds are.
     """
     systems = [piecewise(parallel(100.0)), piecewise(series(100.0))]
-    question = J3.question(systems[0].mechanism)
-    way = drive(systems[0], question, CONVENTIONS["paper2008"])
-    changes = [first_order(system, question, way) for system in systems]
+    definition = J3.definition(systems[0].mechanism)
+    excitation = random_excitation(systems[0], definition, CONVENTIONS["paper2008"])
+    changes = [first_order(system, definition, excitation) for system in systems]
 
     def on_road(seed):
-        found = [run(system, way, ("sprung_acceleration", "tyre_load"), (), seed).power for system in systems]
+        found = [run(system, excitation, ("sprung_acceleration", "tyre_load"), (), seed).power for system in systems]
         return np.sqrt(found), [float(change([seed])[0]) for change in changes]
 
     with ThreadPoolExecutor(2) as pool:
@@ -244,16 +244,16 @@ CASES = {
 def test_a_small_friction_changes_each_road_as_predicted(case):
     design, index, outputs, conventions = CASES[case]
     system = piecewise(design(0.0))
-    question = with_convention_filters(CONVENTIONS[conventions], system.mechanism, index.question(system.mechanism))
-    way = drive(system, question, CONVENTIONS[conventions])
-    weights = [abs(output.weight) for output in question.outputs]
+    definition = with_convention_filters(CONVENTIONS[conventions], system.mechanism, index.definition(system.mechanism))
+    excitation = random_excitation(system, definition, CONVENTIONS[conventions])
+    weights = [abs(output.weight) for output in definition.outputs]
     for seed in realisation_seeds(0, 0, 2):
-        plain = run(system, way, outputs, question.filters, seed)
+        plain = run(system, excitation, outputs, definition.filters, seed)
         assert plain.status.ok
         rubbing = piecewise(design(2.0))
-        found = run(rubbing, way, outputs, question.filters, seed).power
+        found = run(rubbing, excitation, outputs, definition.filters, seed).power
         change = (np.sqrt(found) - np.sqrt(plain.power)) @ weights
-        assert first_order(rubbing, question, way)([seed])[0] == pytest.approx(change, rel=0.05)
+        assert first_order(rubbing, definition, excitation)([seed])[0] == pytest.approx(change, rel=0.05)
 
 
 @pytest.mark.parametrize("case", CASES)

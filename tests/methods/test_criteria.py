@@ -143,7 +143,7 @@ def criteria(rng: np.random.Generator, mechanism: it.Mechanism) -> list[object]:
 
 def answers(mechanism: it.Mechanism, index: object) -> bool:
     try:
-        linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"])  # type: ignore[attr-defined]
+        linear_problem(mechanism, index.definition(mechanism), CONVENTIONS["exact"])  # type: ignore[attr-defined]
     except InerterError:
         return False
     return True
@@ -160,20 +160,20 @@ def gain(nodal: Nodal, output: str, source: str) -> np.ndarray:
 
 
 def by_quadrature(mechanism: it.Mechanism, index: object) -> float:
-    question = index.question(mechanism)  # type: ignore[attr-defined]
-    arrivals = question.arrivals(mechanism)
+    definition = index.definition(mechanism)  # type: ignore[attr-defined]
+    paths = definition.input_paths(mechanism)
     sizes = []
-    for weighted, passed in zip(question.outputs, question.filters, strict=True):
+    for weighted, passed in zip(definition.outputs, definition.filters, strict=True):
 
         def response(omega, name=weighted.output, passed=passed):
             nodal = Nodal(mechanism, omega)
-            across = np.array([gain(nodal, name, arrival.input) for arrival in arrivals], complex).T
+            across = np.array([gain(nodal, name, path.input) for path in paths], complex).T
             return across if passed is None else across * passed.response(omega)[:, None]
 
-        delays = [arrival.delay for arrival in arrivals]
+        delays = [path.delay for path in paths]
         sizes.append(abs(weighted.weight) * h2_by_quadrature(response, delays, edge=4000.0))
-    together = question.combination is it.Combination.ROOT_OF_SQUARES
-    return question.drive.size * (math.sqrt(sum(x**2 for x in sizes)) if together else sum(sizes))
+    together = definition.combination is it.Combination.ROOT_OF_SQUARES
+    return definition.drive.amplitude_density * (math.sqrt(sum(x**2 for x in sizes)) if together else sum(sizes))
 
 
 def is_damped(mechanism: it.Mechanism) -> bool:
@@ -223,12 +223,12 @@ def test_weighted_comfort_of_a_half_car_and_its_gradient(weighting: str) -> None
     car = paper_half_car(Spring(60e3) | Damper(it.free(500.0, 9e3, "c")), Spring(50e3) | Damper(2e3) - Inerter(90.0))
     index, point = it.RideComfort(ROAD, weighting=weighting), np.array([2000.0])
     fixed = car.with_values({"c": 2000.0}).mechanism()
-    question = index.question(fixed)
-    assert [(w.output, w.weight) for w in question.outputs] == [
+    definition = index.definition(fixed)
+    assert [(w.output, w.weight) for w in definition.outputs] == [
         ("sprung_acceleration", 1.0),
         ("pitch_acceleration", 0.4),
     ]
-    assert question.filters == (weighting_filter(weighting), weighting_filter("We"))
+    assert definition.filters == (weighting_filter(weighting), weighting_filter("We"))
     expected = by_quadrature(fixed, index)
     objective = it.Norm().objective(car, index)
     value, gradient = objective.value_and_gradient(point)
@@ -240,11 +240,11 @@ def test_weighted_comfort_of_a_half_car_and_its_gradient(weighting: str) -> None
 
 def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
     car = paper_half_car(Spring(60e3) | Damper(2e3), Spring(50e3) | Damper(2e3)).mechanism()
-    sick = it.RideComfort(ROAD, weighting="Wf").question(car)
+    sick = it.RideComfort(ROAD, weighting="Wf").definition(car)
     assert [w.output for w in sick.outputs] == ["sprung_acceleration"]
     yaw = replace(car, measures=replace(car.measures, comfort=(it.OutputWeight("front_travel"),)))
     with pytest.raises(PerformanceIndexError, match="weights accelerations"):
-        it.RideComfort(ROAD, weighting="Wk").question(yaw)
+        it.RideComfort(ROAD, weighting="Wk").definition(yaw)
     strut = it.Strut("s", Spring(1e3) | Damper(10.0), upper={"tilt": 1.0}, lower={})
     tilting = it.Mechanism(
         (it.Coordinate("tilt", 1.0, angle=True),),
@@ -252,7 +252,7 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
         measures=it.PerformanceOutputs(comfort=(it.OutputWeight("tilt_acceleration"),)),
     )
     with pytest.raises(PerformanceIndexError, match=r"weights pitch and roll.*'tilt'"):
-        it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").question(tilting)
+        it.RideComfort(it.WhiteForce("f", 1.0), weighting="Wk").definition(tilting)
     for wrong in ("We", "Wx", 3):
         with pytest.raises(PerformanceIndexError, match=r"Wk, Wd"):
             it.RideComfort(ROAD, weighting=wrong)  # type: ignore[arg-type]
@@ -265,7 +265,7 @@ def test_travel_is_that_of_struts_at_one_wheel() -> None:
         tyre_stiffness_front=220e3, tyre_stiffness_rear=220e3, distance_front=1.2, distance_rear=1.5, track_front=1.52,
         track_rear=1.5, front=strut, rear=strut, anti_roll_front=Spring(8e3), anti_roll_rear=Spring(5e3),
     )  # fmt: skip
-    asked = it.SuspensionTravel(ROAD).question(it.Seat(car, 70.0, Spring(8e3) | Damper(300.0)).mechanism())
+    asked = it.SuspensionTravel(ROAD).definition(it.Seat(car, 70.0, Spring(8e3) | Damper(300.0)).mechanism())
     sides = [f"{axle}_{side}_travel" for axle in ("front", "rear") for side in ("left", "right")]
     assert [w.output for w in asked.outputs] == sides
 
@@ -328,7 +328,7 @@ def test_a_stroke_that_integrates_what_comes_to_rest_has_its_norm(seed: int) -> 
         masses = float(rng.uniform(100.0, 400.0)), float(rng.uniform(20.0, 50.0)), float(rng.uniform(1e5, 3e5))
         car = it.QuarterCar(*masses, Spring(k, "k1") - Damper(c, "c") - Spring(other, "k2"))
         index = it.ElementStroke(ROAD, "c")
-        problem = linear_problem(car.mechanism(), index.question(car.mechanism()), CONVENTIONS["exact"])
+        problem = linear_problem(car.mechanism(), index.definition(car.mechanism()), CONVENTIONS["exact"])
         exact, _ = h2_exactly(problem.system(close(problem.descriptor, {})), None)
         found = it.evaluate(car, index, it.Norm())
         assert found.value == pytest.approx(float(exact[0]) * float(problem.weights[0]), rel=1e-9)

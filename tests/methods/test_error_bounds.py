@@ -86,16 +86,16 @@ class Approximate:
 
     of: it.Road
     is_random = True
-    size = property(lambda self: self.of.velocity_intensity)
+    amplitude_density = property(lambda self: self.of.velocity_intensity)
     unit = "m/s"
 
     def excited_mechanism(self, mechanism):
         return mechanism
 
-    def arrivals(self, mechanism):
-        return RoadVelocity(self.of).arrivals(mechanism)
+    def input_paths(self, mechanism):
+        return RoadVelocity(self.of).input_paths(mechanism)
 
-    def stand_ins(self, mechanism):
+    def error_sources(self, mechanism):
         return (ErrorSource("line", 2e-3),)
 
 

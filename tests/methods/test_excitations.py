@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def members(seed, count):
             excitation = random_excitation(rng, mechanism)
             index = it.RandomResponse(random_outputs(rng, mechanism, excitation), excitation)
             try:
-                linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"])
+                linear_problem(mechanism, index.definition(mechanism), CONVENTIONS["exact"])
             except it.MechanismError:
                 continue
             yield mechanism, index
@@ -144,9 +144,9 @@ def test_motions_that_the_ground_carries_are_refused_with_the_ones_to_ask_for():
 
 def simulated(mechanism, index, roads=4):
     """By simulation of the design as it is, though it is linear: what `ExpectedValue` does with friction."""
-    question = index.question(mechanism)
-    system = piecewise(question.drive.excited_mechanism(mechanism))
-    design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
+    definition = index.definition(mechanism)
+    system = piecewise(definition.drive.excited_mechanism(mechanism))
+    design = on_roads(system, definition, CONVENTIONS["exact"], seed=0)
     with ThreadPoolExecutor(1) as pool:
         return mean_on_roads(design, roads, None, pool)
 
@@ -216,7 +216,7 @@ def test_friction_under_all_excitations_by_three_methods():
 
 def excited_rms(excitation):
     """Of the multisine of 0.1 to 500 Hz that has the density of the excitation."""
-    return excitation.size * math.sqrt(2.0 * 500.0)
+    return excitation.amplitude_density * math.sqrt(2.0 * 500.0)
 
 
 def test_gains_of_several_sources_are_refused():
@@ -236,8 +236,8 @@ def test_a_peak_is_where_a_simulated_sine_is_largest(source):
     """The highest of all peaks, against the steady state under a sine of that frequency."""
     car = it.QuarterCar(250.0, 35.0, 180e3, Spring(25e3) | Damper(1500.0)).mechanism()
     found = it.evaluate(car, it.PeakResponse(source, "tyre_load", amplitude=0.3), it.Norm())
-    (arrival,) = it.SingleInput(source).arrivals(car)
-    by_time, squares = ForcedResponse(piecewise(car), arrival, "tyre_load", 0.3)(found.peaks[0].omega)
+    (path,) = it.SingleInput(source).input_paths(car)
+    by_time, squares = ForcedResponse(piecewise(car), path, "tyre_load", 0.3)(found.peaks[0].omega)
     assert squares.status.ok
     assert by_time == pytest.approx(found.value, rel=1e-5)
     assert found.value == found.peaks[0].gain
@@ -342,3 +342,51 @@ def test_the_least_peak_of_a_tuned_mass_damper():
     made = it.Absorber(primary_mass=1.0, primary_stiffness=1.0, mass=0.1, mount=mount, ground=Inerter(0.05))
     found = it.optimise(made, it.PeakResponse("primary_force", "primary_displacement"), it.Norm(), seed=0)
     assert found.value == pytest.approx(least, rel=1e-8)
+
+
+def test_excitations_and_indices_of_the_previous_version_are_read():
+    """Classes with the former names of their attributes give the same values, with a warning for each name."""
+
+    @dataclass(frozen=True)
+    class Push:
+        size: float
+        unit = "N"
+        is_random = True
+
+        def excited_mechanism(self, mechanism):
+            return mechanism
+
+        def arrivals(self, mechanism):
+            return (it.InputPath("sprung_force", "push"),)
+
+        def stand_ins(self, mechanism):
+            return (it.ErrorSource("push", 0.01),)
+
+    @dataclass(frozen=True)
+    class Motion:
+        symbol, title, unit, response = "M1", "motion", "m/s", "motion per force"
+
+        def question(self, mechanism):
+            outputs = (it.OutputWeight("sprung_velocity"),)
+            return it.IndexDefinition(outputs, it.Combination.SUM_OF_RMS, Push(3.0), "m/s")
+
+    strut = it.Spring(20e3) | it.Damper(1e3)
+    car = it.QuarterCar(250.0, 35.0, 150e3, strut)
+    with pytest.warns(DeprecationWarning, match="is now") as warned:
+        found = it.evaluate(car, Motion(), it.Norm())
+    names = {str(one.message).split(";")[0] for one in warned}
+    assert names == {
+        "`Motion.question` is now `definition`",
+        "`Push.arrivals` is now `input_paths`",
+        "`Push.size` is now `amplitude_density`",
+        "`Push.stand_ins` is now `error_sources`",
+    }
+    force = it.RandomResponse({"sprung_velocity": 1.0}, it.WhiteForce("sprung_force", 9.0))
+    assert found.value == it.evaluate(car, force, it.Norm()).value
+    assert found.error_bound == pytest.approx(0.01, rel=1e-3)
+    with pytest.warns(DeprecationWarning, match="`question` is now `definition`"):
+        definition = it.RideComfort(it.Road(roughness=5e-7, speed=25.0)).question(car.mechanism())
+    with pytest.warns(DeprecationWarning, match="`size` is now `amplitude_density`"):
+        assert definition.drive.size == definition.drive.amplitude_density
+    with pytest.warns(DeprecationWarning, match="`arrivals` is now `input_paths`"):
+        assert definition.arrivals(car.mechanism()) == definition.input_paths(car.mechanism())

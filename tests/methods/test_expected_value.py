@@ -33,7 +33,7 @@ from inerter import (
 from inerter.errors import DesignError, PerformanceIndexError
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.objective import Differentiable
-from inerter.methods.out_of_band import on_roads, rest_of
+from inerter.methods.out_of_band import on_roads, out_of_band_contribution
 from inerter.methods.realisations import realisation_seeds
 from inerter.systems.piecewise import piecewise
 
@@ -383,13 +383,13 @@ def assert_near_the_norm(car, linear, index):
 def test_what_lies_outside_the_band_is_uncertain_by_at_most_itself(scale):
     """Also where the linear model of the motion that is found is of no use."""
     system = piecewise(quarter_car(30.0).mechanism())
-    question = J1.question(system.mechanism)
-    design = on_roads(system, question, CONVENTIONS["exact"], seed=0)
+    definition = J1.definition(system.mechanism)
+    design = on_roads(system, definition, CONVENTIONS["exact"], seed=0)
     with ThreadPoolExecutor(1) as pool:
         found = [replace(ran, power=scale * ran.power) for ran in design.runs(0, 2, pool)]
-    lacking = rest_of(design, found)
+    missing = out_of_band_contribution(design, found)
     mean_square = np.mean([ran.power[:1] for ran in found], axis=0)
-    part = float(np.max(np.abs(lacking.power) / (mean_square + lacking.power)))
-    assert lacking.beyond <= part
+    part = float(np.max(np.abs(missing.power) / (mean_square + missing.power)))
+    assert missing.beyond <= part
     if scale < 0.01:
-        assert lacking.beyond == pytest.approx(part - 2.0 * lacking.unseen, rel=1e-3)
+        assert missing.beyond == pytest.approx(part - 2.0 * missing.unseen, rel=1e-3)

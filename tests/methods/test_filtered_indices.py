@@ -34,11 +34,11 @@ def members(seed, count):
         for i, mechanism in enumerate(mechanisms(family, seed, count, 1.0)):
             index = (J1, J3, J5)[i % 3]
             try:
-                question = index.question(mechanism)
-                linear_problem(mechanism, question, CONVENTIONS["exact"])
+                definition = index.definition(mechanism)
+                linear_problem(mechanism, definition, CONVENTIONS["exact"])
             except it.MechanismError:
                 continue
-            yield mechanism, Weighed(index, some_filters(rng, question))
+            yield mechanism, Weighed(index, some_filters(rng, definition))
 
 
 @pytest.mark.parametrize("seed", sampled(range(21), [0], kept=4))
@@ -96,12 +96,12 @@ def test_the_norm_is_the_integral_of_both_responses(case):
     index = {"Wk": Weighed(J1, WK), "one each": Weighed(J1, (WK, band)), "late axle": Weighed(J3, band)}[case]
     values, step = {"c": 6e3, "b": 200.0}, 1e-3
     mechanism = design.mechanism()
-    problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"])
+    problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS["exact"])
 
     def by_quadrature(at):
         total = 0.0
         for weight, name, one in zip(
-            problem.weights, problem.descriptor.outputs, problem.question.filters, strict=True
+            problem.weights, problem.descriptor.outputs, problem.definition.filters, strict=True
         ):
 
             def response(omega, name=name, one=one):

@@ -9,7 +9,7 @@ import pytest
 from campaigns import sampled
 
 import inerter as it
-from inerter.methods.compiled_norm import CompiledQuestion
+from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.exact import h2_exactly
 
@@ -29,13 +29,13 @@ def car(rng, **bars):
 
 
 def compiled(mechanism, index):
-    return CompiledQuestion(linear_problem(mechanism, index.question(mechanism), CONVENTIONS["exact"]))
+    return CompiledNorm(linear_problem(mechanism, index.definition(mechanism), CONVENTIONS["exact"]))
 
 
-def whole(question, point):
+def whole(definition, point):
     """Norms of the whole mechanism: behind filters without rounding, and corrected where these only stand in."""
-    system = question.problem.system(question._close_at(point))
-    return question.problem.correct_norms(system, h2_exactly(system, None)[0])[0]
+    system = definition.problem.system(definition._close_at(point))
+    return definition.problem.correct_norms(system, h2_exactly(system, None)[0])[0]
 
 
 def check(seed):
@@ -43,20 +43,20 @@ def check(seed):
     found = car(rng, anti_roll_front=it.Spring(8e3)).mechanism()
     road = it.Road(5e-7, float(rng.uniform(5.0, 40.0)), FORMS[seed % 3](float(rng.uniform(0.5, 1.5))))
     index = (it.SuspensionTravel if seed % 2 == 0 and seed % 3 < 2 else it.RideComfort)(road)
-    question, point = compiled(found, index), np.exp(rng.uniform(np.log([200.0, 5.0]), np.log([9e3, 500.0])))
-    expected = whole(question, point)
+    definition, point = compiled(found, index), np.exp(rng.uniform(np.log([200.0, 5.0]), np.log([9e3, 500.0])))
+    expected = whole(definition, point)
     assert np.all(np.isfinite(expected))
-    assert question._exact_norms(point) == pytest.approx(expected, rel=1e-12)
-    quick = question._compiled_norms(point[None])[0]
+    assert definition._exact_norms(point) == pytest.approx(expected, rel=1e-12)
+    quick = definition._compiled_norms(point[None])[0]
     sure = np.isfinite(quick)
     assert quick[sure] == pytest.approx(expected[sure], rel=1e-9)
-    return question, point, sure.all()
+    return definition, point, sure.all()
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_halves_have_the_norms_of_the_whole(seed):
-    question, _, sure = check(seed)
-    sizes = [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions]
+    definition, _, sure = check(seed)
+    sizes = [len(one.problem.unfiltered.mechanism.coordinates) for one in definition.single_source_definitions]
     assert sizes == [4, 3]  # bounce, pitch and two wheels; roll and two wheels
     assert sure or seed % 3 == 2
 
@@ -69,10 +69,10 @@ def test_halves_of_many_cars(chunk):
 
 
 def test_slopes_of_halves_are_those_of_the_whole():
-    question, point, _ = check(1)
-    value, gradient = question.value_and_gradient(point)
-    problem = question.problem
-    total = lambda at: float(problem.question.combine(whole(question, at), problem.weights))  # noqa: E731
+    definition, point, _ = check(1)
+    value, gradient = definition.value_and_gradient(point)
+    problem = definition.problem
+    total = lambda at: float(problem.definition.combine(whole(definition, at), problem.weights))  # noqa: E731
     assert value == pytest.approx(total(point), rel=1e-9)
     for i, slope in enumerate(gradient):
         step = 1e-4 * (np.arange(2) == i)
@@ -86,24 +86,26 @@ def test_a_car_with_one_heavier_wheel_stays_whole():
     (wheel,) = (c for c in mechanism.coordinates if c.name == "unsprung_front_left")
     heavier = replace(wheel, inertia=wheel.inertia * (1.0 + 1e-12))
     lopsided = replace(mechanism, coordinates=tuple(heavier if c is wheel else c for c in mechanism.coordinates))
-    question = compiled(lopsided, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
-    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions] == [7, 7]
+    definition = compiled(lopsided, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in definition.single_source_definitions] == [7, 7]
 
 
 def test_a_free_bar_keeps_the_half_that_feels_it():
     """Where both sides move alike nothing moves the bar, and its value makes no difference there."""
     rng = np.random.default_rng(7)
     mechanism = car(rng, anti_roll_front=it.Spring(it.free(1e3, 1e5, name="bar"))).mechanism()
-    question = compiled(mechanism, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
+    definition = compiled(mechanism, it.RideComfort(it.Road(5e-7, 20.0, it.Coherence.first_order(0.3))))
     point = np.array([{"c": 2e3, "b": 50.0, "bar": 9e3}[name] for name in mechanism.free_values()])
-    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in question.single_source_questions] == [4, 3]
-    assert question._exact_norms(point) == pytest.approx(whole(question, point), rel=1e-12)
-    assert question._compiled_norms(point[None])[0] == pytest.approx(whole(question, point), rel=1e-9)
-    _, gradient = question.value_and_gradient(point)
+    assert [len(one.problem.unfiltered.mechanism.coordinates) for one in definition.single_source_definitions] == [4, 3]
+    assert definition._exact_norms(point) == pytest.approx(whole(definition, point), rel=1e-12)
+    assert definition._compiled_norms(point[None])[0] == pytest.approx(whole(definition, point), rel=1e-9)
+    _, gradient = definition.value_and_gradient(point)
     ahead, behind = (
-        whole(question, point * (1 + step * (np.array(list(mechanism.free_values())) == "bar")))
+        whole(definition, point * (1 + step * (np.array(list(mechanism.free_values())) == "bar")))
         for step in (1e-4, -1e-4)
     )
-    weighted = [float(question.problem.question.combine(one, question.problem.weights)) for one in (ahead, behind)]
+    weighted = [
+        float(definition.problem.definition.combine(one, definition.problem.weights)) for one in (ahead, behind)
+    ]
     at = list(mechanism.free_values()).index("bar")
     assert gradient[at] * point[at] == pytest.approx((weighted[0] - weighted[1]) / 2e-4, rel=1e-5)

@@ -1,4 +1,4 @@
-"""Budgets against direct scans and roots of plain evaluations."""
+"""Break-even values against direct scans and roots of plain evaluations."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ def test_another_paper_needs_no_more_than_its_row(
 ) -> None:
     works = {name: f"{__name__}:{name}" for name in WORK}
     one = Paper("one-2031", "One (2031), A table of one number", ("table",), {}, {"seven": "Seven."}, (), **works)
-    monkeypatch.setattr(PAPERS, "_rows", dict(PAPERS))
+    monkeypatch.setattr(PAPERS, "_entries", dict(PAPERS))
     PAPERS.add(one)
     folder = tmp_path / "out"
     told = commands.reproduce(one.name, ("table",), folder, 2, Cluster(), resume=False, force=False, as_json=as_json)

@@ -12,8 +12,8 @@ from synthetic import designs, judged, with_value
 
 import inerter as it
 from inerter.files.study.loading import load_study
+from inerter.files.study.method_labels import method_labels
 from inerter.files.study.running import run_study
-from inerter.files.study.ways import ways
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.index_summary import best_layouts
 
@@ -35,7 +35,7 @@ def with_losses(study, *losses):
 
 def told_apart(results, study):
     """The results with the words for methods that a run of the study gives them."""
-    return results.assign_coords(method_words=("method", list(ways(study).values())))
+    return results.assign_coords(method_words=("method", list(method_labels(study).values())))
 
 
 @pytest.mark.parametrize(
@@ -60,7 +60,7 @@ def told_apart(results, study):
     ],
 )
 def test_methods_are_told_by_what_they_see(study, losses, methods, told):
-    assert list(ways(replace(with_losses(study, *losses), evaluate=methods)).values()) == told
+    assert list(method_labels(replace(with_losses(study, *losses), evaluate=methods)).values()) == told
 
 
 def test_no_name_of_a_method_is_in_an_answer(study):

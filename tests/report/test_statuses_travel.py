@@ -35,7 +35,7 @@ J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)
 K, C, B = it.Spring(60e3, "k"), it.Damper(3e3, "c"), it.Inerter(50.0, "b")
 ELEMENTS = 'k = "60 kN/m"\nc = { from = "500 N s/m", to = "9 kN s/m" }\nb = "50 kg"'
 TEXT = study_text(
-    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nbudgets = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3\n'
+    'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\nbreak_even = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3\n'
     'tolerance = { k = "5 %" }',
     elements=ELEMENTS,
 )
@@ -49,20 +49,20 @@ def car(strut):
     return it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=strut)
 
 
-def worsen(monkeypatch, which=lambda question, mechanism: True):
+def worsen(monkeypatch, which=lambda definition, mechanism: True):
     """Norms of `which` questions say that they are inaccurate, one by one and in bulk."""
     one, many = it.Norm.estimate, it.Norm.estimate_many
 
     def estimate(self, vehicle, index):
         found = one(self, vehicle, index)
         mechanism = vehicle.mechanism()
-        bad = which(index.question(mechanism), mechanism)
+        bad = which(index.definition(mechanism), mechanism)
         return replace(found, status=Status(StatusKind.INACCURATE, "it is so so")) if bad else found
 
     def estimate_many(self, vehicle, indices, points):
         found, mechanism = many(self, vehicle, indices, points), vehicle.mechanism()
         for i, index in enumerate(indices):
-            if which(index.question(mechanism), mechanism):
+            if which(index.definition(mechanism), mechanism):
                 found[:, i] = float("nan")
         return found
 
@@ -70,16 +70,16 @@ def worsen(monkeypatch, which=lambda question, mechanism: True):
     monkeypatch.setattr(it.Norm, "estimate_many", estimate_many)
 
 
-def has_inerter(question, mechanism):
+def has_inerter(definition, mechanism):
     return any(isinstance(e, it.Inerter) for mount in mechanism.mounts() for e in mount.network.elements())
 
 
-def is_about_tyres(question, mechanism):
-    return any("tyre" in output.output for output in question.outputs)
+def is_about_tyres(definition, mechanism):
+    return any("tyre" in output.output for output in definition.outputs)
 
 
-def is_slow(question, mechanism):
-    return question.drive.size < ROAD.velocity_intensity
+def is_slow(definition, mechanism):
+    return definition.drive.amplitude_density < ROAD.velocity_intensity
 
 
 USE = it.Conditions([it.Condition(0.5, road={"speed": 10.0}), it.Condition(0.5, road={"speed": 25.0})])

@@ -178,7 +178,7 @@ def test_the_page_tells_limits_tolerances_and_budgets_where_the_question_is(stud
         "Limits suspension travel at most 9 mm, tyre load at most 1.3 kN",
         "Tolerances k ± 5 %, c ± 15 %",
         "Best at the 95 % quantile",
-        "Budgets of b",
+        "Break-even values of b",
     ):
         assert told in question
 

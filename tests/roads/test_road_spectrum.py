@@ -54,7 +54,7 @@ BAD = {
     "no profile": (lambda: it.road_spectrum([1.0, 2.0]), "requires a Profile"),
     "a band upside down": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), 2.0, 1.0), "lowest < highest"),
     "no sampling": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), sampling="point"), "sampling.*got 'point'"),
-    "no track": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), track="right"), "unknown track 'right'"),
+    "no track": (lambda: it.road_spectrum(made(1, 1e-5, 2.0, 100.0), side="right"), "unknown track 'right'"),
 }
 
 
@@ -157,3 +157,15 @@ def test_degrees_of_freedom_are_those_of_the_scatter_of_welchs_method(segments, 
     means = density[:, 20 : 20 + lines].mean(axis=1)
     expected = 2.0 / float(_freedom(segments * size, size, np.array(float(lines))))
     assert np.var(means) / np.mean(means) ** 2 == pytest.approx(expected, rel=0.12)
+
+
+def test_the_side_had_another_name():
+    made_of_two = it.Profile([0.0, 1.0, 2.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1])
+    with pytest.warns(DeprecationWarning, match="`track` is now `side`"):
+        old = made_of_two.to_signal(9.0, track="right")
+    assert old(0.1) == made_of_two.to_signal(9.0, side="right")(0.1)
+    with pytest.warns(DeprecationWarning, match="`track` is now `side`"):
+        road = it.RoadInput("r", track="left")
+    assert road == it.RoadInput("r", side="left")
+    with pytest.warns(DeprecationWarning, match="`track` is now `side`"):
+        assert road.track == "left"

@@ -168,11 +168,11 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "a held motion on a friction": (
         lambda: rig(it.Friction(20.0) - it.Spring(1e4), displacement=table(hold="zero")),
-        r"Friction or a gap moves with 'displacement' without a mass between",
+        r"A friction element or a gap moves with 'displacement' without a mass between",
     ),
     "a held motion on a gap": (
         lambda: rig(it.Gap(1e-3) - it.Spring(1e4), displacement=table(hold="zero")),
-        r"Friction or a gap moves with 'displacement' without a mass between.*hold=\"cubic\" or \"linear\"",
+        r"A friction element or a gap moves with 'displacement' without a mass between.*hold=\"cubic\" or \"linear\"",
     ),
     "a bent motion on an inerter": (
         lambda: rig(it.Inerter(3.0), displacement=table(hold="linear")),

@@ -19,7 +19,7 @@ def test_from_a_thousandth_to_a_hundred_times_the_present_value(kept: float, tmp
     """J1^2 goes as c kt + k^2 (m + mu) / c: of two dampings alike at k = sqrt(kt c c' / (m + mu))."""
     expected = math.sqrt(150e3 * 1e3 * 3e3 / 285.0)
     elements = f'k = "{expected * kept!r} N/m"\nc = "3 kN s/m"\nlight = "1 kN s/m"'
-    settings = 'indices = ["J1"]\nbudgets = ["k"]\nbaseline = "usual"\nevaluate = ["statistical-linearisation"]'
+    settings = 'indices = ["J1"]\nbreak_even = ["k"]\nbaseline = "usual"\nevaluate = ["statistical-linearisation"]'
     layouts = 'usual = "k | light"\nfirm = "k | c"'
     path = tmp_path / "study.toml"
     path.write_text(study_text(settings, elements=elements, layouts=layouts), encoding="utf-8")

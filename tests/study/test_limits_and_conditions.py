@@ -304,7 +304,7 @@ def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study
     """One condition of all the time is the study of the numbers in it."""
     elements = 'k = "60 kN/m"\nc = "3 kN s/m"\nc2 = "6 kN s/m"\nb = "300 kg"\nf = "5 N"'
     layouts = 'S1 = "k | c"\nS3 = "k | c2 - (b | f)"'
-    settings = 'indices = ["J1"]\nevaluate = ["statistical-linearisation"]\nbudgets = ["f"]'
+    settings = 'indices = ["J1"]\nevaluate = ["statistical-linearisation"]\nbreak_even = ["f"]'
     one = '[[conditions]]\nvehicle.sprung_mass = "320 kg"\n'
     over = run_study(load(settings, one, elements, layouts=layouts), tmp_path / "over")
     study = load(settings, "", elements, layouts=layouts)

@@ -290,11 +290,26 @@ def test_settings_of_methods_arrive_and_survive_being_written(load, tmp_path, ro
     study = load(
         GOOD,
         *FRICTION,
-        asked(f'{roads}\nforce = "1.5 kN"\nbudgets = ["f", "b"]\nbaseline = "S1"', "J5"),
+        asked(f'{roads}\nforce = "1.5 kN"\nbreak_even = ["f", "b"]\nbaseline = "S1"', "J5"),
     )
     assert (study.realisations, study.relative_error) in ((12, None), (None, 0.003))
     assert (study.settings["force"], study.budgets, study.methods) == (1500.0, ("f", "b"), ("norm", "expected-value"))
     assert_survives(study, tmp_path)
+
+
+def test_the_former_name_of_a_key_is_read_and_the_new_one_is_written(load, tmp_path):
+    settings = ('break_even = ["b"]', 'budgets = ["b"]')
+    new, old = (load(GOOD, asked(f'baseline = "S1"\n{line}')) for line in settings)
+    assert new.budgets == ("b",)
+    assert new == old
+    assert write_resolved(new) == write_resolved(old)
+    assert_survives(old, tmp_path)
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, asked("\n".join(['baseline = "S1"', *settings])))
+    assert "study.budgets: given together with break_even" in str(caught.value)
+    with pytest.raises(StudyError) as caught:
+        load(GOOD, asked('baseline = "S1"\nbudgets = ["zz"]'))
+    assert 'study.budgets: "zz"' in str(caught.value)
 
 
 @given(st.lists(st.floats(1e-49, 1e49), min_size=7, max_size=7), st.integers(0, 2**63 - 1))
@@ -509,37 +524,37 @@ BAD = {
         ["no answer for a gap, as in S2", '"expected-value"'],
     ),
     "budget unknown": (
-        [asked('budgets = ["bb"]')],
-        "study.budgets",
+        [asked('break_even = ["bb"]')],
+        "study.break_even",
         ['"bb"', "not in [elements]", 'Did you mean "b"?'],
     ),
-    "budget twice": ([asked('budgets = ["b", "b"]')], "study.budgets", ['"b"', "more than once"]),
-    "budget word": ([asked('budgets = "b"')], "study.budgets", ['"b"', "expected a list"]),
+    "budget twice": ([asked('break_even = ["b", "b"]')], "study.break_even", ['"b"', "more than once"]),
+    "budget word": ([asked('break_even = "b"')], "study.break_even", ['"b"', "expected a list"]),
     "budget of the baseline": (
-        [asked('budgets = ["b"]\nbaseline = "S2"')],
-        "study.budgets",
+        [asked('break_even = ["b"]\nbaseline = "S2"')],
+        "study.break_even",
         ["no layout but the baseline has b"],
     ),
-    "budget alone": ([('S1 = "k | c"', ""), asked('budgets = ["b"]')], "study.budgets", ["only one layout"]),
+    "budget alone": ([('S1 = "k | c"', ""), asked('break_even = ["b"]')], "study.break_even", ["only one layout"]),
     "budget and sweep": (
-        [asked('budgets = ["b"]\nbaseline = "S1"\nsweep = { k = ["1 N/m", "2 N/m"] }')],
-        "study.budgets",
+        [asked('break_even = ["b"]\nbaseline = "S1"\nsweep = { k = ["1 N/m", "2 N/m"] }')],
+        "study.break_even",
         ["together with a sweep"],
     ),
     "sweep that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nsweep = { f = ["10 N", "20 N"] }')],
         "study.sweep.f",
-        ["f is a friction", '"expected-value"'],
+        ["f is a friction element", '"expected-value"'],
     ),
     "condition that norm cannot see": (
         [*FRICTION, ("[study]", '[[conditions]]\nf = "20 N"\n[study]')],
         '"conditions[1]".f',
-        ["f is a friction", '"expected-value"'],
+        ["f is a friction element", '"expected-value"'],
     ),
     "budget that norm cannot see": (
-        [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbudgets = ["f"]')],
-        "study.budgets",
-        ["f is a friction", '"expected-value"'],
+        [*FRICTION, (INDICES, INDICES + '\nbaseline = "S1"\nbreak_even = ["f"]')],
+        "study.break_even",
+        ["f is a friction element", '"expected-value"'],
     ),
     "conventions": ([(INDICES, INDICES + '\nconventions = "paper"')], "study.conventions", ['"paper2008"']),
     "seed": ([(INDICES, INDICES + "\nseed = -1")], "study.seed", ["got -1", "whole number"]),

@@ -120,7 +120,7 @@ def test_a_coherence_is_that_of_python_to_the_last_digit(load, form):
 @pytest.mark.parametrize("track", ["", "left", "right"])
 def test_a_profile_is_its_road_of_waviness_two(load, tmp_path, track):
     study = load('profile = "road.csv"' + (f'\ntrack = "{track}"' if track else ""))
-    spectrum = it.road_spectrum(it.read_profile(tmp_path / "road.csv"), track=track)
+    spectrum = it.road_spectrum(it.read_profile(tmp_path / "road.csv"), side=track)
     assert study.road == spectrum.road(25.0)
     assert study.road.shape == spectrum.road(25.0).shape
     case = next(iter(cases(study)))
@@ -352,7 +352,7 @@ def test_a_simulation_drives_over_both_measured_tracks(tmp_path):
     assert np.array_equal(run["roll_acceleration"], alone["roll_acceleration"])
     assert run.rms("roll_acceleration") > 0.0
     measured = simulation(tmp_path, 'profile = "road.csv"\ntrack = "right"', 'kind = "multisine"')
-    assert measured.roughness == it.road_spectrum(it.read_profile(path), track="right").road(1.0).roughness
+    assert measured.roughness == it.road_spectrum(it.read_profile(path), side="right").road(1.0).roughness
     assert path in measured.inputs
 
 

@@ -11,7 +11,7 @@ from filtered import iso_2631_wk, random_filter
 import inerter as it
 from inerter import Filter, LinearSystem
 from inerter.errors import LinearSystemError, PerformanceIndexError
-from inerter.indices.question import Combination, IndexDefinition
+from inerter.indices.definition import Combination, IndexDefinition
 from inerter.vehicle.mechanism import OutputWeight
 
 # Frequency [Hz] and factor of Wk, ISO 2631-1:1997, Table 3
@@ -104,19 +104,19 @@ def test_what_is_no_filter_is_refused_in_a_sentence(case):
     assert "\n" not in str(caught.value)
 
 
-def question(outputs, passed):
+def definition(outputs, passed):
     return IndexDefinition(outputs, Combination.SUM_OF_RMS, it.Road(1e-6, 20.0), "N", filter=passed)
 
 
 def test_a_question_takes_a_filter_for_all_outputs_or_one_for_each():
     two, one = (OutputWeight("a"), OutputWeight("b")), Filter([1.0], [1.0, 3.0])
-    assert question(two, None).filters == (None, None)
-    assert question(two, one).filters == (one, one)
-    assert question(two, (None, one)).filters == (None, one)
-    assert question(two, LinearSystem([[-3.0]], [[1.0]], [[1.0]], [[0.0]])).filters == (one, one)
+    assert definition(two, None).filters == (None, None)
+    assert definition(two, one).filters == (one, one)
+    assert definition(two, (None, one)).filters == (None, one)
+    assert definition(two, LinearSystem([[-3.0]], [[1.0]], [[1.0]], [[0.0]])).filters == (one, one)
     with pytest.raises(PerformanceIndexError, match="1 filters for 2 outputs"):
-        question(two, (one,))
+        definition(two, (one,))
     with pytest.raises(PerformanceIndexError, match="each output once"):
-        question((OutputWeight("a"), OutputWeight("a")), (one, None))
+        definition((OutputWeight("a"), OutputWeight("a")), (one, None))
     with pytest.raises(LinearSystemError, match=r"Filter\(numerator, denominator\) or a LinearSystem"):
-        question(two, "Wk")
+        definition(two, "Wk")

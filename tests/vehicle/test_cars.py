@@ -22,7 +22,7 @@ from inerter import (
     state_space,
 )
 from inerter.errors import MechanismError
-from inerter.indices.question import Combination
+from inerter.indices.definition import Combination
 from inerter.systems.piecewise import piecewise
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
@@ -103,12 +103,12 @@ def test_free_values_of_a_mechanism_include_its_tyres():
 
 
 def test_pitch_counts_in_comfort_with_the_mean_lever():
-    question = RideComfort(Road(5e-7, 25.0)).question(paper_half_car(k | c, k | c).mechanism())
-    assert [(o.output, o.weight) for o in question.outputs] == [
+    definition = RideComfort(Road(5e-7, 25.0)).definition(paper_half_car(k | c, k | c).mechanism())
+    assert [(o.output, o.weight) for o in definition.outputs] == [
         ("sprung_acceleration", 1.0),
         ("pitch_acceleration", pytest.approx(1.02)),  # (0.775 + 1.265) / 2, Wang and Su (2008)
     ]
-    assert question.combination is Combination.SUM_OF_RMS
+    assert definition.combination is Combination.SUM_OF_RMS
 
 
 def test_the_road_velocity_of_the_paper():

@@ -159,7 +159,7 @@ def test_a_bump_under_the_left_wheels_rolls_the_body_to_the_right() -> None:
 
 def test_roads_say_where_they_are() -> None:
     roads = {road.name: road for road in halves("series")[0].mechanism().roads}
-    assert [(r.distance, r.track) for r in roads.values()] == [(0, "left"), (0, "right"), (2.7, "left"), (2.7, "right")]
+    assert [(r.distance, r.side) for r in roads.values()] == [(0, "left"), (0, "right"), (2.7, "left"), (2.7, "right")]
 
 
 def test_a_value_in_a_strut_is_one_value_left_and_right() -> None:
@@ -199,5 +199,5 @@ def test_a_track_is_left_or_right() -> None:
             (it.Coordinate("a", 1.0),),
             (),
             (it.Tyre("t", it.Spring(1.0), {"a": 1.0}, "r"),),
-            (it.RoadInput("r", track="middle"),),
+            (it.RoadInput("r", side="middle"),),
         )

@@ -1,4 +1,4 @@
-"""Whatever an executor does to pieces and results, a run ends with right numbers or a sentence."""
+"""Whatever an executor does to chunks and results, a run ends with right numbers or a sentence."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import inerter as it
 from inerter.cli import cluster as of_command
 from inerter.cli.main import call
 from inerter.errors import DesignError, InerterError, WorkError
-from inerter.work.pieces import ChunkResult, Piece
+from inerter.work.chunks import Chunk, ChunkResult
 from inerter.work.pool import Pool
 from inerter.work.running import map_items, running_on
 
@@ -33,7 +33,7 @@ Call = Callable[..., Any]
 class Faulty(Executor):
     """Calls at once, and does some of the calls in a wrong way: those whose number `when` picks."""
 
-    def __init__(self, fault: Callable[[Faulty, Call, Any, Piece[Any]], Any], when: Callable[[int], bool]) -> None:
+    def __init__(self, fault: Callable[[Faulty, Call, Any, Chunk[Any]], Any], when: Callable[[int], bool]) -> None:
         self.fault, self.when, self.calls = fault, when, 0
         self.before: Any = None
 
@@ -42,7 +42,7 @@ class Faulty(Executor):
         future: Future[Any] = Future()
         try:
             found = self.fault(self, call, *args) if self.when(self.calls) else call(*args)
-            if isinstance(found, ChunkResult) and found.piece == args[1].number:
+            if isinstance(found, ChunkResult) and found.chunk == args[1].number:
                 self.before = found
             future.set_result(found)
         except Exception as error:
@@ -50,50 +50,50 @@ class Faulty(Executor):
         return future
 
 
-def earlier(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    """The piece before this once more, and this one lost."""
+def earlier(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    """The chunk before this once more, and this one lost."""
     return self.before
 
 
-def shortened(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    return call(work, replace(piece, items=piece.items[:-1]))
+def shortened(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    return call(work, replace(chunk, items=chunk.items[:-1]))
 
 
-def lengthened(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    return call(work, replace(piece, items=(*piece.items, piece.items[0])))
+def lengthened(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    return call(work, replace(chunk, items=(*chunk.items, chunk.items[0])))
 
 
-def cut_off(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    found = call(work, piece)
+def cut_off(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    found = call(work, chunk)
     return replace(found, results=found.results[1:])
 
 
-def nothing(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
+def nothing(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
     return None
 
 
-def a_list(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    return list(call(work, piece).results)
+def a_list(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    return list(call(work, chunk).results)
 
 
-def relabelled(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
-    """The results of another piece, said to be of this one."""
-    return replace(self.before, piece=piece.number) if self.before else None
+def relabelled(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
+    """The results of another chunk, said to be of this one."""
+    return replace(self.before, chunk=chunk.number) if self.before else None
 
 
 def raising(error: Exception) -> Callable[..., Any]:
-    def fault(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
+    def fault(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
         raise error
 
     fault.__name__ = type(error).__name__
     return fault
 
 
-def without_memory(self: Faulty, call: Call, work: Any, piece: Piece[Any]) -> Any:
+def without_memory(self: Faulty, call: Call, work: Any, chunk: Chunk[Any]) -> Any:
     def greedy(item: Any) -> Any:
         raise MemoryError
 
-    return call(greedy, piece)
+    return call(greedy, chunk)
 
 
 FAULTS = (
@@ -157,7 +157,7 @@ def test_a_run_ends_right_or_with_a_sentence_and_nothing_is_lost(
         assert re.fullmatch(r"[^\n]{20,600}\. Completed results are kept; continue with --resume\.", str(error))
         assert fault.__name__ in NEVER_MENDED or (not when(1) and (when(3) or fault is relabelled))
         again = it.run_study(study, out, resume=True)
-        assert again.computed < 12  # at least the first piece is kept
+        assert again.computed < 12  # at least the first chunk is kept
         assert (out / "summary.csv").read_bytes() == right
         return
     assert "missing" not in {str(one) for one in found.data.status.values.ravel()}

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 from inerter.errors import WorkError
 from inerter.work import cluster
-from inerter.work.pieces import WORTH, ChunkResult, Cutter
+from inerter.work.chunks import WORTH, ChunkResult, Cutter
 from inerter.work.pool import KILLS, Pool, _Start, worker_pool
 from inerter.work.processes import Processes, is_started
 from inerter.work.running import map_items, running_on
@@ -204,25 +204,25 @@ def test_every_item_is_in_one_piece_whatever_comes_back(
 ) -> None:
     cutter, found, numbers = Cutter(iter(range(items)), items), list[int](), set[int]()
     for step in count():
-        piece = cutter.take(slots) or cutter.take_alone()
-        if piece is None:
+        chunk = cutter.take(slots) or cutter.take_alone()
+        if chunk is None:
             break
-        assert piece.number not in numbers
-        numbers.add(piece.number)
-        if deaths >> (step % 31) & 1 and piece.deaths < KILLS:
-            cutter.back(piece, 1)
+        assert chunk.number not in numbers
+        numbers.add(chunk.number)
+        if deaths >> (step % 31) & 1 and chunk.deaths < KILLS:
+            cutter.back(chunk, 1)
         else:
-            assert piece.alone == (piece.deaths >= 2)
-            cutter.learn(piece, paces[step % len(paces)] * len(piece.items))
-            found += piece.items
+            assert chunk.alone == (chunk.deaths >= 2)
+            cutter.learn(chunk, paces[step % len(paces)] * len(chunk.items))
+            found += chunk.items
     assert sorted(found) == list(range(items))
 
 
 def test_pieces_become_as_large_as_they_are_worth() -> None:
     cutter, sizes = Cutter(iter(range(10**6)), 10**6), list[int]()
-    while piece := cutter.take(2):
-        cutter.learn(piece, 1e-3 * len(piece.items))
-        sizes.append(len(piece.items))
+    while chunk := cutter.take(2):
+        cutter.learn(chunk, 1e-3 * len(chunk.items))
+        sizes.append(len(chunk.items))
     assert 0.9 * WORTH < 1e-3 * max(sizes) <= WORTH
     assert len(sizes) < 1.1 * 10**6 * 1e-3 / WORTH
     assert sizes[-1] == 1  # towards the end

@@ -194,7 +194,7 @@ def break_even(study: Study, body: Body) -> Answer:
     design = one_design(study, body)
     baseline = baseline_of(study, body, [])
     if baseline is None:
-        raise DesignError("A budget needs a baseline: a second layout, or `baseline` in the request.")
+        raise DesignError("A break-even value needs a baseline: a second layout, or `baseline` in the request.")
     method = body.get("method") or budget_method(study)
     index, element = required_value(body, "index"), required_value(body, "parameter")
     found = element_break_even(study, design.vehicle, baseline.vehicle, index, element, study.method(method))

@@ -87,7 +87,7 @@ class QuantityBody(Body):
 
 
 class Quantities(Body):
-    """Several of them."""
+    """Several texts or values, as in `QuantityBody`."""
 
     items: Annotated[list[QuantityBody], Field(max_length=10_000)]
 

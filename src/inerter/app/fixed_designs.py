@@ -13,7 +13,7 @@ from inerter.errors import DesignError
 from inerter.files.study.study import Study
 
 # keys of [study] that ask for more than the value of a design
-_SEARCH = ("optimise", "budgets", "sweep", "subject_to", "trade_off", "points")
+_SEARCH = ("optimise", "break_even", "budgets", "sweep", "subject_to", "trade_off", "points")
 
 
 def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequence[Design]) -> dict[str, Any]:

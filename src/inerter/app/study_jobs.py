@@ -39,7 +39,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     document = dict(body["study"])
     if not isinstance(asked := document.get("study"), Mapping):
         raise StudyError("A sweep needs a study document with a section [study].")
-    settings = {key: value for key, value in asked.items() if key != "budgets"}
+    settings = {key: value for key, value in asked.items() if key not in ("break_even", "budgets")}
     if body.get("sweep"):
         settings["sweep"] = body["sweep"]
     if body.get("indices"):
@@ -63,7 +63,7 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
         draw_study(result.data, into / FIGURES)
         write_report(result.data, study, into / FIGURES, into / REPORT, result.answers)
 
-    def on_part_done(count: int, total: int, last: PartResult | None, not_ok: int) -> None:
+    def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
         done[0] = count
         tell(count, total, last.name if last else "")
 

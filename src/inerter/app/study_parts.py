@@ -25,7 +25,10 @@ def parts_of_document(document: Document) -> dict[str, Any]:
         ],
         "layouts": {name: {"elements": own, "free": draft.free[name]} for name, own in draft.layouts.items()},
         "elements": {
-            name: {"kind": kinds.get(name), "layouts": [layout for layout, used in draft.used.items() if name in used]}
+            name: {
+                "kind": kinds.get(name),
+                "layouts": [layout for layout, used in draft.elements_by_layout.items() if name in used],
+            }
             for name in known
         },
         "numbers": [_number(number) for number in draft.numbers],

@@ -47,8 +47,8 @@ def _of_method(name: str) -> Iterator[Any]:
     for symbol in INDICES:
         try:
             method = kind()
-            question = make_index(symbol, Road(roughness=5e-7, speed=25.0), {}).question(car)
+            definition = make_index(symbol, Road(roughness=5e-7, speed=25.0), {}).definition(car)
             if isinstance(method, MethodWithKernels):
-                yield from method.kernels(question, search=searches(name))
+                yield from method.kernels(definition, search=searches(name))
         except (InerterError, TypeError):  # what needs settings is compiled when it is called
             continue

@@ -59,11 +59,11 @@ def run(
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
 
     kept = _continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
-    items = " and ".join(["designs", *(task.key for task in tasks() if task.parts(loaded))])
+    items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
         workers(cluster, jobs) as executor,
-        progress(study.stem, items, executor, _pace(loaded)) as shown,
+        progress(items, executor, _pace(loaded)) as shown,
     ):
         result = run_study(
             loaded,
@@ -96,7 +96,8 @@ def run(
 def _pace(study: Study) -> Pace:
     """Estimator of the remaining time of a study, initially weighted by the design variables of each layout."""
     free = {name: len(study.design(name).free_values()) if study.optimise else 1 for name in study.layouts}
-    return Pace(free, study.indices, cases(study).points)
+    parts = {part.name: task.key for task in tasks() for part in task.parts(study)}
+    return Pace(free, study.indices, cases(study).points, parts)
 
 
 def papers() -> None:
@@ -128,7 +129,7 @@ def reproduce(
     parts = (word for part in only for word in ("--only", part))
     kept = _continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
     settings = {"jobs": processes, "resume": resume, "force": force}
-    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps(name) as callback:
+    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps() as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     _say(f"report: {folder / REPORT}")
     print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
@@ -154,10 +155,10 @@ def _processes(jobs: int | None) -> int:
 
 def _report_failures(result: StudyResult) -> None:
     """Report designs whose status is not ok on stderr."""
-    for line in islice(result.failing(), _MOST):
+    for line in islice(result.iterate_failures(), _MOST):
         _say(line)
-    if result.not_ok > _MOST:
-        _say(f"and {result.not_ok - _MOST} more like these; {result.folder / SUMMARY} lists all")
+    if result.n_failures > _MOST:
+        _say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")
 
 
 def _say(message: str) -> None:

@@ -1,9 +1,10 @@
-"""Remaining time of the designs of a study, estimated from finished designs and from steps of running ones."""
+"""Remaining time of a study, estimated from finished designs and parts of tasks, and from steps of running ones."""
 
 from __future__ import annotations
 
 import math
 import time
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -14,37 +15,40 @@ _POWER = 2.5  # of the number of free values, with which the work on a design ri
 _KNOWN = 0.2  # share of a design that must be done for the time of all of it to be known
 _SURE = 0.5, 1.6  # times what is expected, between which the time left lies: the first starts of a design take longest
 _UNSURE = 1.0 / 3.0, 3.0  # the same where designs of a kind are left that is not known
-_EARLY, _EARLY_UNSURE = 2.0, 10.0  # seconds before which nothing is told, in the two cases
-Kind = tuple[str, str]  # of designs that are alike: layout and index
+_EARLY, _EARLY_UNSURE = 10.0, 30.0  # seconds before which no estimate is given, in the two cases
+Kind = tuple[str, str]  # of designs that are alike: layout and index; of parts of a task: "" and its key
 
 
 @dataclass
 class Pace:
     """Model of the time that designs take: a product of one factor by layout and one by index.
 
-    `free` has the number of free values of each layout, by which one is judged of which nothing is done; `each` is how
-    many designs there are of each layout and index. Of the time left a range is told, since those that are left may be
-    others than those that are done.
+    `free` is the number of free values of each layout, on which the time of a design is assumed to depend before one of
+    its kind has been done; `each` is the number of designs for each layout and index. `tasks` has the key of the task
+    for each part of a task, by name: their time is that of finished parts of the same task, and before there is one, no
+    remaining time is given. The remaining time is a range, since what remains may differ from what has been done.
     """
 
     free: Mapping[str, int]
     indices: Sequence[str] = ("",)
     each: int = 1
-    left_of: dict[Kind, int] = field(default_factory=dict)  # designs
-    took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs
+    tasks: Mapping[str, str] = field(default_factory=dict)
+    left_of: dict[Kind, int] = field(default_factory=dict)  # designs or parts
+    took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs or parts
     parts: dict[str, tuple[ProgressStep, float]] = field(default_factory=dict)  # under way, and since when
     begun: float | None = None
     last: float = 0.0
 
     def begin(self, kept: int) -> None:
-        """Start the clock, with the first `kept` designs done in an earlier run."""
+        """Start the clock, with the first `kept` designs and parts done in an earlier run."""
         self.begun = self.last = time.monotonic()
-        for kind in ((layout, index) for layout in self.free for index in self.indices):
-            self.left_of[kind] = self.each - min(kept, self.each)
-            kept = max(kept - self.each, 0)
+        counts = {(layout, index): self.each for layout in self.free for index in self.indices}
+        for kind, count in (counts | Counter(("", key) for key in self.tasks.values())).items():
+            self.left_of[kind] = count - min(kept, count)
+            kept = max(kept - count, 0)
 
     def finish(self, layout: str, index: str, count: int) -> None:
-        """Record `count` further designs as done, the last of which is of that layout and index."""
+        """Record `count` further designs, or parts of a task, as done; the last of them is of that `Kind`."""
         now, kind = time.monotonic(), (layout, index)
         if kind in self.left_of:
             took = self.took.setdefault(kind, [0.0, 0.0])
@@ -82,14 +86,17 @@ class Pace:
             kind = self._kind(name)
             if kind in self.left_of:
                 known.setdefault(kind, (now - self.parts[name][1]) / shares[name])
-        all_known = all(kind in known for kind, count in self.left_of.items() if count)
-        if self.begun is None or now - self.begun < (_EARLY if all_known else _EARLY_UNSURE) or not known:
+        unknown = [kind for kind, count in self.left_of.items() if count and kind not in known]
+        of_designs = {kind: seconds for kind, seconds in known.items() if kind[0]}
+        if self.begun is None or now - self.begun < (_EARLY_UNSURE if unknown else _EARLY) or not known:
             return None
-        each = self._times(known)
-        whole = sum(each[kind] * count for kind, count in self.left_of.items())
+        if any(not layout for layout, _ in unknown) or (unknown and not of_designs):
+            return None  # without a basis
+        each = known | (self._times(of_designs) if of_designs else {})
+        whole = sum(each[kind] * count for kind, count in self.left_of.items() if count)
         whole -= sum(each.get(self._kind(name), 0.0) * share for name, share in shares.items())
         left = max(whole / max(len(self.parts), 1), *ends.values(), 0.0)
-        low, high = _SURE if all_known else _UNSURE
+        low, high = _UNSURE if unknown else _SURE
         return left * low, left * high
 
     def _times(self, known: Mapping[Kind, float]) -> dict[Kind, float]:
@@ -104,13 +111,16 @@ class Pace:
             for layout in by_layout:
                 off = [r - by_index[kind[1]] for kind, r in rest.items() if kind[0] == layout]
                 by_layout[layout] = sum(off) / len(off) if off else mean
-        fitted = {k: math.exp(self._expected_log_time(k) + by_layout[k[0]] + by_index[k[1]]) for k in self.left_of}
+        designs = [kind for kind in self.left_of if kind[0]]
+        fitted = {k: math.exp(self._expected_log_time(k) + by_layout[k[0]] + by_index[k[1]]) for k in designs}
         return fitted | {kind: seconds for kind, seconds in known.items() if kind in fitted}
 
     def _expected_log_time(self, kind: Kind) -> float:
         return _POWER * math.log(max(self.free[kind[0]], 1))
 
     def _kind(self, name: str) -> Kind:
-        """The kind of a design by its name."""
+        """The kind of a design, or of a part of a task, by its name."""
+        if name in self.tasks:
+            return ("", self.tasks[name])
         names = ((kind, " ".join(kind).strip()) for kind in self.left_of)
         return next((kind for kind, own in names if name == own or name.startswith(f"{own} at ")), ("", ""))

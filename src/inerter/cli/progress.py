@@ -22,11 +22,12 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from inerter.cli.pace import Pace
+from inerter.cli.pace import Kind, Pace
 from inerter.cli.pulse import Pulse, display, pulse
 from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
+from inerter.files.study.tasks import tasks
 from inerter.formatting import format_number
 from inerter.kernels.prepare import ProgressCallback
 from inerter.work.cluster import slots
@@ -44,25 +45,24 @@ class ProgressCallbacks(NamedTuple):
 class _Study:
     """State of progress of a study, and its description in words."""
 
-    what: str
     items: str
     executor: Executor | None
     pace: Pace
     done: int = 0
     total: int = 0
     kept: int = 0  # done in an earlier run
-    not_ok: int = 0
+    n_failures: int = 0
     begun: float | None = None
     compiling: str = ""
 
-    def count(self, done: int, total: int, last: PartResult | None, not_ok: int) -> None:
+    def count(self, done: int, total: int, last: PartResult | None, n_failures: int) -> None:
         """Take note of what is done."""
         if self.begun is None:
             self.begun, self.kept = time.monotonic(), done
             self.pace.begin(done)
         elif last is not None:
-            self.pace.finish(last.layout, last.index if isinstance(last, Outcome) else "", done - self.done)
-        self.done, self.total, self.not_ok, self.compiling = done, total, not_ok, ""
+            self.pace.finish(*_kind_of(last), done - self.done)
+        self.done, self.total, self.n_failures, self.compiling = done, total, n_failures, ""
 
     def begin_kernel(self, title: str, number: int, total: int) -> None:
         """Take note of a kernel that is begun."""
@@ -71,11 +71,11 @@ class _Study:
     def words(self, step: ProgressStep) -> str:
         """State of progress, in one line."""
         if self.begun is None:
-            return f"{self.what}: {self.compiling or step}"
+            return self.compiling or str(step)
         part = self.part()
         rate = f", {format_number(self.rate(), 3)} a second" if self.done > self.kept + 9 else ""
-        count = f"{self.done} of {self.total} {self.items} found{_not_ok(self.not_ok)}{rate}"
-        return f"{self.what}: {count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
+        count = f"{self.done} of {self.total} {self.items} found{_failures_clause(self.n_failures)}{rate}"
+        return f"{count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
 
     def part(self) -> str:
         """The design under way of which most is done, in words."""
@@ -90,13 +90,13 @@ class _Study:
 
 @contextmanager
 def progress(
-    what: str, items: str = "designs", executor: Executor | None = None, pace: Pace | None = None
+    items: str = "designs", executor: Executor | None = None, pace: Pace | None = None
 ) -> Iterator[ProgressCallbacks]:
     """Callbacks that show how far the work is.
 
-    `items` says what there is to find, `executor` who looks for it, `pace` how much work the designs are.
+    `items` names what is to be found, `executor` is where it is computed, and `pace` estimates the remaining time.
     """
-    study = _Study(what, items, executor, Pace({}) if pace is None else pace)
+    study = _Study(items, executor, Pace({}) if pace is None else pace)
     with _on_terminal(study) if sys.stderr.isatty() else _in_lines(study) as shown:
         yield shown
 
@@ -106,17 +106,17 @@ def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
     """A line when designs are begun, one when all are found, and one whenever it was silent for long."""
     with pulse(study.words, study.pace.take) as printer:
 
-        def show(done: int, total: int, last: PartResult | None, not_ok: int) -> None:
-            study.count(done, total, last, not_ok)
+        def show(done: int, total: int, last: PartResult | None, n_failures: int) -> None:
+            study.count(done, total, last, n_failures)
             if last is None and done < total:
                 kept = f", {done} of them done before" if done else ""
-                printer.say(f"{study.what}: {total} {study.items} to find{kept}")
+                printer.say(f"{total} {study.items} to find{kept}")
             elif last is not None and done == total:
-                printer.say(f"{study.what}: all {total} {study.items} found")
+                printer.say(f"all {total} {study.items} found")
 
         def on_kernel_begin(title: str, number: int, total: int) -> None:
             study.begin_kernel(title, number, total)
-            printer.say(f"{study.what}: {study.compiling}")
+            printer.say(study.compiling)
 
         yield ProgressCallbacks(show, on_kernel_begin)
 
@@ -126,7 +126,7 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
     """A bar, which moves."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(study.what, total=None)
+        task = bar.add_task("preparing", total=None)
 
         def update(step: ProgressStep) -> None:
             study.pace.take(step)
@@ -135,7 +135,7 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
                 bar.update(task, description=words)
                 return
             parts = sum(one.share or 0.0 for one, _ in study.pace.parts.values())
-            text = f"{study.what}: {study.part() or study.items}{_not_ok(study.not_ok)}{study.pace.words()}"
+            text = f"{study.part() or study.items}{_failures_clause(study.n_failures)}{study.pace.words()}"
             bar.update(task, completed=study.done + parts, total=study.total, description=text)
 
         with listening(Listener(update, every=0.5)):
@@ -143,54 +143,53 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
 
 
 @contextmanager
-def steps(what: str) -> Iterator[Callable[[str, int, int], None]]:
-    """A callback that shows how far each of several pieces of work is: its name, steps done, and all steps."""
+def steps() -> Iterator[Callable[[str, int, int], None]]:
+    """A callback that shows how far each of several parts of the work is: its name, steps done, and all steps."""
     if not sys.stderr.isatty():
-        pieces = _Pieces(what)
-        with pulse(pieces.words) as printer:
-            pieces.printer = printer
-            yield pieces
+        parts = _PartCounts()
+        with pulse(parts.words) as printer:
+            parts.printer = printer
+            yield parts
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        tasks: dict[str, TaskID] = {}
+        rows: dict[str, TaskID] = {}
 
-        def show(piece: str, done: int, total: int) -> None:
-            if piece not in tasks:
-                tasks[piece] = bar.add_task(f"{what}: {piece}", total=total)
-            bar.update(tasks[piece], completed=done, total=total)
+        def show(part: str, done: int, total: int) -> None:
+            if part not in rows:
+                rows[part] = bar.add_task(part, total=total)
+            bar.update(rows[part], completed=done, total=total)
 
         yield show
 
 
 @dataclass
-class _Pieces:
-    """A line when a piece begins, one when it ends, and one whenever it was silent for long."""
+class _PartCounts:
+    """A line when a part begins, one when it ends, and one whenever it was silent for long."""
 
-    what: str
     counts: dict[str, tuple[int, int]] = field(default_factory=dict)
     printer: Pulse | None = None
 
-    def __call__(self, piece: str, done: int, total: int) -> None:
-        is_new = piece not in self.counts
-        self.counts[piece] = done, total
+    def __call__(self, part: str, done: int, total: int) -> None:
+        is_new = part not in self.counts
+        self.counts[part] = done, total
         if self.printer is None:
             return
         if is_new:
             kept = f", {done} of them done before" if done else ""
-            self.printer.say(f"{self.what}: {piece}, {total} steps{kept}")
+            self.printer.say(f"{part}: {total} steps{kept}")
         elif done == total:
-            self.printer.say(f"{self.what}: {piece} done")
+            self.printer.say(f"{part}: done")
 
     def words(self, step: ProgressStep) -> str:
         """State of the running task: name, progress, and step."""
-        under_way = [f"{piece}, {done} of {total}" for piece, (done, total) in self.counts.items() if done < total]
-        return ": ".join((self.what, *under_way[-1:], str(step)))
+        under_way = [f"{part}: {done} of {total} steps" for part, (done, total) in self.counts.items() if done < total]
+        return "; ".join((*under_way[-1:], str(step)))
 
 
 @contextmanager
 def fraction(what: str) -> Iterator[Callable[[float], None]]:
-    """A callback that shows what part of one long piece of work is done."""
+    """A callback that shows what part of one long computation is done."""
     if not sys.stderr.isatty():
         part = [0.0]
 
@@ -217,5 +216,12 @@ def _hands(executor: Executor | None) -> str:
     return "" if executor is None else f", {count} thread{'' if count == 1 else 's'} at work"
 
 
-def _not_ok(count: int) -> str:
+def _kind_of(last: PartResult) -> Kind:
+    """Kind of a design or of an answer for the estimate of the remaining time."""
+    if isinstance(last, Outcome):
+        return last.layout, last.index
+    return "", next((task.key for task in tasks() if isinstance(last, task.answer)), "")
+
+
+def _failures_clause(count: int) -> str:
     return f", {count} not ok" if count else ""

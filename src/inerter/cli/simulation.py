@@ -32,7 +32,7 @@ def simulate(
         if (shown := _figure_window(result, wanted)) is not None:
             draw_simulation(result, into / FIGURES, shown)
 
-    with interruptible(), fraction(file.stem) as callback:
+    with interruptible(), fraction("simulation") as callback:
         result = run_simulation(request, folder, force=force, progress=callback, finish=draw)
     shown = _figure_window(result, wanted)
     print(json.dumps(simulation_data(result), indent=2) if as_json else simulation_text(result, shown))

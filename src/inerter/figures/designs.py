@@ -20,10 +20,10 @@ from inerter.figures.labels import (
     index_title,
     indices,
     layouts,
+    method_label,
     methods,
     one_method,
     title_with_name,
-    way,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 from inerter.formatting import choose_scale, format_percent, typeset
@@ -71,7 +71,7 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
             values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
             at, heights = places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST)
             look: dict[str, Any] = {"linestyle": "", "color": colour(number)}
-            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=way(results, method), **look)
+            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=method_label(results, method), **look)
             _error_bars(ax, row, at, heights, **look)
         ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
         ax.set_xlim(-0.5, len(names) - 0.5)

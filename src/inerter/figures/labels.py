@@ -35,15 +35,19 @@ def one_method(results: xr.Dataset) -> xr.Dataset:
     if "method" not in results.dims:
         return results
     first = results.isel(method=0, drop=True)
-    return first if results.sizes["method"] == 1 else first.assign_attrs(way=way(results, methods(results)[0]))
+    return (
+        first
+        if results.sizes["method"] == 1
+        else first.assign_attrs(method_label=method_label(results, methods(results)[0]))
+    )
 
 
 def by_which(results: xr.Dataset) -> str:
     """Words for titles: the method of the results if the study has several; else empty."""
-    return f", {results.attrs['way']}" if "way" in results.attrs else ""
+    return f", {results.attrs['method_label']}" if "method_label" in results.attrs else ""
 
 
-def way(results: xr.Dataset, method: str) -> str:
+def method_label(results: xr.Dataset, method: str) -> str:
     """Method in words that distinguish it from the others, such as "with friction"; may be empty for a single one."""
     return str(results["method_words"].sel({"method": method}).item())
 

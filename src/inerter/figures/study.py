@@ -26,13 +26,13 @@ from inerter.figures.labels import (
     indices,
     infeasible,
     layouts,
+    method_label,
     methods,
     one_method,
     swept_places,
     swept_words,
     title_with_name,
     trade_off_title,
-    way,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
@@ -132,7 +132,7 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
 
 def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
     words, every, results = " and ".join(swept_words(results)), results, one_method(results)
-    baseline, others = results.attrs["baseline"], " and ".join(way(every, name) for name in methods(every)[1:])
+    baseline, others = results.attrs["baseline"], " and ".join(method_label(every, name) for name in methods(every)[1:])
     for index in indices(results):
         here = results.sel(index=index)
         title = title_with_name(index_title(results, index), index)

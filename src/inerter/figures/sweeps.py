@@ -23,13 +23,13 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     layouts,
+    method_label,
     methods,
     one_method,
     swept_element,
     swept_label,
     swept_scale,
     title_with_name,
-    way,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 from inerter.formatting import choose_scale
@@ -113,7 +113,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
         ax.set_ylim(bottom=max(ax.get_ylim()[0], WORST))
         ax.set_ylabel(IMPROVEMENT)
     for name, line in zip(names, lines, strict=True) if len(names) > 1 else ():
-        left.plot([], [], color="0.4", **line | {"label": way(results, name)})
+        left.plot([], [], color="0.4", **line | {"label": method_label(results, name)})
     sweep.finish(axes)
     return axes
 

@@ -21,7 +21,7 @@ from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, with_element_values
 from inerter.vehicle.rig import Rig
-from inerter.work.pieces import Item, Result
+from inerter.work.chunks import Item, Result
 from inerter.work.running import map_items, over_threads
 
 Matrix = NDArray[np.float64]

@@ -180,7 +180,8 @@ def _validate_model(model: Network, inertance: float | None, shaft_inertance: fl
     labels = {e.label for e in device.elements()}
     if not {_FRICTION, _INERTANCE} <= labels:
         raise IdentificationError(
-            f"The staged protocol requires a friction named f and an inerter named b, got {', '.join(sorted(labels))}."
+            f"The staged protocol requires a friction element named f and an inerter named b, got "
+            f"{', '.join(sorted(labels))}."
         )
     for what, value in (("inertance", inertance), ("inertance of the shaft", shaft_inertance)):
         if value is not None:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import MechanismError, PerformanceIndexError
+from inerter.indices.definition import IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.outputs import of_mount
 from inerter.systems.static_loads import static_tyre_loads
@@ -27,7 +28,9 @@ class DynamicLoadCoefficient:
     unit = ""  # a ratio
     response = "tyre force over static load per road velocity"
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road, names no tyre load, or if loads at rest are not
         known.
         """

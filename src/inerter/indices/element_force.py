@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from inerter.deprecation import RenamedAttribute
 from inerter.field_metadata import choice_field
+from inerter.indices.definition import IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.outputs import check_element, force_of
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
@@ -26,7 +27,9 @@ class ElementForce:
     unit = "N"
     response = "force of an element per road velocity"
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no such element."""
         check_element(mechanism, self.element, force_of)
         return on_road(self, mechanism, (OutputWeight(force_of(self.element)),), "element")

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
+from inerter.deprecation import RenamedAttribute, adopt_renamed
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import Road, RoadShape
@@ -25,11 +26,19 @@ from inerter.vehicle.symmetry import half_of
 _VELOCITY, _ACCELERATION = "m/s", "m/s^2"
 
 
+class FormerNames:
+    """Names that the attributes of excitations had in the previous version."""
+
+    size = RenamedAttribute("amplitude_density")
+    arrivals = RenamedAttribute("input_paths")
+    stand_ins = RenamedAttribute("error_sources")
+
+
 class Excitation(Protocol):
     """Excitation of a mechanism by one or more sources."""
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """Root of the two-sided spectral density of each source, in its unit per root of Hz."""
         ...
 
@@ -47,13 +56,13 @@ class Excitation(Protocol):
         """Mechanism as excited: unchanged, reduced by symmetry, or in coordinates relative to moving ground."""
         ...
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the sources; raises `PerformanceIndexError` if the mechanism has none for it."""
         ...
 
 
 @dataclass(frozen=True)
-class RoadVelocity:
+class RoadVelocity(FormerNames):
     """White-noise velocity of a road, at each wheel with its wheelbase delay."""
 
     road: Road
@@ -61,7 +70,7 @@ class RoadVelocity:
     is_random = True
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """2 pi sqrt(V kappa) [m/s per root of Hz]."""
         return self.road.velocity_intensity
 
@@ -69,11 +78,11 @@ class RoadVelocity:
         """Mechanism on one track, halved if symmetric, without a coherence; unchanged with one."""
         return half_of(mechanism.on_one_track()) if self.road.coherence is None else mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at each road input; with a coherence two, from mean and half difference of the tracks."""
         if not mechanism.roads:
             raise PerformanceIndexError("A road excites a mechanism at its tyres, and this one has none.")
-        if self.road.coherence is not None and any(r.track for r in mechanism.roads):
+        if self.road.coherence is not None and any(r.side for r in mechanism.roads):
             return tuple(self._on_tracks(mechanism, self.road.coherence))
         return tuple(InputPath(r.name, "road", r.distance / self.road.speed) for r in mechanism.roads)
 
@@ -82,20 +91,20 @@ class RoadVelocity:
         ratios = {"tracks in phase": coherence.in_phase(speed), "tracks in anti-phase": coherence.in_anti_phase(speed)}
         parts = {source: None if ratio is None else Filter(*ratio) for source, ratio in ratios.items()}
         for road in mechanism.roads:
-            if not road.track:
+            if not road.side:
                 raise PerformanceIndexError(
                     f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Set "
                     f'track = "left" or "right", or leave the coherence out.'
                 )
             for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
                 if shape is not None:
-                    lever = right if road.track == "right" else 1.0
+                    lever = right if road.side == "right" else 1.0
                     excess = coherence.excess(right, speed)
                     yield InputPath(road.name, source, road.distance / speed, lever, shape, excess=excess)
 
 
 @dataclass(frozen=True)
-class WhiteForce:
+class WhiteForce(FormerNames):
     """A white force on a port: an external force of the mechanism by name, of two-sided `intensity` [N^2/Hz].
 
     For a moment it is in (N m)^2/Hz.
@@ -114,7 +123,7 @@ class WhiteForce:
         check_positive(PerformanceIndexError, "The intensity of a white force", self.intensity, "N^2/Hz")
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
@@ -122,13 +131,13 @@ class WhiteForce:
         """Mechanism as given."""
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the force."""
         return (InputPath(_force(mechanism, self.name), self.name),)
 
 
 @dataclass(frozen=True)
-class GroundAcceleration:
+class GroundAcceleration(FormerNames):
     """White acceleration of the ground, vertically, of two-sided `intensity` [(m/s^2)^2/Hz], which acts on every mass.
 
     Roads lie still on the ground. Motions that stay bounded are those over the ground, `<coordinate>_relative_...`,
@@ -145,7 +154,7 @@ class GroundAcceleration:
         check_positive(PerformanceIndexError, "The intensity of a ground acceleration", self.intensity, "(m/s^2)^2/Hz")
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """Root of the intensity."""
         return math.sqrt(self.intensity)
 
@@ -153,7 +162,7 @@ class GroundAcceleration:
         """Mechanism in coordinates relative to the ground."""
         return mechanism.on_moving_ground()
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the ground acceleration, which acts on all masses."""
         if all(coordinate.angle for coordinate in mechanism.coordinates):
             raise PerformanceIndexError("Ground acceleration acts on masses, and this mechanism has none.")
@@ -161,7 +170,7 @@ class GroundAcceleration:
 
 
 @dataclass(frozen=True)
-class FilteredExcitation:
+class FilteredExcitation(FormerNames):
     """An excitation whose sources pass through a filter before they arrive; its intensity is that before the filter.
 
     `filter` is a `Filter`, or a `LinearSystem` with one input and one output.
@@ -183,9 +192,9 @@ class FilteredExcitation:
         object.__setattr__(self, "filter", shape)
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """Root of the two-sided spectral density of each source, before the filter."""
-        return self._of.size
+        return self._of.amplitude_density
 
     @property
     def unit(self) -> str:
@@ -205,25 +214,26 @@ class FilteredExcitation:
         """Mechanism as excited by the unfiltered excitation."""
         return self._of.excited_mechanism(mechanism)
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the unfiltered excitation, each with the filter in series after its own."""
         shape = as_filter(self.filter)
         assert shape is not None
         return tuple(
-            replace(a, filter=shape if a.filter is None else a.filter.then(shape)) for a in self._of.arrivals(mechanism)
+            replace(a, filter=shape if a.filter is None else a.filter.then(shape))
+            for a in self._of.input_paths(mechanism)
         )
 
-    def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+    def error_sources(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
         """Error sources of approximations in the unfiltered excitation."""
-        return stand_ins_of(self._of, mechanism)
+        return error_sources_of(self._of, mechanism)
 
 
 @dataclass(frozen=True)
-class SingleInput:
+class SingleInput(FormerNames):
     """Single input, for gains: a force, a road's displacement, or `<road>_velocity`."""
 
     name: str
-    size = 1.0
+    amplitude_density = 1.0
     unit = ""
     is_random = False
 
@@ -231,7 +241,7 @@ class SingleInput:
         """Mechanism as given."""
         return mechanism
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input path at the input."""
         for road in mechanism.roads:
             if self.name == f"{road.name}_velocity":
@@ -249,7 +259,9 @@ def as_excitation(given: object, what: str) -> Excitation:
     """
     if isinstance(given, Road):
         return RoadVelocity(given)
-    if isinstance(given, type) or not hasattr(given, "arrivals"):
+    if not isinstance(given, type):
+        adopt_renamed(given, arrivals="input_paths", size="amplitude_density", stand_ins="error_sources")
+    if isinstance(given, type) or not hasattr(given, "input_paths"):
         raise PerformanceIndexError(
             f"{what} needs an excitation, such as Road(roughness=..., speed=...) or WhiteForce(name, intensity=...), "
             f"got {given!r}."
@@ -273,13 +285,13 @@ def road_of(excitation: Excitation) -> Any:
     return of
 
 
-def stand_ins_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+def error_sources_of(excitation: Excitation, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
     """Error sources of r.m.s. values from approximations of the excitation, such as a filter for a coherence.
 
-    An excitation with such errors has a method `stand_ins(mechanism)` of them.
+    An excitation with such errors has a method `error_sources(mechanism)`.
     """
-    stand_ins = getattr(excitation, "stand_ins", None)
-    return () if stand_ins is None else tuple(stand_ins(mechanism))
+    error_sources = getattr(excitation, "error_sources", None)
+    return () if error_sources is None else tuple(error_sources(mechanism))
 
 
 def _force(mechanism: Mechanism, name: str) -> str:

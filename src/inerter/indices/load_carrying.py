@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import quantity
+from inerter.indices.definition import Combination, IndexDefinition
 from inerter.indices.excitation import SingleInput
-from inerter.indices.question import Combination, IndexDefinition
 from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
@@ -37,7 +38,9 @@ class LoadCarrying:
         if self.amplitude is not None:
             check_positive(PerformanceIndexError, "The amplitude of the force on the body", self.amplitude, "N")
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism names no force and displacement for it."""
         measures = mechanism.measures
         if measures.load_input is None or measures.load_output is None:

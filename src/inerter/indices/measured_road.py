@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.formatting import format_number, format_range
-from inerter.indices.excitation import Excitation, FilteredExcitation, stand_ins_of
+from inerter.indices.excitation import Excitation, FilteredExcitation, FormerNames, error_sources_of
 from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import Road, RoadShape
 from inerter.systems.filters import Filter
@@ -27,7 +27,7 @@ _SLOPES = (0.0, 4.0)  # of wavinesses that a filter of this kind can have, witho
 
 
 @dataclass(frozen=True)
-class MeasuredRoad:
+class MeasuredRoad(FormerNames):
     """Road with fitted waviness between two spatial frequencies, as an excitation; valid at any speed.
 
     `road` is the one of waviness 2 that has the same density at 0.1 cycle/m.
@@ -55,9 +55,9 @@ class MeasuredRoad:
         return _of_waviness(self.waviness, self.lowest, self.highest, self.road.speed)
 
     @property
-    def size(self) -> float:
+    def amplitude_density(self) -> float:
         """Root of the two-sided spectral density of the white velocity [m/s per root of Hz]."""
-        return self._shaped_road.size
+        return self._shaped_road.amplitude_density
 
     @property
     def unit(self) -> str:
@@ -72,13 +72,13 @@ class MeasuredRoad:
         """Mechanism as excited by a road."""
         return self._shaped_road.excited_mechanism(mechanism)
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of a road, each with the filter."""
-        return self._shaped_road.arrivals(mechanism)
+        return self._shaped_road.input_paths(mechanism)
 
-    def stand_ins(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
+    def error_sources(self, mechanism: Mechanism) -> tuple[ErrorSource, ...]:
         """Error sources of the road, and of the filter, whose density deviates from the line by at most `DEVIATION`."""
-        return *stand_ins_of(self._shaped_road, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
+        return *error_sources_of(self._shaped_road, mechanism), ErrorSource("filter of the road", 0.5 * DEVIATION)
 
 
 def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import typed_field
+from inerter.indices.definition import Combination, Given, IndexDefinition
 from inerter.indices.excitation import SingleInput
-from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import input_unit, unit_of
 from inerter.validation import check_positive
@@ -62,7 +63,9 @@ class PeakResponse:
             check_positive(PerformanceIndexError, f"The amplitude of {self.input!r}", self.amplitude, "its unit")
         object.__setattr__(self, "filter", as_filter(self.filter))
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no such input."""
         unit = _over(unit_of(mechanism, [self.output]), input_unit(mechanism, self.input))
         outputs = (OutputWeight(self.output),)

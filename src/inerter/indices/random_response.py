@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import typed_field
+from inerter.indices.definition import Combination, Given, IndexDefinition
 from inerter.indices.excitation import Excitation, as_excitation
-from inerter.indices.question import Combination, Given, IndexDefinition
 from inerter.signals.road import Road
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import unit_of
@@ -69,7 +70,9 @@ class RandomResponse:
         object.__setattr__(self, "excitation", as_excitation(self.excitation, "A random response"))
         object.__setattr__(self, "filter", as_filter(self.filter))
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the excitation does not fit the mechanism."""
         drive = as_excitation(self.excitation, "A random response")
         if not drive.is_random:

@@ -8,13 +8,13 @@ from typing import Any
 
 from inerter.errors import PerformanceIndexError, RegistryError
 from inerter.field_metadata import Field, TextChoice, TypedField, choices_of, fields_of, typed_fields_of
+from inerter.indices.definition import Index
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
 from inerter.indices.element_force import ElementForce
 from inerter.indices.element_stroke import ElementStroke
 from inerter.indices.element_velocity import ElementVelocity
 from inerter.indices.load_carrying import LoadCarrying
 from inerter.indices.peak_response import PeakResponse
-from inerter.indices.question import Index
 from inerter.indices.random_response import RandomResponse
 from inerter.indices.ride_comfort import RideComfort
 from inerter.indices.suspension_travel import SuspensionTravel
@@ -25,7 +25,7 @@ from inerter.signals.road import Road
 INDICES: Registry[type[Index]] = Registry(
     "index",
     "symbol",
-    ("title", "unit", "response", "question"),
+    ("title", "unit", "response", "definition"),
     (
         RideComfort,
         TyreLoad,
@@ -38,6 +38,7 @@ INDICES: Registry[type[Index]] = Registry(
         RandomResponse,
         PeakResponse,
     ),
+    {"question": "definition"},
 )
 _AMPLITUDE = "amplitude"  # the setting that says how large a sinusoidal input is
 _ROAD, _EXCITATION = "road", "excitation"

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import choice_field
+from inerter.indices.definition import Combination, IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
 from inerter.indices.iso2631 import ROTATIONS, check_weighting, weighting_filter
-from inerter.indices.question import Combination, IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
 from inerter.vehicle.mechanism import Coordinate, Mechanism, OutputWeight
@@ -48,7 +49,9 @@ class RideComfort:
                 f"theirs with Wk and Wd."
             )
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no comfort output."""
         comfort, where = mechanism.measures.comfort, "measures.comfort"
         if self.weighting is None:

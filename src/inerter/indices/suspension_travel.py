@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from inerter.deprecation import RenamedAttribute
+from inerter.indices.definition import IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.outputs import of_mount
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
@@ -25,7 +26,9 @@ class SuspensionTravel:
     unit = "m"
     response = "travel per road velocity"
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or no strut."""
         wheels = {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever}
         at_wheels = [strut for strut in mechanism.struts if len(wheels & {*strut.upper, *strut.lower}) == 1]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import quantity
+from inerter.indices.definition import IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
-from inerter.indices.question import IndexDefinition, on_road
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
 from inerter.validation import check_positive
@@ -36,7 +37,9 @@ class TyreLoad:
         if self.high_pass is not None:
             check_positive(PerformanceIndexError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    question = RenamedAttribute("definition")
+
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or names no tyre load."""
         passed = None if self.high_pass is None else high_pass(self.high_pass)
         return on_road(self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", passed)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind, worst_of
 from inerter.formatting import format_quantity
-from inerter.indices.excitation import shape_of, stand_ins_of
-from inerter.indices.question import Index, IndexDefinition
+from inerter.indices.definition import Index, IndexDefinition
+from inerter.indices.excitation import error_sources_of, shape_of
 from inerter.methods.averages import interval_of
 from inerter.methods.equivalent_linear import EquivalentLinearModel, equivalent_linear_model, has_play, with_velocities
 from inerter.methods.error_bounds import with_error_sources
@@ -127,23 +127,25 @@ class ApproximateLinear:
         """
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        questions = [with_convention_filters(conventions, mechanism, index.question(mechanism)) for index in indices]
+        definitions = [
+            with_convention_filters(conventions, mechanism, index.definition(mechanism)) for index in indices
+        ]
         if not always and not _is_nonlinear(mechanism):
-            return [self._estimate_linear(mechanism, question) for question in questions]
-        linears = [self._equivalent_linear_model(mechanism, question) for question in questions]
-        drives = [self._drive(mechanism, question) for question in questions]
-        driven = [question.drive.excited_mechanism(mechanism) for question in questions]
+            return [self._estimate_linear(mechanism, definition) for definition in definitions]
+        linears = [self._equivalent_linear_model(mechanism, definition) for definition in definitions]
+        drives = [self._drive(mechanism, definition) for definition in definitions]
+        driven = [definition.drive.excited_mechanism(mechanism) for definition in definitions]
         moved = [(one.ground_moves, drive) for one, drive in zip(driven, drives, strict=True)]
         systems = {one.ground_moves: with_velocities(piecewise(one)) for one in driven}
         runs = dict[tuple[bool, ExcitedInputs], Runs]()
-        for question, way in zip(questions, moved, strict=True):
+        for definition, way in zip(definitions, moved, strict=True):
             names = runs[way].outputs if way in runs else ()
-            names = tuple(dict.fromkeys((*names, *(output.output for output in question.outputs))))
+            names = tuple(dict.fromkeys((*names, *(output.output for output in definition.outputs))))
             system, frictions = systems[way[0]]
             runs[way] = Runs(system, way[1], names, frictions, int(self.seed))
         return [
-            self._estimate_from_runs(question, linear, runs[way])
-            for question, linear, way in zip(questions, linears, moved, strict=True)
+            self._estimate_from_runs(definition, linear, runs[way])
+            for definition, linear, way in zip(definitions, linears, moved, strict=True)
         ]
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
@@ -156,9 +158,9 @@ class ApproximateLinear:
             result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
         return result
 
-    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that start a search."""
-        return (*StatisticalLinearisation().kernels(question, search=True), *KERNELS) if search else KERNELS
+        return (*StatisticalLinearisation().kernels(definition, search=True), *KERNELS) if search else KERNELS
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""
@@ -172,55 +174,57 @@ class ApproximateLinear:
     def _raw(self) -> bool:
         return self.conventions == "paper2008"
 
-    def _estimate_linear(self, mechanism: Mechanism, question: IndexDefinition) -> Estimate:
+    def _estimate_linear(self, mechanism: Mechanism, definition: IndexDefinition) -> Estimate:
         """Estimate of a linear design: its norm, without scatter."""
-        problem = linear_problem(mechanism, question, CONVENTIONS[self.conventions])
+        problem = linear_problem(mechanism, definition, CONVENTIONS[self.conventions])
         norm = problem.estimate({})
         return replace(norm, standard_error=0.0, interval=(norm.value, norm.value))
 
-    def _drive(self, mechanism: Mechanism, question: IndexDefinition) -> ExcitedInputs:
+    def _drive(self, mechanism: Mechanism, definition: IndexDefinition) -> ExcitedInputs:
         """Excitation of the inputs: signal, r.m.s. value, and delay of each input."""
-        driven = question.drive.excited_mechanism(mechanism)
-        arrivals = question.arrivals(driven)
-        _check_gains(arrivals)
-        delays = {arrival.input: arrival.delay for arrival in arrivals}
-        on_road = arrivals[0].input in {road.name for road in driven.roads}
+        driven = definition.drive.excited_mechanism(mechanism)
+        paths = definition.input_paths(driven)
+        _check_gains(paths)
+        delays = {path.input: path.delay for path in paths}
+        on_road = paths[0].input in {road.name for road in driven.roads}
         default = NoiseExcitation() if self._raw else MultisineExcitation()
         excitation = (self.road if on_road else self.force) or default
-        rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, arrivals[0].input))
+        rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, paths[0].input))
         inputs = [*(r.name for r in driven.roads), *(f.name for f in driven.forces)]
         return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in inputs))
 
-    def _equivalent_linear_model(self, mechanism: Mechanism, question: IndexDefinition) -> EquivalentLinearModel | None:
+    def _equivalent_linear_model(
+        self, mechanism: Mechanism, definition: IndexDefinition
+    ) -> EquivalentLinearModel | None:
         """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
-        return None if self._raw else equivalent_linear_model(mechanism, question, CONVENTIONS[self.conventions])
+        return None if self._raw else equivalent_linear_model(mechanism, definition, CONVENTIONS[self.conventions])
 
     def _estimate_from_runs(
-        self, question: IndexDefinition, linear: EquivalentLinearModel | None, runs: Runs
+        self, definition: IndexDefinition, linear: EquivalentLinearModel | None, runs: Runs
     ) -> Estimate:
         notes: tuple[str, ...] = ()
-        if question.amplitude is not None:
+        if definition.amplitude is not None:
             notes = ("the amplitude of a sine is ignored: the excitation sets the size",)
         count, estimate = int(self.realisations), None
         while estimate is None or not self._is_settled(estimate, count):
             count = count if estimate is None else min(2 * count, _MOST)
             squares, inputs = runs.upto(count)
             if not runs.status.ok:
-                return Estimate(math.nan, question.unit, runs.status, notes=notes)
-            places = [runs.outputs.index(output.output) for output in question.outputs]
-            pooled = not self._raw or question.is_peak
+                return Estimate(math.nan, definition.unit, runs.status, notes=notes)
+            places = [runs.outputs.index(output.output) for output in definition.outputs]
+            pooled = not self._raw or definition.is_peak
             gains = _gains(squares[:, places], inputs[:, None], pooled)
-            factor = _factor(question, question.arrivals(runs.system.mechanism)[0], runs)
-            estimate = self._from_gains(question, linear, gains * factor, runs)
+            factor = _factor(definition, definition.input_paths(runs.system.mechanism)[0], runs)
+            estimate = self._from_gains(definition, linear, gains * factor, runs)
         settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
         near = factor * self._near_peak(estimate, runs.drive)
         jumps = 0.0 if self._raw else runs.sampling_error(places, near)  # of raw gains instants are a part
         stepped = ErrorSource("time step", _STEPPED + jumps)
         own = stepped, settled, *estimate.error_sources
-        stand_ins = stand_ins_of(question.drive, runs.system.mechanism)
-        if shape_of(question.drive) is not None and linear is not None:
+        stand_ins = error_sources_of(definition.drive, runs.system.mechanism)
+        if shape_of(definition.drive) is not None and linear is not None:
             model = linear_model(linear, runs.speeds, runs.drive.excitation.period)
-            stand_ins += road_errors(question, model.system, linear.problem.pade_order, model.norms)
+            stand_ins += road_errors(definition, model.system, linear.problem.pade_order, model.norms)
         status = worst_of([estimate.status, runs.warning])
         estimate = with_error_sources(replace(estimate, status=status, error_sources=stand_ins), own, PROMISE)
         status = estimate.status
@@ -229,26 +233,26 @@ class ApproximateLinear:
         return replace(estimate, status=status, notes=(*estimate.notes, *notes))
 
     def _from_gains(
-        self, question: IndexDefinition, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
+        self, definition: IndexDefinition, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
     ) -> Estimate:
         """Estimate of the index from squared gains, with the equivalent linear model as control if there is one."""
         drive = runs.drive
         if self._raw:
-            return self._combine(question, None, gains, drive)
+            return self._combine(definition, None, gains, drive)
         if linear is None or drive.excitation.is_held:
-            return replace(self._combine(question, None, gains, drive), notes=(_HELD if linear else _UNLIKE,))
+            return replace(self._combine(definition, None, gains, drive), notes=(_HELD if linear else _UNLIKE,))
         model = linear_model(linear, runs.speeds, drive.excitation.period)
         if not model.status.ok:
-            return Estimate(math.inf if np.any(np.isinf(model.norms)) else math.nan, question.unit, model.status)
+            return Estimate(math.inf if np.any(np.isinf(model.norms)) else math.nan, definition.unit, model.status)
         unseen = model.unseen(gains.mean(axis=0), drive.omega)
         if unseen <= _LOST:
-            return self._combine(question, model, gains, drive, unseen)
+            return self._combine(definition, model, gains, drive, unseen)
         if has_play(runs.system):
-            return replace(self._combine(question, None, gains, drive), notes=(_UNLIKE,))
+            return replace(self._combine(definition, None, gains, drive), notes=(_UNLIKE,))
         at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
         period = format_quantity(drive.excitation.period, "s", 6)
         message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"
-        return Estimate(math.nan, question.unit, Status(StatusKind.INACCURATE, message))
+        return Estimate(math.nan, definition.unit, Status(StatusKind.INACCURATE, message))
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
         return self.relative_error is None or count >= _MOST or self._is_accurate_enough(estimate)
@@ -259,7 +263,7 @@ class ApproximateLinear:
 
     def _combine(
         self,
-        question: IndexDefinition,
+        definition: IndexDefinition,
         known: LinearModel | None,
         gains: Array,
         drive: ExcitedInputs,
@@ -268,9 +272,9 @@ class ApproximateLinear:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
-        weights = question.drive.size * np.array([abs(output.weight) for output in question.outputs])
+        weights = definition.drive.amplitude_density * np.array([abs(output.weight) for output in definition.outputs])
         smoothed: tuple[ErrorSource, ...] = ()
-        if question.is_peak:
+        if definition.is_peak:
             weight = float(weights[0])
             windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
             (value, scatter, found), (wider, *_) = (
@@ -283,11 +287,11 @@ class ApproximateLinear:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
-            value, peaks = float(question.combine(sizes, weights)), ()
-            scatter = (sums - sums.mean(axis=0)) @ (0.5 * question.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
+            value, peaks = float(definition.combine(sizes, weights)), ()
+            scatter = (sums - sums.mean(axis=0)) @ (0.5 * definition.slopes(sizes, weights) / np.maximum(sizes, 1e-300))
             if self._raw:
                 logs = np.log(
-                    question.combine(np.sqrt(sums), weights)
+                    definition.combine(np.sqrt(sums), weights)
                 )  # a standard error of raw ratios has no expectation, theirs has
                 value = float(np.exp(np.median(logs)))
                 scatter = math.sqrt(0.5 * math.pi) * value * (logs - logs.mean())
@@ -295,7 +299,9 @@ class ApproximateLinear:
         error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
         sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
-        return Estimate(value, question.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources)
+        return Estimate(
+            value, definition.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources
+        )
 
     def _near_peak(self, estimate: Estimate, drive: ExcitedInputs) -> Array:
         """Mask (harmonics,) as 0 or 1: harmonics smoothed together at the peak of a peak gain; else all ones."""
@@ -322,20 +328,20 @@ def _gains(outputs: Array, inputs: Array, pooled: bool) -> Array:
     return np.asarray(ratio + (outputs - ratio * inputs) / size)
 
 
-def _factor(question: IndexDefinition, arrival: InputPath, runs: Runs) -> Array:
+def _factor(definition: IndexDefinition, path: InputPath, runs: Runs) -> Array:
     """Factors (outputs, frequencies) from squared gains to the squares that the index sums."""
     omega = runs.drive.omega
     one = np.ones(omega.size)
-    squares = np.array([one if f is None else np.abs(f.response(omega)) ** 2 for f in question.filters])
-    if arrival.filter is not None:
-        squares *= np.abs(arrival.filter.response(omega)) ** 2
-    by_height = arrival.displacement or arrival.input not in {road.name for road in runs.system.mechanism.roads}
+    squares = np.array([one if f is None else np.abs(f.response(omega)) ** 2 for f in definition.filters])
+    if path.filter is not None:
+        squares *= np.abs(path.filter.response(omega)) ** 2
+    by_height = path.displacement or path.input not in {road.name for road in runs.system.mechanism.roads}
     return squares if by_height else np.asarray(squares / omega**2)
 
 
-def _check_gains(arrivals: Sequence[InputPath]) -> None:
+def _check_gains(paths: Sequence[InputPath]) -> None:
     """Raises `PerformanceIndexError` for what is no single source with one filter: gains are from one signal."""
-    if len({(a.source, a.lever, a.filter) for a in arrivals}) > 1 or arrivals[0].lever != 1.0:
+    if len({(a.source, a.lever, a.filter) for a in paths}) > 1 or paths[0].lever != 1.0:
         raise PerformanceIndexError(
             "Method approximate-linear computes gains from one signal, but several signals excite this mechanism. "
             "Use norm, statistical-linearisation or expected-value."

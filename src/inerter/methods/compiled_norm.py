@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.indices.definition import Combination, IndexDefinition
 from inerter.indices.excitation import road_of
-from inerter.indices.question import Combination, IndexDefinition
 from inerter.kernels import excess as excess_kernels
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
@@ -43,7 +43,7 @@ _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that a
 
 
 @dataclass(frozen=True, eq=False)
-class CompiledQuestion:
+class CompiledNorm:
     """Index as a function of the design variables, from compiled code: the `Differentiable` objective of `Norm`."""
 
     problem: LinearProblem
@@ -87,15 +87,15 @@ class CompiledQuestion:
         return (drifting, covariance) if covariance is not None else (drifting[:0], np.zeros((0, 0)))
 
     @cached_property
-    def single_source_questions(self) -> tuple[CompiledQuestion, ...]:
+    def single_source_definitions(self) -> tuple[CompiledNorm, ...]:
         """Objectives of the single sources, whose squares add up; empty for one source."""
         sources = tuple(dict.fromkeys(self.problem.sources))
-        return tuple(CompiledQuestion(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
+        return tuple(CompiledNorm(self.problem.of_source(s)) for s in sources) if len(sources) > 1 else ()
 
     @property
     def is_peak(self) -> bool:
         """Whether the index is a peak gain."""
-        return self.problem.question.is_peak
+        return self.problem.definition.is_peak
 
     @cached_property
     def supported_outputs(self) -> NDArray[np.bool_]:
@@ -110,12 +110,10 @@ class CompiledQuestion:
         return np.asarray(self._special_norms > 0.0)
 
     @cached_property
-    def per_source_questions(self) -> tuple[tuple[NDArray[np.bool_], CompiledQuestion], ...]:
+    def per_source_definitions(self) -> tuple[tuple[NDArray[np.bool_], CompiledNorm], ...]:
         """Mask of the outputs that each source excites, and the objective of these outputs."""
-        sources = [one for one in self.single_source_questions or (self,) if np.any(one.reachable_outputs)]
-        return tuple(
-            (one.reachable_outputs, CompiledQuestion(one.problem.part(one.reachable_outputs))) for one in sources
-        )
+        sources = [one for one in self.single_source_definitions or (self,) if np.any(one.reachable_outputs)]
+        return tuple((one.reachable_outputs, CompiledNorm(one.problem.part(one.reachable_outputs))) for one in sources)
 
     @cached_property
     def _special_norms(self) -> Array:
@@ -132,7 +130,7 @@ class CompiledQuestion:
     def _free(self) -> dict[str, Any]:
         return dict(self.problem.descriptor.free)
 
-    def _columns(self, one: CompiledQuestion) -> list[int]:
+    def _columns(self, one: CompiledNorm) -> list[int]:
         """Positions of the design variables of `one` among all design variables."""
         names = list(self._free)
         return [names.index(name) for name in one._free]
@@ -150,8 +148,8 @@ class CompiledQuestion:
         return self.problem.norms(self.problem.system(self._close_at(point)), self._values(point))[0].outputs
 
     def _exact_norms(self, point: Array) -> Array:
-        if self.single_source_questions:
-            parts = [one._exact_norms(point[self._columns(one)]) for one in self.single_source_questions]
+        if self.single_source_definitions:
+            parts = [one._exact_norms(point[self._columns(one)]) for one in self.single_source_definitions]
             return np.asarray(np.linalg.norm(parts, axis=0))
         system = self.problem.system(self._close_at(point))
         return self.problem.correct_norms(system, h2_exactly(system, self.problem.pade_order)[0])[0]
@@ -202,7 +200,7 @@ class CompiledQuestion:
         result = np.full((points.shape[0], self.supported_outputs.size), np.inf)
         if not np.all(self.supported_outputs):
             if np.any(self.supported_outputs):
-                result[:, self.supported_outputs] = CompiledQuestion(
+                result[:, self.supported_outputs] = CompiledNorm(
                     self.problem.part(self.supported_outputs)
                 )._compiled_norms(points)
             return result
@@ -215,12 +213,12 @@ class CompiledQuestion:
 
         Over several sources, squares are added up for the outputs that each one excites.
         """
-        if not self.single_source_questions and np.all(self.reachable_outputs) and self._excess is None:
+        if not self.single_source_definitions and np.all(self.reachable_outputs) and self._excess is None:
             norms, gradients, errors = h2_kernels.norms(points, *self.arguments, weights)
             return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
-        for seen, one in self.per_source_questions:
+        for seen, one in self.per_source_definitions:
             own = np.ascontiguousarray(points[:, self._columns(one)])
             norms, behind, of_one = one._of_one_source(own)
             squares[:, seen] += norms**2
@@ -229,7 +227,7 @@ class CompiledQuestion:
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
-            for (seen, one), (norms, behind) in zip(self.per_source_questions, found, strict=True):
+            for (seen, one), (norms, behind) in zip(self.per_source_definitions, found, strict=True):
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
                 columns = self._columns(one)
                 own = np.ascontiguousarray(points[row, columns])
@@ -294,15 +292,15 @@ class CompiledQuestion:
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
 
     def _combine(self, norms: Array) -> Array:
-        return self.problem.question.combine(norms, self.problem.weights)
+        return self.problem.definition.combine(norms, self.problem.weights)
 
     def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
         """Norms, gradient of the index, and error estimates of the norms, at one point."""
-        question, weights = self.problem.question, self.problem.weights
-        if question.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
+        definition, weights = self.problem.definition, self.problem.weights
+        if definition.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
             return self._with_gradients(points, weights)
         norms = self._with_gradients(points, np.empty(0))[0]
-        return self._with_gradients(points, question.slopes(norms[0], weights))
+        return self._with_gradients(points, definition.slopes(norms[0], weights))
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
@@ -340,11 +338,11 @@ class CompiledQuestion:
         return weight * gains, weight * gradients
 
 
-def kernels_of(question: IndexDefinition) -> tuple[Any, ...]:
+def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
     """The compiled code that values of the question and their gradients call."""
-    if question.is_peak:
+    if definition.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
-    coherence = getattr(road_of(question.drive), "coherence", None)
+    coherence = getattr(road_of(definition.drive), "coherence", None)
     corrected = coherence is not None and coherence.is_isotropic
     return (h2_kernels.norms, excess_kernels.corrections) if corrected else (h2_kernels.norms,)
 
@@ -365,41 +363,41 @@ def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tup
 
 
 def evaluate_problems(
-    mechanism: Mechanism, questions: Sequence[IndexDefinition], conventions: Conventions, points: Mapping[str, Array]
+    mechanism: Mechanism, definitions: Sequence[IndexDefinition], conventions: Conventions, points: Mapping[str, Array]
 ) -> Array:
     """Indices (designs, indices), nan where not ok; indices with the same excitation and filter share one solve."""
-    problems = [linear_problem(mechanism, question, conventions) for question in questions]
+    problems = [linear_problem(mechanism, definition, conventions) for definition in definitions]
     groups: dict[Any, list[int]] = {}
-    for i, (question, problem) in enumerate(zip(questions, problems, strict=True)):
-        alone = question.is_peak
-        key = ("peak", i) if alone else (question.excitation, _shared_filter(problem.question))
+    for i, (definition, problem) in enumerate(zip(definitions, problems, strict=True)):
+        alone = definition.is_peak
+        key = ("peak", i) if alone else (definition.excitation, _shared_filter(problem.definition))
         groups.setdefault(key, []).append(i)
-    result: Array = np.empty((next(iter(points.values())).size if points else 1, len(questions)))
+    result: Array = np.empty((next(iter(points.values())).size if points else 1, len(definitions)))
     for members in groups.values():
-        if questions[members[0]].is_peak:
-            compiled = CompiledQuestion(problems[members[0]])
+        if definitions[members[0]].is_peak:
+            compiled = CompiledNorm(problems[members[0]])
             result[:, members[0]] = compiled.evaluate_points(
                 rows_of(compiled.problem.descriptor, points, result.shape[0])
             )
             continue
-        asked = [problems[i].question for i in members]
+        asked = [problems[i].definition for i in members]
         found = {o.output: (o, f) for one in asked for o, f in zip(one.outputs, one.filters, strict=True)}
         outputs, filters = (tuple(part) for part in zip(*found.values(), strict=True))
         joint = linear_problem(mechanism, replace(asked[0], outputs=outputs, filter=filters), conventions)
-        compiled = CompiledQuestion(joint)
+        compiled = CompiledNorm(joint)
         norms = compiled.output_norms(rows_of(joint.descriptor, points, result.shape[0]))
         places = [o.output for o in outputs]
         for i in members:
-            columns = [places.index(o.output) for o in questions[i].outputs]
-            result[:, i] = questions[i].combine(norms[:, columns], problems[i].weights)
+            columns = [places.index(o.output) for o in definitions[i].outputs]
+            result[:, i] = definitions[i].combine(norms[:, columns], problems[i].weights)
     result[np.isinf(result)] = np.nan  # an infinite index has a status that is not ok
     return result
 
 
-def _shared_filter(question: IndexDefinition) -> Any:
+def _shared_filter(definition: IndexDefinition) -> Any:
     """The filter of all outputs; which outputs have which, where they differ."""
-    several = set(question.filters)
-    return several.pop() if len(several) == 1 else (question.outputs, question.filters)
+    several = set(definition.filters)
+    return several.pop() if len(several) == 1 else (definition.outputs, definition.filters)
 
 
 def rows_of(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:

@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import DescribedIndex, Index
+from inerter.deprecation import adopt_renamed
+from inerter.indices.definition import DescribedIndex, Index
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.networks.elements import Element, Free, Tied, middle
 from inerter.vehicle.replace_values import mounted_elements, with_elements
@@ -61,7 +62,10 @@ IndexLike = Index | CompositeIndex
 
 def is_index(given: object) -> bool:
     """Whether an object is an index or a composed index, not its class."""
-    return not isinstance(given, type) and (hasattr(given, "question") or is_composite(given))
+    if isinstance(given, type):
+        return False
+    adopt_renamed(given, question="definition")
+    return hasattr(given, "definition") or is_composite(given)
 
 
 def is_composite(index: object) -> TypeIs[CompositeIndex]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError, Status, worst_of
 from inerter.formatting import format_number
+from inerter.indices.definition import Index, OfIndex
 from inerter.indices.measured_road import MeasuredRoad
-from inerter.indices.question import Index, OfIndex
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.methods.composite_index import IndexLike, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.error_bounds import of_weighted_sum, of_worst

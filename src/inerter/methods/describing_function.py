@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, PerformanceIndexError, Status, StatusKind
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.kernels import harmonic as kernels
 from inerter.methods.equivalent import PROMISE, Equivalent, equivalent, poorly_represented
 from inerter.methods.equivalent_damper import SINUSOIDAL
@@ -46,20 +46,20 @@ class HarmonicBalance:
     The gains at given frequencies are its components, with gradients by central differences.
     """
 
-    question: IndexDefinition
+    definition: IndexDefinition
     descriptor: Descriptor  # inputs: the force, a force beside each friction; outputs: displacement, velocities
     parts: Equivalent
 
     @property
     def amplitude(self) -> float:
         """Force amplitude [N]."""
-        assert self.question.amplitude is not None
-        return self.question.amplitude
+        assert self.definition.amplitude is not None
+        return self.definition.amplitude
 
     @property
     def weight(self) -> float:
         """Factor of the gain in the index."""
-        return abs(self.question.outputs[0].weight)
+        return abs(self.definition.outputs[0].weight)
 
     @cached_property
     def arrays(self) -> tuple[Any, ...]:
@@ -142,7 +142,7 @@ class HarmonicBalance:
     def estimate(self) -> Estimate:
         """The index of a design without free values."""
         peaks, fine = self.peaks(np.zeros(0))
-        result = Estimate(math.nan, self.question.unit, peaks=peaks, notes=self.descriptor.notes)
+        result = Estimate(math.nan, self.definition.unit, peaks=peaks, notes=self.descriptor.notes)
         if not peaks:
             return replace(result, status=Status(StatusKind.FAILED, "the frequency response could not be computed"))
         omegas, gains = np.array([peak.omega for peak in peaks]), np.array([peak.gain for peak in peaks])
@@ -160,27 +160,27 @@ class HarmonicBalance:
         return with_error_sources(result, own, PROMISE + _SEARCH)
 
 
-def harmonic_balance(mechanism: Mechanism, question: IndexDefinition) -> HarmonicBalance:
+def harmonic_balance(mechanism: Mechanism, definition: IndexDefinition) -> HarmonicBalance:
     """The balance for a peak gain.
 
     Raises `PerformanceIndexError` if the question does not go from one force to one output or says no amplitude.
     """
-    check_peak_gain(question)
-    if question.amplitude is None:
+    check_peak_gain(definition)
+    if definition.amplitude is None:
         raise PerformanceIndexError(
             "A peak gain with friction depends on the amplitude of the force. Give it, such as 1000 N."
         )
     parts = equivalent(mechanism)
-    arrivals = question.arrivals(parts.mechanism)
+    paths = definition.input_paths(parts.mechanism)
     beside = tuple(InputPath(force_of(name), name) for name in parts.dampers)
     descriptor = describe(
         parts.mechanism,
-        inputs_of((*arrivals, *beside)),
-        (question.outputs[0].output, *map(velocity_of, parts.dampers)),
+        inputs_of((*paths, *beside)),
+        (definition.outputs[0].output, *map(velocity_of, parts.dampers)),
     )
-    filters = (*question.filters, *(None for _ in parts.dampers))
+    filters = (*definition.filters, *(None for _ in parts.dampers))
     return HarmonicBalance(
-        question, with_output_filters(apply_excitation(descriptor, (*arrivals, *beside)), filters), parts
+        definition, with_output_filters(apply_excitation(descriptor, (*paths, *beside)), filters), parts
     )
 
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind, with_article
 from inerter.formatting import format_share
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
 from inerter.networks.elements.roles import LinearRole, StatisticalRole
 from inerter.networks.transform import map_elements
@@ -167,30 +167,28 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     )
 
 
-def slipping_freely(mechanism: Mechanism, question: IndexDefinition) -> frozenset[str]:
+def slipping_freely(mechanism: Mechanism, definition: IndexDefinition) -> frozenset[str]:
     """Names of dampers of frictions with direct feedthrough from white noise, as of one in a tyre on a road.
 
     With a velocity of infinite variance across them, they are zero. What has a mass on both sides cannot be reached so.
     """
-    driven = switching(question.drive.excited_mechanism(mechanism))
-    arrivals = question.arrivals(driven)
-    if not any(element.is_damped for mount in _reachable(driven, arrivals) for element in mount.network.elements()):
+    driven = switching(definition.drive.excited_mechanism(mechanism))
+    paths = definition.input_paths(driven)
+    if not any(element.is_damped for mount in _reachable(driven, paths) for element in mount.network.elements()):
         return frozenset()
     found: frozenset[str] = frozenset()
     while True:
         parts = equivalent(driven, found)
         velocities = [velocity_of(name) for name in parts.dampers]
-        reached = _reached_directly(
-            apply_excitation(describe(parts.mechanism, inputs_of(arrivals), velocities), arrivals)
-        )
+        reached = _reached_directly(apply_excitation(describe(parts.mechanism, inputs_of(paths), velocities), paths))
         if not reached:
             return found
         found |= {parts.dampers[i] for i in reached}
 
 
-def _reachable(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> list[Strut | Tyre]:
+def _reachable(mechanism: Mechanism, paths: Sequence[InputPath]) -> list[Strut | Tyre]:
     """Mounts connected to excited roads; forces act on masses, whose velocity has no jumps."""
-    roads = {road.name for road in mechanism.roads} & {arrival.input for arrival in arrivals}
+    roads = {road.name for road in mechanism.roads} & {path.input for path in paths}
     return [m for m in mechanism.mounts() if roads & ({m.road} if isinstance(m, Tyre) else {*m.upper, *m.lower})]
 
 

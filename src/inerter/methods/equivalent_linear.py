@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError, MechanismError
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.methods.equivalent import Equivalent, equivalent, slipping_freely
 from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
@@ -62,10 +62,10 @@ class EquivalentLinearModel:
 
     def at_inputs(self, speeds: Array) -> LinearSystem:
         """Equivalent linear model with the inputs of the mechanism instead of the sources."""
-        names = [output.output for output in self.problem.question.outputs]
-        arrivals = self.problem.question.arrivals(self.mechanism)
+        names = [output.output for output in self.problem.definition.outputs]
+        paths = self.problem.definition.input_paths(self.mechanism)
         descriptor = with_output_filters(
-            describe(self.mechanism, inputs_of(arrivals), names), self.problem.question.filters
+            describe(self.mechanism, inputs_of(paths), names), self.problem.definition.filters
         )
         return close(descriptor, self._dampers(speeds))
 
@@ -76,7 +76,7 @@ class EquivalentLinearModel:
     @property
     def mechanism(self) -> Mechanism:
         """The mechanism with dampers that is driven."""
-        return self.problem.question.drive.excited_mechanism(self.parts.mechanism)
+        return self.problem.definition.drive.excited_mechanism(self.parts.mechanism)
 
     def _dampers(self, speeds: Array) -> dict[str, float]:
         frictions = np.array(self.parts.forces, dtype=float)
@@ -98,12 +98,12 @@ def relative_change(values: Array, references: Array) -> float:
 
 
 def equivalent_linear_model(
-    mechanism: Mechanism, question: IndexDefinition, conventions: Conventions
+    mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions
 ) -> EquivalentLinearModel | None:
     """Equivalent linear model of a design without free values; None if it is ill-posed."""
     try:
-        parts = equivalent(mechanism, slipping_freely(mechanism, question))
-        return EquivalentLinearModel(linear_problem(parts.mechanism, question, conventions), parts)
+        parts = equivalent(mechanism, slipping_freely(mechanism, definition))
+        return EquivalentLinearModel(linear_problem(parts.mechanism, definition, conventions), parts)
     except (MechanismError, LinearSystemError):
         return None
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError, LinearSystemError, MechanismError, PerformanceIndexError, StatusKind, worst_of
-from inerter.indices.question import Index, IndexDefinition
+from inerter.indices.definition import Index, IndexDefinition
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.harmonic_response import ForcedResponse, coarse_maxima, frequency_grid, local_maxima
 from inerter.methods.linear import (
@@ -28,7 +28,7 @@ from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
-from inerter.methods.realisations import drive, realisation_seeds
+from inerter.methods.realisations import random_excitation, realisation_seeds
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import middle
 from inerter.simulation.event_driven import KERNELS
@@ -154,36 +154,36 @@ class ExpectedValue:
         None for a peak gain, and where there is a gap or friction alone holds a part.
         """
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
-        system = piecewise(question.drive.excited_mechanism(mechanism))
-        if question.is_peak:
+        definition = with_convention_filters(conventions, mechanism, index.definition(mechanism))
+        system = piecewise(definition.drive.excited_mechanism(mechanism))
+        if definition.is_peak:
             return None
-        if not is_nonlinear(system, question):
+        if not is_nonlinear(system, definition):
             return np.zeros(count), np.zeros(_MORE)
-        change = first_order(system, question, drive(system, question, conventions, self.period))
+        change = first_order(system, definition, random_excitation(system, definition, conventions, self.period))
         if change is None:
             return None
         seeds = realisation_seeds(self.seed, 0, count + _MORE)
         changes = change(seeds)
         return changes[:count], changes[count:]
 
-    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that locate peaks and optima."""
-        quick = StatisticalLinearisation().kernels(question, search=search)
-        return (*quick, *KERNELS) if search or question.is_peak else KERNELS
+        quick = StatisticalLinearisation().kernels(definition, search=search)
+        return (*quick, *KERNELS) if search or definition.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
-        question = with_convention_filters(conventions, mechanism, index.question(mechanism))
-        linear = _linear(vehicle, question, conventions)
-        system = piecewise(question.drive.excited_mechanism(mechanism))
-        if not _is_held(system, question, conventions) and not is_nonlinear(system, question):
+        definition = with_convention_filters(conventions, mechanism, index.definition(mechanism))
+        linear = _linear(vehicle, definition, conventions)
+        system = piecewise(definition.drive.excited_mechanism(mechanism))
+        if not _is_held(system, definition, conventions) and not is_nonlinear(system, definition):
             assert linear is not None
             return replace(linear.estimate({}), standard_error=0.0)
-        if question.is_peak:
-            return self._peak_gain(vehicle, index, system, question, linear, pool)
+        if definition.is_peak:
+            return self._peak_gain(vehicle, index, system, definition, linear, pool)
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
-        design = on_roads(system, question, conventions, self.seed, self.period)
+        design = on_roads(system, definition, conventions, self.seed, self.period)
         return mean_on_roads(design, wanted, self.relative_error, pool)
 
     def _peak_gain(
@@ -191,18 +191,18 @@ class ExpectedValue:
         vehicle: Vehicle,
         index: Index,
         system: PiecewiseSystem,
-        question: IndexDefinition,
+        definition: IndexDefinition,
         linear: LinearProblem | None,
         pool: ThreadPoolExecutor,
     ) -> Estimate:
-        if question.amplitude is None:
+        if definition.amplitude is None:
             raise PerformanceIndexError(
                 "The peak gain of a design with friction or gaps depends on the force amplitude. Give it, such as 1000 "
                 "N."
             )
-        (output,) = question.outputs
-        (arrival,) = question.arrivals(system.mechanism)
-        forced = ForcedResponse(system, arrival, output.output, question.amplitude, *question.filters)
+        (output,) = definition.outputs
+        (path,) = definition.input_paths(system.mechanism)
+        forced = ForcedResponse(system, path, output.output, definition.amplitude, *definition.filters)
         poles, known = np.zeros(0, dtype=complex), np.zeros(0)
         if linear is not None:
             closed = close(linear.descriptor, {})
@@ -215,7 +215,7 @@ class ExpectedValue:
         weighted = tuple(replace(one.peak, gain=abs(output.weight) * one.peak.gain) for one in summits)
         status = worst_of(one.status for one in summits)
         value = np.nan if status.kind is StatusKind.FAILED else weighted[0].gain
-        estimate = Estimate(value, question.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
+        estimate = Estimate(value, definition.unit, status, standard_error=0.0, interval=(value, value), peaks=weighted)
         return with_error_sources(estimate, summits[0].errors, PROMISE)
 
 
@@ -229,23 +229,23 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
     return omegas if omegas.size and np.all(np.isfinite(omegas)) else None
 
 
-def is_nonlinear(system: PiecewiseSystem, question: IndexDefinition) -> bool:
+def is_nonlinear(system: PiecewiseSystem, definition: IndexDefinition) -> bool:
     """Whether an element switches or, for mean squares, exerts a constant force."""
     lower, upper = system.mechanics.limits.T
-    return bool(np.any(lower < upper) or (not question.is_peak and np.any(upper != 0.0)))
+    return bool(np.any(lower < upper) or (not definition.is_peak and np.any(upper != 0.0)))
 
 
-def _is_held(system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions) -> bool:
+def _is_held(system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions) -> bool:
     """Whether the conventions change the value of linear designs too, so that it differs from the norm."""
     if conventions.hold is None:
         return False
-    return not question.drive.is_random or drive(system, question, conventions).hold is not None
+    return not definition.drive.is_random or random_excitation(system, definition, conventions).hold is not None
 
 
-def _linear(vehicle: Vehicle, question: IndexDefinition, conventions: Conventions) -> LinearProblem | None:
+def _linear(vehicle: Vehicle, definition: IndexDefinition, conventions: Conventions) -> LinearProblem | None:
     """Linear problem of the design; None if it is ill-posed without friction."""
     try:
-        return linear_problem(vehicle.mechanism(), question, conventions)
+        return linear_problem(vehicle.mechanism(), definition, conventions)
     except (MechanismError, LinearSystemError):
         return None
 

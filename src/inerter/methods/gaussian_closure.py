@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, MechanismError, Status, StatusKind
 from inerter.formatting import format_share
-from inerter.indices.question import IndexDefinition
-from inerter.methods.compiled_norm import CompiledQuestion
+from inerter.indices.definition import IndexDefinition
+from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.equivalent import (
     PROMISE,
     STIFFEST,
@@ -145,8 +145,8 @@ def _newton(ratio: Array, slope: Array, stuck: NDArray[np.bool_], alone: bool) -
 class Pattern:
     """The linear model while certain frictions stick (rigid links) and the others slip (dampers)."""
 
-    index: CompiledQuestion
-    velocities: CompiledQuestion  # across the frictions that slip; without the index's filter
+    index: CompiledNorm
+    velocities: CompiledNorm  # across the frictions that slip; without the index's filter
     parts: Equivalent
 
     @cached_property
@@ -155,10 +155,10 @@ class Pattern:
         return self.parts.order(self.index.problem.descriptor)
 
     @cached_property
-    def single(self) -> tuple[CompiledQuestion, ...]:
+    def single(self) -> tuple[CompiledNorm, ...]:
         """Objectives of the r.m.s. velocity across each friction."""
         problem = self.velocities.problem
-        return tuple(CompiledQuestion(problem.part(slice(i, i + 1))) for i in range(len(problem.question.outputs)))
+        return tuple(CompiledNorm(problem.part(slice(i, i + 1))) for i in range(len(problem.definition.outputs)))
 
     def rows(self, points: Array, damping: Array) -> Array:
         """Rows of values in the order of the descriptor's free values."""
@@ -176,9 +176,9 @@ class Pattern:
             return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
         return solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
 
-    def value_and_gradient(self, question: CompiledQuestion, row: Array) -> tuple[float, Array]:
+    def value_and_gradient(self, definition: CompiledNorm, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""
-        value, over_free = question.value_and_gradient(row)
+        value, over_free = definition.value_and_gradient(row)
         gradient = np.zeros(len(self.parts.design) + len(self.parts.dampers))
         gradient[self.columns] = over_free
         return value, gradient
@@ -208,14 +208,14 @@ class GaussianClosure:
     """
 
     mechanism: Mechanism
-    question: IndexDefinition
+    definition: IndexDefinition
     conventions: Conventions
     patterns: dict[frozenset[str], Pattern | None] = field(default_factory=dict)  # those met so far
 
     @cached_property
     def without(self) -> frozenset[str]:
         """Frictions whose dampers are zero, because white noise passes straight to them."""
-        return slipping_freely(self.mechanism, self.question)
+        return slipping_freely(self.mechanism, self.definition)
 
     def pattern(self, locked: frozenset[str]) -> Pattern | None:
         """The linear model with these frictions stuck; None if that makes a mount rigid, which has no model."""
@@ -350,8 +350,8 @@ class GaussianClosure:
         (solved,) = self.solve(np.zeros((1, 0)))
         parts, dampers, problem = solved.pattern.parts, solved.dampers, solved.pattern.index.problem
         if np.isnan(dampers.error[0]):
-            message = "the r.m.s. velocity across a friction could not be computed: lost to rounding"
-            return Estimate(math.nan, self.question.unit, Status(StatusKind.FAILED, message))
+            message = "the r.m.s. velocity across a friction element could not be computed: lost to rounding"
+            return Estimate(math.nan, self.definition.unit, Status(StatusKind.FAILED, message))
         result = problem.estimate(dict(zip(parts.dampers, dampers.damping[0], strict=True)))
         if dampers.error[0] > _SETTLED and result.status.ok:
             message = f"the equivalent dampers are known to {format_share(dampers.error[0], 2)} only"
@@ -360,7 +360,7 @@ class GaussianClosure:
         if result.status.ok and not bound <= PROMISE:
             result = replace(result, status=poorly_represented(self._stick(solved.unlike[0]), bound))
         result = with_error_sources(
-            result, (ErrorSource("one damper for a friction", bound + float(dampers.error[0])),), np.inf
+            result, (ErrorSource("one damper for a friction element", bound + float(dampers.error[0])),), np.inf
         )
         told = [Note(f"{words} sticks") for words in parts.locked]
         told += [
@@ -379,9 +379,9 @@ class GaussianClosure:
 def _pattern(closure: GaussianClosure, without: frozenset[str], locked: frozenset[str]) -> Pattern:
     parts = equivalent(closure.mechanism, without, locked)
     wanted = tuple(OutputWeight(velocity_of(name)) for name in parts.dampers)
-    outputs = closure.question.outputs
-    filters = (*closure.question.filters, *(None for _ in wanted))
-    joint_question = replace(closure.question, outputs=(*outputs, *wanted), filter=filters)
-    joint = linear_problem(parts.mechanism, joint_question, closure.conventions)
+    outputs = closure.definition.outputs
+    filters = (*closure.definition.filters, *(None for _ in wanted))
+    joint_definition = replace(closure.definition, outputs=(*outputs, *wanted), filter=filters)
+    joint = linear_problem(parts.mechanism, joint_definition, closure.conventions)
     index, velocities = joint.part(slice(0, len(outputs))), joint.part(slice(len(outputs), None))
-    return Pattern(CompiledQuestion(index), CompiledQuestion(velocities), parts)
+    return Pattern(CompiledNorm(index), CompiledNorm(velocities), parts)

@@ -36,7 +36,7 @@ class ForcedResponse:
     """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
 
     system: PiecewiseSystem
-    arrival: InputPath  # a force, or a road's displacement or velocity
+    path: InputPath  # a force, or a road's displacement or velocity
     output: str
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through
@@ -45,12 +45,12 @@ class ForcedResponse:
         """Ratio at `omega` [rad/s], and the mean squares of the steady state."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
-        mechanism, arrival = self.system.mechanism, self.arrival
+        mechanism, path = self.system.mechanism, self.path
         roads = [road.name for road in mechanism.roads]
-        by_velocity = arrival.input in roads and not arrival.displacement
+        by_velocity = path.input in roads and not path.displacement
         signal = sine(self.amplitude / omega if by_velocity else self.amplitude, 1.0 / period)
         names = [*roads, *(force.name for force in mechanism.forces)]
-        signals = [signal if name == arrival.input else None for name in names]
+        signals = [signal if name == path.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, table.value[0], "rest")
         found = steady_squares(self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS)

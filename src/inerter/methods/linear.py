@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
-from inerter.indices.excitation import stand_ins_of
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
+from inerter.indices.excitation import error_sources_of
 from inerter.methods.error_bounds import ROUNDING, with_error_sources
 from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
@@ -79,7 +79,7 @@ def check_conventions(name: object) -> None:
 class LinearProblem:
     """Linear problem of an index: the descriptor of the mechanism, and the evaluation of its system."""
 
-    question: IndexDefinition
+    definition: IndexDefinition
     unfiltered: Descriptor
     arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
@@ -88,12 +88,14 @@ class LinearProblem:
     @cached_property
     def descriptor(self) -> Descriptor:
         """Descriptor with the filters on its outputs."""
-        return with_output_filters(self.unfiltered, self.question.filters)
+        return with_output_filters(self.unfiltered, self.definition.filters)
 
     @cached_property
     def weights(self) -> Array:
         """Factor of each output's norm in the index."""
-        return self.question.drive.size * np.array([abs(output.weight) for output in self.question.outputs])
+        return self.definition.drive.amplitude_density * np.array(
+            [abs(output.weight) for output in self.definition.outputs]
+        )
 
     @property
     def delays(self) -> Array:
@@ -108,8 +110,8 @@ class LinearProblem:
     @cached_property
     def highest_filter(self) -> int:
         """The order of the highest filter before an input or behind an output."""
-        before = [c.filter for c in self.question.arrivals(self.unfiltered.mechanism)]
-        return max((one.order for one in (*self.question.filters, *before) if one is not None), default=0)
+        before = [c.filter for c in self.definition.input_paths(self.unfiltered.mechanism)]
+        return max((one.order for one in (*self.definition.filters, *before) if one is not None), default=0)
 
     def part(self, which: NDArray[np.bool_] | slice) -> LinearProblem:
         """The problem with some of its outputs."""
@@ -118,18 +120,18 @@ class LinearProblem:
         sizes = (*d.sizes[:3], *(stack[:, chosen] for stack in d.sizes[3:]))
         Y_eta, Y_x, Y_u = d.Y_eta[:, chosen], d.Y_x[:, chosen], d.Y_u[:, chosen]
         descriptor = replace(d, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, outputs=outputs, sizes=sizes)
-        filters = tuple(self.question.filters[i] for i in chosen)
-        question = replace(self.question, outputs=tuple(self.question.outputs[i] for i in chosen), filter=filters)
-        return replace(self, question=question, unfiltered=descriptor)
+        filters = tuple(self.definition.filters[i] for i in chosen)
+        definition = replace(self.definition, outputs=tuple(self.definition.outputs[i] for i in chosen), filter=filters)
+        return replace(self, definition=definition, unfiltered=descriptor)
 
     def of_source(self, source: str) -> LinearProblem:
         """The problem with one of its sources alone, of half the mechanism where that moves as the whole does.
 
         Free values of mounts that lie still there are none of it.
         """
-        names = [output.output for output in self.question.outputs]
+        names = [output.output for output in self.definition.outputs]
         mechanism = self.unfiltered.mechanism
-        half = on_one_side(mechanism, [a for a in self.question.arrivals(mechanism) if a.source == source])
+        half = on_one_side(mechanism, [a for a in self.definition.input_paths(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
             return replace(self, unfiltered=apply_excitation(described, half[1]), arrivals=tuple(columns_of(half[1])))
@@ -157,13 +159,13 @@ class LinearProblem:
     def estimate(self, values: Mapping[str, float]) -> Estimate:
         """The value of the index for these free values."""
         system = self.system_at(values)
-        if self.question.is_peak:
+        if self.definition.is_peak:
             return self._peak_gain(system)
         norms, unsure = self.norms(system, values)
         outputs = norms.outputs
-        value = float(self.question.combine(outputs, self.weights))
-        found = Estimate(value, self.question.unit, norms.status, notes=system.notes)
-        more = road_errors(self.question, system, self.pade_order, outputs)
+        value = float(self.definition.combine(outputs, self.weights))
+        found = Estimate(value, self.definition.unit, norms.status, notes=system.notes)
+        more = road_errors(self.definition, system, self.pade_order, outputs)
         return self._with_errors(found, norms.error, more, unsure)
 
     def norms(self, system: LinearSystem, values: Mapping[str, float]) -> tuple[H2, float]:
@@ -202,14 +204,14 @@ class LinearProblem:
         gain = hinf_norm(system)
         weight = float(self.weights[0])
         peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in gain.peaks)
-        found = Estimate(weight * gain.value, self.question.unit, gain.status, peaks=peaks, notes=system.notes)
+        found = Estimate(weight * gain.value, self.definition.unit, gain.status, peaks=peaks, notes=system.notes)
         return self._with_errors(found, gain.error)
 
     def _with_errors(
         self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = (), integral: float = 0.0
     ) -> Estimate:
         """Estimate with the errors from rounding and from approximated excitations."""
-        stand_ins = stand_ins_of(self.question.drive, self.unfiltered.mechanism)
+        stand_ins = error_sources_of(self.definition.drive, self.unfiltered.mechanism)
         own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, rounding + _FEW),)
         if self.excesses:
             own = (*own, ErrorSource(DENSITY, integral))
@@ -217,44 +219,44 @@ class LinearProblem:
         return with_error_sources(replace(found, error_sources=(*stand_ins, *more)), own, promise)
 
 
-def linear_problem(mechanism: Mechanism, question: IndexDefinition, conventions: Conventions) -> LinearProblem:
+def linear_problem(mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions) -> LinearProblem:
     """Linear problem for `question`, with its sources and the filters of the conventions.
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
-    check_peak_gain(question)
+    check_peak_gain(definition)
     asked, driven = (
-        with_convention_filters(conventions, mechanism, question),
-        question.drive.excited_mechanism(mechanism),
+        with_convention_filters(conventions, mechanism, definition),
+        definition.drive.excited_mechanism(mechanism),
     )
-    arrivals = question.arrivals(driven)
-    descriptor = describe(driven, inputs_of(arrivals), [output.output for output in question.outputs])
-    columns = tuple(columns_of(arrivals))
+    paths = definition.input_paths(driven)
+    descriptor = describe(driven, inputs_of(paths), [output.output for output in definition.outputs])
+    columns = tuple(columns_of(paths))
     return LinearProblem(
-        asked, apply_excitation(descriptor, arrivals), columns, conventions.pade_order, excesses_of(arrivals)
+        asked, apply_excitation(descriptor, paths), columns, conventions.pade_order, excesses_of(paths)
     )
 
 
-def check_peak_gain(question: IndexDefinition) -> None:
+def check_peak_gain(definition: IndexDefinition) -> None:
     """Raises `PerformanceIndexError` for a peak gain of anything but one output of one input."""
-    if question.is_peak and (question.drive.is_random or len(question.outputs) != 1):
+    if definition.is_peak and (definition.drive.is_random or len(definition.outputs) != 1):
         raise PerformanceIndexError(
             "A peak gain requires one force or motion as input and one output, without a random input."
         )
 
 
 def with_convention_filters(
-    conventions: Conventions, mechanism: Mechanism, question: IndexDefinition
+    conventions: Conventions, mechanism: Mechanism, definition: IndexDefinition
 ) -> IndexDefinition:
     """Index definition with the filters of the conventions added to its filters."""
     if conventions.load_filter is None:
-        return question
-    delays = [arrival.delay for arrival in question.arrivals(question.drive.excited_mechanism(mechanism))]
+        return definition
+    delays = [path.delay for path in definition.input_paths(definition.drive.excited_mechanism(mechanism))]
     if np.ptp(delays) == 0.0:
-        return question
+        return definition
     loads = {weighted.output for weighted in mechanism.measures.tyre_load}
     filters = tuple(
         conventions.load_filter if own is None and weighted.output in loads else own
-        for weighted, own in zip(question.outputs, question.filters, strict=True)
+        for weighted, own in zip(definition.outputs, definition.filters, strict=True)
     )
-    return replace(question, filter=filters)
+    return replace(definition, filter=filters)

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource
+from inerter.indices.definition import IndexDefinition
 from inerter.indices.excitation import shape_of
-from inerter.indices.question import IndexDefinition
 from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
 
@@ -20,7 +20,7 @@ _BESIDE = np.concatenate([-np.geomspace(30.0, 0.03, 20), np.geomspace(0.03, 30.0
 
 
 def road_errors(
-    question: IndexDefinition, system: LinearSystem, pade_order: int | None, norms: Array
+    definition: IndexDefinition, system: LinearSystem, pade_order: int | None, norms: Array
 ) -> tuple[ErrorSource, ...]:
     """Errors of an index of r.m.s. values on a road with a measured shape; none on any other.
 
@@ -28,8 +28,8 @@ def road_errors(
     densities of its bands in the place of the line, gives another value: that is the error by the line. What lies
     beyond the waves that were measured may be missing, or twice as much.
     """
-    found = shape_of(question.drive)
-    if found is None or question.is_peak or not np.all(np.isfinite(norms)):
+    found = shape_of(definition.drive)
+    if found is None or definition.is_peak or not np.all(np.isfinite(norms)):
         return ()
     shape, speed = found
     ends = [2.0 * math.pi * speed * n for n in (shape.wavenumber[0], shape.wavenumber[-1])]
@@ -39,7 +39,7 @@ def road_errors(
     ratio = np.exp(np.interp(np.log(omega / (2.0 * math.pi * speed)), np.log(shape.wavenumber), np.log(shape.ratio)))
     by_line = np.trapezoid(power * (ratio - 1.0)[:, None], omega, axis=0) / total
     beyond = np.clip(1.0 - np.trapezoid(power, omega, axis=0) / total, 0.0, 1.0)
-    change = _change_of(question, norms)
+    change = _change_of(definition, norms)
     line, most = change(by_line), max(change(by_line + beyond), change(by_line - beyond))
     return (
         ErrorSource("line of the road", line),
@@ -47,13 +47,13 @@ def road_errors(
     )
 
 
-def _change_of(question: IndexDefinition, norms: Array) -> Callable[[Array], float]:
+def _change_of(definition: IndexDefinition, norms: Array) -> Callable[[Array], float]:
     """Function from relative changes of the mean squares to the relative change of the index."""
-    weights = np.array([abs(output.weight) for output in question.outputs])
-    value = float(question.combine(norms, weights))
+    weights = np.array([abs(output.weight) for output in definition.outputs])
+    value = float(definition.combine(norms, weights))
 
     def change(shares: Array) -> float:
-        other = float(question.combine(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
+        other = float(definition.combine(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
         return abs(other / value - 1.0) if value > 0.0 else 0.0
 
     return change

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
-from inerter.indices.question import Index, IndexDefinition
+from inerter.indices.definition import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import (
     IndexLike,
@@ -106,7 +106,7 @@ class MethodWithChecks(Protocol):
 class MethodWithKernels(Protocol):
     """A method that calls compiled code."""
 
-    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions called by an estimate, or by a search; the slowest to compile first."""
         ...
 
@@ -225,8 +225,8 @@ def evaluate_many(
 def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[IndexLike], method: Method) -> None:
     """Compile what an estimate calls where it will be called, before several processes would do so at once."""
     if isinstance(method, MethodWithKernels):
-        questions = [i.question(v.mechanism()) for index in indices for v, i in constituents_of(vehicle, index)]
-        prepare_on(pool, [k for question in questions for k in method.kernels(question, search=False)])
+        definitions = [i.definition(v.mechanism()) for index in indices for v, i in constituents_of(vehicle, index)]
+        prepare_on(pool, [k for definition in definitions for k in method.kernels(definition, search=False)])
 
 
 def _estimate_rows(
@@ -253,13 +253,13 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
     loose = without_tied_values(vehicle)
     for asked, one in constituents_of(vehicle if loose is None else loose.vehicle, index):
         mechanism = asked.mechanism()
-        _check_names(mechanism, one.question(mechanism))
+        _check_names(mechanism, one.definition(mechanism))
 
 
-def _check_names(mechanism: Mechanism, question: IndexDefinition) -> None:
-    driven = question.drive.excited_mechanism(mechanism)
-    check_inputs(driven, inputs_of(question.arrivals(driven)), PerformanceIndexError)
-    unusual = [weighted.output for weighted in question.outputs if weighted.output not in main_outputs(driven)]
+def _check_names(mechanism: Mechanism, definition: IndexDefinition) -> None:
+    driven = definition.drive.excited_mechanism(mechanism)
+    check_inputs(driven, inputs_of(definition.input_paths(driven)), PerformanceIndexError)
+    unusual = [weighted.output for weighted in definition.outputs if weighted.output not in main_outputs(driven)]
     if unusual:  # finding all names takes longer than most norms
         known = outputs(driven, full_graph(driven))
         for name in unusual:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
-from inerter.indices.question import Index
+from inerter.indices.definition import Index
 from inerter.methods.method import Estimate
 from inerter.vehicle.vehicle import Vehicle
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.question import Index, IndexDefinition
-from inerter.methods.compiled_norm import CompiledQuestion, evaluate_problems, kernels_of, rows_of
+from inerter.indices.definition import Index, IndexDefinition
+from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, NonlinearitySupport
 from inerter.methods.objective import Differentiable
@@ -46,14 +46,14 @@ class Norm:
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
         mechanism = vehicle.mechanism()
-        problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
+        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[self.conventions])
         return problem.estimate({})
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values, compiled."""
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        return evaluate_problems(mechanism, [index.question(mechanism) for index in indices], conventions, points)
+        return evaluate_problems(mechanism, [index.definition(mechanism) for index in indices], conventions, points)
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> float:
         """The part of many designs for which double precision does not suffice, each of which takes some 10 ms.
@@ -61,14 +61,14 @@ class Norm:
         Without free values it is that of one design: 0 or 1.
         """
         mechanism = vehicle.mechanism()
-        problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
+        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[self.conventions])
         rows = rows_of(problem.descriptor, points, next(iter(points.values())).size if points else 1)
-        return float(np.mean(CompiledQuestion(problem).is_unsure(rows)))
+        return float(np.mean(CompiledNorm(problem).is_unsure(rows)))
 
     def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:
         """The index as a function of the free values, compiled, with its gradient."""
         mechanism = vehicle.mechanism()
-        problem = linear_problem(mechanism, index.question(mechanism), CONVENTIONS[self.conventions])
+        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[self.conventions])
         idle = [name for name in vehicle.free_values() if name not in problem.descriptor.free]
         if idle:
             raise DesignError(
@@ -76,8 +76,8 @@ class Norm:
                 "treats gaps as closed and drops elements without force. Fix it, or use a method that models its "
                 "element."
             )
-        return CompiledQuestion(problem)
+        return CompiledNorm(problem)
 
-    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
-        return kernels_of(question) if search else ()
+        return kernels_of(definition) if search else ()

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, ErrorSource, Status, StatusKind, worst_of
 from inerter.formatting import format_quantity, format_share
-from inerter.indices.excitation import stand_ins_of
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
+from inerter.indices.excitation import error_sources_of
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
@@ -29,11 +29,11 @@ from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
     STEP,
-    Drive,
+    RandomExcitation,
     RoadRun,
-    check_drive,
-    drive,
+    check_held_roads,
     factor_of,
+    random_excitation,
     realisation_seeds,
     run,
 )
@@ -67,8 +67,8 @@ class OnRoads:
 
     system: PiecewiseSystem
     frictions: tuple[str, ...]
-    question: IndexDefinition
-    way: Drive
+    definition: IndexDefinition
+    excitation: RandomExcitation
     linear: EquivalentLinearModel | None
     seed: int
     longest: int  # road that may be taken [s]
@@ -76,22 +76,22 @@ class OnRoads:
     @property
     def outputs(self) -> tuple[str, ...]:
         """Names of the outputs of the index."""
-        return tuple(output.output for output in self.question.outputs)
+        return tuple(output.output for output in self.definition.outputs)
 
     @property
     def weights(self) -> Array:
         """Factor of each output's r.m.s. value in the index."""
-        return np.array([abs(output.weight) for output in self.question.outputs])
+        return np.array([abs(output.weight) for output in self.definition.outputs])
 
     def runs(self, first: int, stop: int, pool: Executor) -> list[RoadRun]:
         """Results of the realisations `first`, ..., `stop` - 1."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs = (*self.outputs, *self.frictions)
-        return map_items(partial(run, self.system, self.way, outputs, self.question.filters), seeds, pool.map)
+        return map_items(partial(run, self.system, self.excitation, outputs, self.definition.filters), seeds, pool.map)
 
 
 @dataclass(frozen=True, eq=False)
-class Rest:
+class OutOfBandContribution:
     """Contribution missing from the lines of a road: mean squares to add to the outputs', and their uncertainty."""
 
     power: Array
@@ -104,73 +104,73 @@ class Rest:
 
 
 def on_roads(
-    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
+    system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
 ) -> OnRoads:
     """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
-    way = drive(system, question, conventions, period)
-    check_drive(system, way)
-    if way.hold is not None:
-        return OnRoads(system, (), question, way, None, seed, LONGEST)
-    linear = equivalent_linear_model(system.mechanism, question, conventions)
-    longest = LONGEST if period is None else way.period
-    return OnRoads(*with_velocities(system), question, way, linear, seed, longest)
+    excitation = random_excitation(system, definition, conventions, period)
+    check_held_roads(system, excitation)
+    if excitation.hold is not None:
+        return OnRoads(system, (), definition, excitation, None, seed, LONGEST)
+    linear = equivalent_linear_model(system.mechanism, definition, conventions)
+    longest = LONGEST if period is None else excitation.period
+    return OnRoads(*with_velocities(system), definition, excitation, linear, seed, longest)
 
 
-def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], Rest]:
+def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
     """The design on roads long enough to resolve its response, the first runs there, and the out-of-band rest.
 
     On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
     is tried even if the motion is out of reach as it is.
     """
     found = design.runs(0, _FIRST, pool)
-    usual = design, found, rest_of(design, found)
-    longer, found, lacking = usual
-    while not _is_resolved(longer, found, lacking):
-        period = _LONGER * longer.way.period
-        if period > design.longest or (longer is not design and not lacking.within_reach):
+    usual = design, found, out_of_band_contribution(design, found)
+    longer, found, missing = usual
+    while not _is_resolved(longer, found, missing):
+        period = _LONGER * longer.excitation.period
+        if period > design.longest or (longer is not design and not missing.within_reach):
             return usual
-        longer = replace(longer, way=replace(longer.way, period=period))
+        longer = replace(longer, excitation=replace(longer.excitation, period=period))
         found = longer.runs(0, _FIRST, pool)
-        lacking = rest_of(longer, found)
-    return longer, found, lacking
+        missing = out_of_band_contribution(longer, found)
+    return longer, found, missing
 
 
-def _is_resolved(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> bool:
+def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandContribution) -> bool:
     """Whether the period is long enough for the motion, or no period would be."""
-    if design.way.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
+    if design.excitation.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
         return True
     settled = all(ran.status.ok for ran in found)
     if has_play(design.system) or design.linear is None:
         return settled and max(ran.steady.periods for ran in found) <= _FEW
-    return bool(np.any(np.isinf(lacking.power))) or (settled and lacking.unseen <= _UNSEEN)
+    return bool(np.any(np.isinf(missing.power))) or (settled and missing.unseen <= _UNSEEN)
 
 
-def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
+def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOfBandContribution:
     """Contribution missing from the lines of these roads, by the equivalent linear model of the motion `found`.
 
     Its squared norms less its mean squares on the lines.
     """
-    count, way, linear = len(design.outputs), design.way, design.linear
+    count, excitation, linear = len(design.outputs), design.excitation, design.linear
     if linear is None:
-        held = way.hold is not None
-        return Rest(np.zeros(count), beyond=0.0 if held else np.nan, notes=() if held else (_UNLIKE,))
+        held = excitation.hold is not None
+        return OutOfBandContribution(np.zeros(count), beyond=0.0 if held else np.nan, notes=() if held else (_UNLIKE,))
     power = np.mean([ran.power for ran in found], axis=0)
     if not np.all(np.isfinite(power)):
-        return Rest(np.full(count, np.nan))
+        return OutOfBandContribution(np.full(count, np.nan))
     speeds = np.sqrt(power[count:])
     system = linear.system(speeds)
     pade_order = linear.problem.pade_order
     whole = h2(system, pade_order)
     if not whole.status.ok:
-        return Rest(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
+        return OutOfBandContribution(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
     norms, _ = linear.problem.correct_norms(system, whole.outputs)
-    lines = way.signal(0)
+    lines = excitation.signal(0)
     omega = 2.0 * np.pi * lines.frequencies
     gains, sampled = _squared_gains(design, speeds, omega)
     of_lines = 0.5 * (omega * lines.amplitudes) ** 2
     inside, seen = of_lines @ gains, of_lines @ sampled
-    added = (design.question.drive.size * norms) ** 2 - seen
-    (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (way.period, design.longest))
+    added = (design.definition.drive.amplitude_density * norms) ** 2 - seen
+    (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (excitation.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + linear.unlike(speeds, norms), 1.0)  # once the lines tell more
@@ -178,14 +178,16 @@ def rest_of(design: OnRoads, found: Sequence[RoadRun]) -> Rest:
     if unseen > _UNSEEN:
         unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
     if has_play(design.system) and unseen > _UNSEEN:
-        return Rest(np.zeros(count), unseen, beyond=share, notes=(_UNLIKE,))
+        return OutOfBandContribution(np.zeros(count), unseen, beyond=share, notes=(_UNLIKE,))
     if unseen > _LOST:
-        return Rest(np.full(count, np.nan), unseen, share, within_reach, _almost_undamped(pole, design.longest))
+        return OutOfBandContribution(
+            np.full(count, np.nan), unseen, share, within_reach, _almost_undamped(pole, design.longest)
+        )
     taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
-    measured = road_errors(design.question, system, pade_order, norms)
-    return Rest(added, unseen, share * unlike, within_reach, status, measured=measured)
+    measured = road_errors(design.definition, system, pade_order, norms)
+    return OutOfBandContribution(added, unseen, share * unlike, within_reach, status, measured=measured)
 
 
 def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array, Array]:
@@ -197,7 +199,7 @@ def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array,
     for all inputs, so that each of the lines arrives with the phase of the first. What is cubic is the displacement of
     a road, whose velocity is the input of the linear system, or a force itself.
     """
-    linear, way = design.linear, design.way
+    linear, excitation = design.linear, design.excitation
     assert linear is not None
     here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
     for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
@@ -216,7 +218,7 @@ def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array,
     for j, (name, road) in enumerate(reached):
         smooth = np.column_stack([np.interp(omega, some, column) for column in images[:, :, j].T])
         for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
-            there = [a for one in way.reached for a in one if (a.input, a.source) == (name, source)]
+            there = [a for one in excitation.reached for a in one if (a.input, a.source) == (name, source)]
             arriving = sum((factor_of(a, omega) for a in there), np.zeros(omega.size, dtype=complex))
             sampled[:, :, i] += (arriving * omega ** (3 if road else 4))[:, None] * smooth
     return np.sum(np.abs(here) ** 2, axis=2), np.sum(np.abs(sampled) ** 2, axis=2)
@@ -246,44 +248,44 @@ def _mostly_beyond(share: float) -> Status:
 
 def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, pool: Executor) -> Estimate:
     """Estimate over `wanted` roads, or over as many as the relative standard error requires."""
-    design, found, lacking = long_enough(design, pool)
+    design, found, missing = long_enough(design, pool)
     while True:
-        estimate = _average_index(design, found, lacking)
+        estimate = _average_index(design, found, missing)
         if relative_error is not None and len(found) >= wanted and np.isfinite(estimate.value):
             wanted = _enough(np.array(estimate.samples), relative_error)
-        if len(found) >= wanted or not np.all(np.isfinite(lacking.power)):
+        if len(found) >= wanted or not np.all(np.isfinite(missing.power)):
             return _with_error_reached(estimate, relative_error)
         found += design.runs(len(found), wanted, pool)
 
 
-def _average_index(design: OnRoads, found: Sequence[RoadRun], lacking: Rest) -> Estimate:
+def _average_index(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandContribution) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
-    power = np.array([ran.power[: len(design.outputs)] for ran in found]) + lacking.power
-    status, unit = worst_of([lacking.status, *(ran.status for ran in found)]), design.question.unit
-    question, weights = design.question, design.weights
-    samples = question.combine(np.sqrt(np.maximum(power, 0.0)), weights)
+    power = np.array([ran.power[: len(design.outputs)] for ran in found]) + missing.power
+    status, unit = worst_of([missing.status, *(ran.status for ran in found)]), design.definition.unit
+    definition, weights = design.definition, design.weights
+    samples = definition.combine(np.sqrt(np.maximum(power, 0.0)), weights)
     sizes = np.sqrt(np.maximum(power.mean(axis=0), 0.0))
     if not np.all(np.isfinite(samples)):
-        found_none = Estimate(float(question.combine(sizes, weights)), unit, status, notes=lacking.notes)
+        found_none = Estimate(float(definition.combine(sizes, weights)), unit, status, notes=missing.notes)
         return with_error_sources(found_none, (), PROMISE)
     mean, scatter, _ = mean_and_error(samples)
-    value = mean if design.way.hold is not None else float(question.combine(sizes, weights))
+    value = mean if design.excitation.hold is not None else float(definition.combine(sizes, weights))
     estimate = Estimate(
-        value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=lacking.notes,
-        samples=tuple(samples.tolist()), period=design.way.period,
-        error_sources=(*stand_ins_of(question.drive, design.system.mechanism), *lacking.measured),
+        value, unit, status, scatter, interval_of(value, scatter, samples.size), samples.size, notes=missing.notes,
+        samples=tuple(samples.tolist()), period=design.excitation.period,
+        error_sources=(*error_sources_of(definition.drive, design.system.mechanism), *missing.measured),
     )  # fmt: skip
-    return with_error_sources(estimate, _errors(lacking, found, len(design.outputs)), PROMISE)
+    return with_error_sources(estimate, _errors(missing, found, len(design.outputs)), PROMISE)
 
 
-def _errors(lacking: Rest, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
+def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
     jumps = mean_bound([ran.jumps[:outputs] for ran in found])
     return [
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),
-        ErrorSource("lines of the road", 0.5 * lacking.unseen),
-        ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * lacking.beyond),
+        ErrorSource("lines of the road", 0.5 * missing.unseen),
+        ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * missing.beyond),
     ]
 
 

@@ -14,9 +14,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.kernels.arrays import FRICTION, KIND
-from inerter.methods.realisations import Drive, table
+from inerter.methods.realisations import RandomExcitation, table
 from inerter.signals.harmonics import multisine
 from inerter.signals.road import Road
 from inerter.simulation import event_driven
@@ -34,7 +34,7 @@ _TOGETHER = 2**19  # times of several roads at once: 8 MB
 class FirstOrder:
     """The change of an index of r.m.s. values by friction, to first order, on one road."""
 
-    way: Drive
+    excitation: RandomExcitation
     velocities: Complex  # (lines, frictions) across the frictions, for a line of the road of 1 m
     effects: Complex  # (lines, frictions) of a line of sgn(v) on the index, for a line of the road of 1 m
 
@@ -46,7 +46,7 @@ class FirstOrder:
 
     def _changes(self, seeds: Sequence[int]) -> Array:
         lines, times = self.velocities.shape[0], self._times
-        roads = np.array([_lines(self.way.road, self.way.period, lines, seed) for seed in seeds])
+        roads = np.array([_lines(self.excitation.road, self.excitation.period, lines, seed) for seed in seeds])
         total = np.zeros(len(seeds))
         for velocity, effect in zip(self.velocities.T, self.effects.T, strict=True):
             spectrum = np.zeros((len(seeds), times // 2 + 1), dtype=complex)
@@ -69,39 +69,43 @@ def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
 
 
-def first_order(system: PiecewiseSystem, question: IndexDefinition, way: Drive) -> FirstOrder | None:
+def first_order(
+    system: PiecewiseSystem, definition: IndexDefinition, excitation: RandomExcitation
+) -> FirstOrder | None:
     """The first-order effect of every friction.
 
     None if a gap is there, if a part is loose without friction, if what moves is not one road alone, or if a friction
     differs by its direction.
     """
     kinds, (lower, upper) = system.mechanics.elements[:, KIND], system.mechanics.limits.T
-    if way.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
+    if excitation.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
         return None
     if np.any(upper[kinds != FRICTION] > 0.0):
         return None
     count, n, nu = upper.size, system.order, system.inputs
-    integration = event_driven.start(system, table(way, 0), np.zeros(n))
+    integration = event_driven.start(system, table(excitation, 0), np.zeros(n))
     slip, forces = _slipping(integration)
-    signal = way.signal(0)
-    lines = round(_HIGHEST * way.period)
+    signal = excitation.signal(0)
+    lines = round(_HIGHEST * excitation.period)
     omega = 2.0 * np.pi * signal.frequencies[:lines]
     amplitudes = signal.amplitudes[:lines]
-    arrival = np.exp(-1j * np.outer(omega, way.delays))
+    path = np.exp(-1j * np.outer(omega, excitation.delays))
     inputs = np.zeros((omega.size, nu), dtype=complex)
     for order in range(3):
-        inputs[:, order * len(way.delays) : (order + 1) * len(way.delays)] = arrival * (1j * omega[:, None]) ** order
+        inputs[:, order * len(excitation.delays) : (order + 1) * len(excitation.delays)] = (
+            path * (1j * omega[:, None]) ** order
+        )
     try:
         resolvent = np.linalg.inv(1j * omega[:, None, None] * np.eye(n) - slip[:n, :n])
     except np.linalg.LinAlgError:
         return None
     states = np.einsum("kij,kj->ki", resolvent, inputs @ slip[:n, n : n + nu].T)
-    on_columns, on_eta = _over_slip(system, question)
+    on_columns, on_eta = _over_slip(system, definition)
     rows = on_columns + on_eta @ slip[integration.eta]
     direct = on_eta @ forces[integration.eta]
     outputs = states @ rows[:, :n].T + inputs @ rows[:, n : n + nu].T
     responses = np.einsum("oi,kij,jf->kof", rows[:, :n], resolvent, forces[:n]) + direct
-    for i, one in enumerate(question.filters):
+    for i, one in enumerate(definition.filters):
         if one is not None:
             passed = one.response(omega)
             outputs[:, i] *= passed
@@ -111,15 +115,15 @@ def first_order(system: PiecewiseSystem, question: IndexDefinition, way: Drive) 
     power = 0.5 * (np.abs(outputs) ** 2 * amplitudes[:, None] ** 2).sum(axis=0)
     if not np.all(np.isfinite(power)) or not np.all(power > 0.0) or count == 0:
         return None
-    sizes, given = np.sqrt(power), np.array([abs(output.weight) for output in question.outputs])
-    weights = question.slopes(sizes, given) / (2.0 * sizes)
+    sizes, given = np.sqrt(power), np.array([abs(output.weight) for output in definition.outputs])
+    weights = definition.slopes(sizes, given) / (2.0 * sizes)
     effects = np.einsum("o,ko,kof->kf", weights, np.conj(outputs), responses)
-    return FirstOrder(way, velocities, effects)
+    return FirstOrder(excitation, velocities, effects)
 
 
-def _over_slip(system: PiecewiseSystem, question: IndexDefinition) -> tuple[Array, Array]:
+def _over_slip(system: PiecewiseSystem, definition: IndexDefinition) -> tuple[Array, Array]:
     """The outputs as rows over (state, inputs, 1), and over eta."""
-    rows = [output_rows(system, system.outputs[output.output]) for output in question.outputs]
+    rows = [output_rows(system, system.outputs[output.output]) for output in definition.outputs]
     columns = np.array([np.concatenate([on_x, on_u, [0.0]]) for on_x, on_u, _ in rows])
     return columns, np.array([on_eta for _, _, on_eta in rows])
 

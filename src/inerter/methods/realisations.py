@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import Status
 from inerter.formatting import format_quantity
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import Conventions
 from inerter.methods.steady_squares import steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
@@ -35,7 +35,7 @@ _FEWEST_PERIODS = 4  # of the longest roads, until they must repeat
 
 
 @dataclass(frozen=True)
-class Drive:
+class RandomExcitation:
     """Random excitation of a mechanism: input paths of each input, and duration.
 
     Each is the velocity of a road: a white force or acceleration is as much, in its own unit.
@@ -57,7 +57,7 @@ class Drive:
     @property
     def sources(self) -> tuple[str, ...]:
         """Names of the sources."""
-        return tuple(dict.fromkeys(arrival.source for one in self.reached for arrival in one))
+        return tuple(dict.fromkeys(path.source for one in self.reached for path in one))
 
     def signal(self, seed: int, source: int = 0) -> Harmonics:
         """Realisation of a source as a road, before the hold."""
@@ -68,29 +68,29 @@ class Drive:
         """Inputs in one realisation: displacements of roads, and forces; None for an input at rest."""
         signals = {name: self.signal(seed, i) for i, name in enumerate(self.sources)}
         return [
-            self._sum(arrivals, signals, velocity=i >= self.roads) if arrivals else None
-            for i, arrivals in enumerate(self.reached)
+            self._sum(paths, signals, velocity=i >= self.roads) if paths else None
+            for i, paths in enumerate(self.reached)
         ]
 
-    def _sum(self, arrivals: Sequence[InputPath], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
+    def _sum(self, paths: Sequence[InputPath], signals: Mapping[str, Harmonics], velocity: bool) -> Harmonics:
         """The sum of what arrives; a force is what the velocity of a road is."""
         first = next(iter(signals.values()))
         omega = 2.0 * np.pi * first.frequencies
-        total = sum(factor_of(a, omega) * signals[a.source].coefficient for a in arrivals)
+        total = sum(factor_of(a, omega) * signals[a.source].coefficient for a in paths)
         return replace(first, coefficient=np.asarray(total * (1j * omega if velocity else 1.0)), speed=None)
 
 
-def factor_of(arrival: InputPath, omega: Array) -> NDArray[np.complex128]:
+def factor_of(path: InputPath, omega: Array) -> NDArray[np.complex128]:
     """Complex gain of an input path at `omega` [rad/s]."""
-    passed: Any = 1.0 if arrival.filter is None else arrival.filter.response(omega)
-    if arrival.excess is not None:
-        passed = passed * arrival.excess.factor(omega)
-    return np.asarray(arrival.lever * passed * np.exp(-1j * omega * arrival.delay))
+    passed: Any = 1.0 if path.filter is None else path.filter.response(omega)
+    if path.excess is not None:
+        passed = passed * path.excess.factor(omega)
+    return np.asarray(path.lever * passed * np.exp(-1j * omega * path.delay))
 
 
 def _one_road(reached: Sequence[Sequence[InputPath]], roads: int) -> bool:
     """Whether one source is the road of all road inputs, and no force acts."""
-    on_roads = [arrival for one in reached[:roads] for arrival in one]
+    on_roads = [path for one in reached[:roads] for path in one]
     alone = all(len(one) == 1 for one in reached[:roads]) and not any(reached[roads:])
     return alone and all(a.plain for a in on_roads) and len({a.source for a in on_roads}) == 1
 
@@ -105,56 +105,62 @@ class RoadRun:
     jumps: Array  # what samples may miss of the r.m.s. values, relative to them
 
 
-def drive(
-    system: PiecewiseSystem, question: IndexDefinition, conventions: Conventions, period: int | None = None
-) -> Drive:
+def random_excitation(
+    system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, period: int | None = None
+) -> RandomExcitation:
     """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.
     """
-    mechanism, size = system.mechanism, question.drive.size
-    arrivals = question.arrivals(mechanism)
+    mechanism, size = system.mechanism, definition.drive.amplitude_density
+    paths = definition.input_paths(mechanism)
     names = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
-    reached = tuple(tuple(a for a in arrivals if a.input == name) for name in names)
-    road = getattr(question.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
+    reached = tuple(tuple(a for a in paths if a.input == name) for name in names)
+    road = getattr(definition.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
     roads = len(mechanism.roads)
-    return Drive(road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD)
+    return RandomExcitation(
+        road, reached, roads, conventions.hold if _one_road(reached, roads) else None, period or PERIOD
+    )
 
 
-def table(way: Drive, seed: int) -> InputTable:
+def table(excitation: RandomExcitation, seed: int) -> InputTable:
     """Input table over one period of a realisation."""
-    return _kept_table(way, seed) if way.period <= PERIOD else _table(way, seed)
+    return _kept_table(excitation, seed) if excitation.period <= PERIOD else _table(excitation, seed)
 
 
-def _table(way: Drive, seed: int) -> InputTable:
-    if way.delays is None:
-        moved = way.input_signals(seed)
-        return tabulate(moved, [0.0] * len(moved), way.signal(seed).period, STEP)
-    signal, rest = way.signal(seed), len(way.reached) - way.roads
-    road = signal if way.hold is None else signal.held(way.hold)
-    signals = [*(road for _ in way.delays), *(None for _ in range(rest))]
-    delays = [*way.delays, *(0.0 for _ in range(rest))]
-    parts = 1 if way.hold is None else parts_of(way.hold, way.delays)
-    return tabulate(signals, delays, signal.period, (way.hold or STEP) / parts, every=parts)
+def _table(excitation: RandomExcitation, seed: int) -> InputTable:
+    if excitation.delays is None:
+        moved = excitation.input_signals(seed)
+        return tabulate(moved, [0.0] * len(moved), excitation.signal(seed).period, STEP)
+    signal, rest = excitation.signal(seed), len(excitation.reached) - excitation.roads
+    road = signal if excitation.hold is None else signal.held(excitation.hold)
+    signals = [*(road for _ in excitation.delays), *(None for _ in range(rest))]
+    delays = [*excitation.delays, *(0.0 for _ in range(rest))]
+    parts = 1 if excitation.hold is None else parts_of(excitation.hold, excitation.delays)
+    return tabulate(signals, delays, signal.period, (excitation.hold or STEP) / parts, every=parts)
 
 
 _kept_table = lru_cache(maxsize=_KEPT)(_table)
 
 
-def check_drive(system: PiecewiseSystem, way: Drive) -> None:
+def check_held_roads(system: PiecewiseSystem, excitation: RandomExcitation) -> None:
     """Raises `SimulationError` if the mechanism cannot be driven over roads that are held."""
-    if way.hold is not None:
-        held = Signal(label=f"a road held for {format_quantity(way.hold, 's', 6)}", hold="zero")
-        check_holds(system, [held for _ in range(way.roads)])
+    if excitation.hold is not None:
+        held = Signal(label=f"a road held for {format_quantity(excitation.hold, 's', 6)}", hold="zero")
+        check_holds(system, [held for _ in range(excitation.roads)])
 
 
 def run(
-    system: PiecewiseSystem, way: Drive, outputs: Sequence[str], filters: Sequence[Filter | None], seed: int
+    system: PiecewiseSystem,
+    excitation: RandomExcitation,
+    outputs: Sequence[str],
+    filters: Sequence[Filter | None],
+    seed: int,
 ) -> RoadRun:
     """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
-    inputs = table(way, seed)
+    inputs = table(excitation, seed)
     state = initial_state(system, inputs.value[0], "rest")
-    most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / way.period))
+    most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / excitation.period))
     return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most))
 
 

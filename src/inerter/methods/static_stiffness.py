@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError
-from inerter.indices.question import Index
+from inerter.indices.definition import Index
 from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
 from inerter.networks.elements import Element, Free, Network, Parallel

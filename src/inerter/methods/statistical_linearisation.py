@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.question import Index, IndexDefinition
+from inerter.indices.definition import Index, IndexDefinition
 from inerter.kernels import harmonic
 from inerter.methods.compiled_norm import kernels_of
 from inerter.methods.describing_function import HarmonicBalance, harmonic_balance
@@ -48,9 +48,8 @@ class StatisticalLinearisation:
     conventions: str = "exact"
     name = "statistical-linearisation"
     description = (
-        "norms of a linear model in which an equivalent damper replaces each friction, for the motion that results; "
-        "for a "
-        "peak gain at each frequency under a sinusoidal force"
+        "norms of a linear model in which an equivalent damper replaces each friction element, for the "
+        "motion that results; for a peak gain at each frequency under a sinusoidal force"
     )
     brief = "linearisation"
     nonlinearity_support = NonlinearitySupport.FRICTION
@@ -83,11 +82,11 @@ class StatisticalLinearisation:
         """Raises what `estimate` would raise for the design's elements and the index's outputs, whatever the values."""
         self._closure(vehicle, index)
 
-    def kernels(self, question: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """Compiled functions of the method; a search of a design without friction uses those of `Norm`."""
-        if question.is_peak:
-            return (*(kernels_of(question) if search else ()), harmonic.gains)
-        return kernels_of(question)
+        if definition.is_peak:
+            return (*(kernels_of(definition) if search else ()), harmonic.gains)
+        return kernels_of(definition)
 
     def _many(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array:
         closure = self._closure(vehicle, index)
@@ -99,11 +98,11 @@ class StatisticalLinearisation:
     def _closure(self, vehicle: Vehicle, index: Index) -> GaussianClosure | HarmonicBalance | None:
         """The closure that serves the index; None if no friction acts."""
         mechanism = vehicle.mechanism()
-        question = index.question(mechanism)
+        definition = index.definition(mechanism)
         check_damped(mechanism)
         if not has_friction(mechanism):
             return None
-        check_outputs(mechanism, [weighted.output for weighted in question.outputs])
-        if question.is_peak:
-            return harmonic_balance(mechanism, question)
-        return GaussianClosure(mechanism, question, CONVENTIONS[self.conventions])
+        check_outputs(mechanism, [weighted.output for weighted in definition.outputs])
+        if definition.is_peak:
+            return harmonic_balance(mechanism, definition)
+        return GaussianClosure(mechanism, definition, CONVENTIONS[self.conventions])

@@ -12,13 +12,13 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.symmetry import antisymmetric_half, symmetric_half
 
 
-def on_one_side(mechanism: Mechanism, arrivals: Sequence[InputPath]) -> tuple[Mechanism, tuple[InputPath, ...]] | None:
+def on_one_side(mechanism: Mechanism, paths: Sequence[InputPath]) -> tuple[Mechanism, tuple[InputPath, ...]] | None:
     """Half model with the motion of the whole, and its input paths; None if there is none.
 
     The two tracks must meet one source at the same times, with levers that are alike, or opposite, on every axle.
     """
-    at = {arrival.input: arrival for arrival in arrivals}
-    if len(at) < len(arrivals) or at.keys() != {road.name for road in mechanism.roads}:
+    at = {path.input: path for path in paths}
+    if len(at) < len(paths) or at.keys() != {road.name for road in mechanism.roads}:
         return None
     merged = mechanism.on_one_track()
     on = {own.road: one.road for own, one in zip(mechanism.tyres, merged.tyres, strict=True)}
@@ -41,9 +41,9 @@ def _sign(one: InputPath, other: InputPath) -> float:
     return 1.0 if one.lever == other.lever else -1.0
 
 
-def _by_displacement(arrival: InputPath) -> InputPath:
+def _by_displacement(path: InputPath) -> InputPath:
     """Input path by the displacement of the road where it stays bounded, so that no drifting state remains."""
-    shape = arrival.filter
-    if arrival.displacement or shape is None or len(shape.numerator) < 2 or shape.numerator[-1] != 0.0:
-        return arrival
-    return replace(arrival, filter=Filter(shape.numerator[:-1], shape.denominator), displacement=True)
+    shape = path.filter
+    if path.displacement or shape is None or len(shape.numerator) < 2 or shape.numerator[-1] != 0.0:
+        return path
+    return replace(path, filter=Filter(shape.numerator[:-1], shape.denominator), displacement=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
 from inerter.formatting import format_quantity
-from inerter.indices.question import Combination, Index, IndexDefinition, OfIndex
+from inerter.indices.definition import Combination, Index, IndexDefinition, OfIndex
 from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
@@ -90,9 +90,9 @@ class OneOutput(OfIndex):
         """Title of the index with the output."""
         return f"{self.index.title} ({self.output})"
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """The definition of the index with that output only."""
-        whole = self.index.question(mechanism)
+        whole = self.index.definition(mechanism)
         i = [weighted.output for weighted in whole.outputs].index(self.output)
         return replace(whole, outputs=(whole.outputs[i],), filter=(whole.filters[i],))
 
@@ -114,10 +114,10 @@ def for_each(index: IndexLike, vehicle: Vehicle) -> Sequence[IndexLike]:
     if is_composite(index):
         return index.per_output(for_each, vehicle)
     mechanism = vehicle.mechanism()
-    question = index.question(mechanism)
+    definition = index.definition(mechanism)
     motions = {f"{c.name}_{what}" for c in mechanism.coordinates for what in _MOTIONS}
-    names = [weighted.output for weighted in question.outputs]
-    if len(names) == 1 or question.combination is not Combination.SUM_OF_RMS or motions & set(names):
+    names = [weighted.output for weighted in definition.outputs]
+    if len(names) == 1 or definition.combination is not Combination.SUM_OF_RMS or motions & set(names):
         return [index]
     return [OneOutput(index, name) for name in names]
 

@@ -82,7 +82,7 @@ def _loss_difference(candidate: Candidate) -> str:
 
 
 def goodness_table(found: IdentificationResult) -> Table:
-    """What the model leaves of each record, in the fitted part and in that kept for the check."""
+    """Residual of the model for each record, in the fitted part and in the validation data."""
     heads = ("Record", "Part", "Samples", "Explained", "Residual, r.m.s.", "Sensor noise", "Offset of the load cell")
     rows = []
     for c in found.fit.comparisons:

@@ -23,6 +23,7 @@ from inerter.figures.labels import (
     indices,
     infeasible,
     layouts,
+    method_label,
     methods,
     one_method,
     swept_element,
@@ -30,7 +31,6 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
     title_with_name,
-    way,
 )
 from inerter.formatting import format_percent, format_quantity
 from inerter.indices.registry import INDICES
@@ -202,15 +202,15 @@ def crossing_sentences(results: xr.Dataset) -> list[tuple[str, str]]:
     element, baseline = str(swept_element(results)), results.attrs["baseline"]
     words = results[element].attrs["long_name"]
     several = len(methods(results)) > 1
-    ways = (
-        {f" {way(results, m)}": by_method(results, m) for m in methods(results)}
+    method_labels = (
+        {f" {method_label(results, m)}": by_method(results, m) for m in methods(results)}
         if several
         else {"": one_method(results)}
     )
     sentences = []
     for index in indices(results):
         for name in compared_layouts(results):
-            found = {by: crossings(one, index, name) for by, one in ways.items()}
+            found = {by: crossings(one, index, name) for by, one in method_labels.items()}
             texts = [_format_places(results, places) + by for by, places in found.items() if places]
             if texts:
                 said = f"{name} and {baseline} are equally good at {words} = {', '.join(texts)}"
@@ -230,9 +230,9 @@ def _design_headline(results: xr.Dataset, index: str, static: Collection[tuple[s
     names = best_layouts(results, index)
     if not names:
         return f"{title}: {_no_best_clause(results, index)}."
-    ways = {method: way(results, method) for method in methods(results)} or {"": ""}
+    method_labels = {method: method_label(results, method) for method in methods(results)} or {"": ""}
     parts: list[str] = []
-    for method, words in ways.items():
+    for method, words in method_labels.items():
         one = by_method(results, method) if method else results
         if not parts:
             pause = "," if words and "," in title else ""
@@ -285,7 +285,7 @@ def _format_improvement(design: xr.Dataset) -> str:
 
 def _sweep_headline(every: xr.Dataset, index: str) -> str:
     results = one_method(every)
-    words = next((way(every, method) for method in methods(every)), "")
+    words = next((method_label(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), _index_label(results, index), results.attrs["baseline"]
     names_there = compared_layouts(results) or results["layout"].values.tolist()

@@ -14,10 +14,10 @@ from inerter.figures.labels import (
     index_unit,
     indices,
     layouts,
+    method_label,
     methods,
     swept_places,
     title_with_name,
-    way,
 )
 from inerter.formatting import Scale, choose_scale
 from inerter.report.index_summary import extremes, place_text
@@ -36,7 +36,9 @@ def _table(results: xr.Dataset, index: str) -> Table:
         for name in _row_layouts(results)
     ]
     caption = f"{capital(title_with_name(index_title(results, index), index))} {_caption_clause(results, unit)}"
-    return Table(caption, columns("Layout", *(capital(way(results, method)) for method in methods(results))), rows)
+    return Table(
+        caption, columns("Layout", *(capital(method_label(results, method)) for method in methods(results))), rows
+    )
 
 
 def _caption_clause(results: xr.Dataset, unit: Scale) -> str:

@@ -150,10 +150,10 @@ def printed_text(text: str) -> str:
     What stands in quotes is to be typed, and remains as it is.
     """
     parts = text.split('"')
-    return '"'.join(_printed(part) if i % 2 == 0 else part for i, part in enumerate(parts))
+    return '"'.join(_typeset_plain(part) if i % 2 == 0 else part for i, part in enumerate(parts))
 
 
-def _printed(text: str) -> str:
+def _typeset_plain(text: str) -> str:
     text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
     text = re.sub(r" -(?=[\d.]|inf\b)", " −", text)
     return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))

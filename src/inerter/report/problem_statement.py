@@ -13,12 +13,12 @@ from inerter.field_metadata import Field, fields_of
 from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of
+from inerter.files.study.method_labels import method_labels
 from inerter.files.study.places import places
 from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
-from inerter.files.study.ways import ways
 from inerter.formatting import format_number, format_quantity, format_share
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
@@ -164,7 +164,7 @@ def indices_asked(results: xr.Dataset) -> str:
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
     """Sentences on the computation of the numbers."""
-    told = ways(study) if len(study.evaluate) > 1 else {}
+    told = method_labels(study) if len(study.evaluate) > 1 else {}
     for name in study.evaluate:
         yield f"Values{f' {told[name]} (in files: {name})' if told else ''} are {words_of(name)}."
     yield from _of_roads(study, results)

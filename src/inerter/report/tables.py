@@ -19,6 +19,7 @@ from inerter.figures.labels import (
     indices,
     infeasible,
     layouts,
+    method_label,
     methods,
     one_method,
     swept_element,
@@ -26,7 +27,6 @@ from inerter.figures.labels import (
     swept_scale,
     swept_words,
     title_with_name,
-    way,
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, choose_scale, format_number, format_percent, format_quantity
@@ -61,7 +61,7 @@ def sweep_tables(results: xr.Dataset) -> list[Table]:
     if len(methods(results)) < 2:
         return [_sweep_table(one_method(results), index) for index in indices(results)]
     return [
-        _sweep_table(by_method(results, method), index, f", {way(results, method)}")
+        _sweep_table(by_method(results, method), index, f", {method_label(results, method)}")
         for index in indices(results)
         for method in methods(results)
     ]

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.deprecation import RenamedAttribute
+from inerter.deprecation import RenamedAttribute, renamed_keywords
 from inerter.errors import RecordError, SignalError
 from inerter.formatting import format_alike, format_quantity
 from inerter.signals.arguments import positive_number
@@ -101,18 +101,19 @@ class Profile:
         along = [np.interp(grid, self.distance, heights) for heights in self.tracks.values()]
         return replace(self, distance=grid, height=along[0], right=along[1] if len(along) > 1 else None)
 
-    def to_signal(self, speed: float, track: str = "") -> SampledSignal:
+    @renamed_keywords(track="side")
+    def to_signal(self, speed: float, side: str = "") -> SampledSignal:
         """One track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
-        Raises `SignalError` unless `speed` is positive, and `track` one of its tracks.
+        Raises `SignalError` unless `speed` is positive, and `side` one of its tracks.
         """
         velocity = positive_number("The speed over a profile", speed, "m/s")
-        if track not in self.tracks:
-            which = f"no track {track!r}" if track else "two tracks"
+        if side not in self.tracks:
+            which = f"no {side!r} track" if side else "two tracks"
             raise SignalError(f"{self.source!r} has {which}: {_available_tracks(self.tracks)}.")
-        label = " ".join(filter(None, ("profile", self.source, track)))
+        label = " ".join(filter(None, ("profile", self.source, side)))
         return Signal.sampled(
-            (self.distance - self.distance[0]) / velocity, self.tracks[track], speed=velocity, label=label
+            (self.distance - self.distance[0]) / velocity, self.tracks[side], speed=velocity, label=label
         )
 
     driven = RenamedAttribute("to_signal")
@@ -122,7 +123,7 @@ class Profile:
 
         Raises `SignalError` unless `speed` [m/s] is positive.
         """
-        found = {track: self.to_signal(speed, track) for track in self.tracks}
+        found = {side: self.to_signal(speed, side) for side in self.tracks}
         return found.get("", found)
 
 

@@ -13,6 +13,7 @@ from typing import Any, TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import renamed_keywords
 from inerter.errors import RecordError, SignalError, UnitError
 from inerter.formatting import format_quantity, format_range
 from inerter.records import tables
@@ -79,15 +80,16 @@ def read_profile(
     return _read_table(name, source, _checked_units(units), interval, named)
 
 
-def profile(path: str | os.PathLike[str], speed: float, track: str = "") -> SampledSignal:
+@renamed_keywords(track="side")
+def profile(path: str | os.PathLike[str], speed: float, side: str = "") -> SampledSignal:
     """A measured road of one track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
-    `path` is a file that `read_profile` reads without further arguments; for two tracks, `track` is "left" or "right".
+    `path` is a file that `read_profile` reads without further arguments; for two tracks, `side` is "left" or "right".
 
-    Raises `SignalError` for a file that cannot be read in this way, or an unknown track.
+    Raises `SignalError` for a file that cannot be read in this way, or an unknown side.
     """
     try:
-        return read_profile(path).to_signal(speed, track)
+        return read_profile(path).to_signal(speed, side)
     except RecordError as problem:
         raise SignalError(str(problem)) from None
 

@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from inerter.deprecation import renamed_keywords
 from inerter.errors import RecordError
 from inerter.formatting import format_quantity, format_range
 from inerter.roads.profile import Profile
@@ -67,12 +68,13 @@ class RoadSpectrum:
         return RoadShape(tuple(wavenumbers), tuple((np.array(densities) / line).tolist()))
 
 
+@renamed_keywords(track="side")
 def road_spectrum(
-    profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, track: str = "", sampling: str = POINTS
+    profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, side: str = "", sampling: str = POINTS
 ) -> RoadSpectrum:
     """The spectrum of one track of a profile, by Welch's method, and the line fitted from `lowest` to `highest`.
 
-    The profile is divided into segments that overlap by half, detrended and Hann-windowed. Without a `track`, the mean
+    The profile is divided into segments that overlap by half, detrended and Hann-windowed. Without a `side`, the mean
     of two tracks. Unevenly spaced points are interpolated linearly.
 
     `sampling` is the kind of heights: "points" of the road, or "averages", each over its interval, for both of which
@@ -90,9 +92,9 @@ def road_spectrum(
         known = " or ".join(repr(one) for one in SAMPLING)
         raise RecordError(f"The sampling of a profile must be {known}, got {sampling!r}.")
     even = profile.even()
-    if track and track not in even.tracks:
-        raise RecordError(f"{profile.source!r}: unknown track {track!r}.")
-    heights = [even.tracks[track]] if track else list(even.tracks.values())
+    if side and side not in even.tracks:
+        raise RecordError(f"{profile.source!r}: unknown track {side!r}.")
+    heights = [even.tracks[side]] if side else list(even.tracks.values())
     size = max(2 * even.distance.size // (_SEGMENTS + 1), min(even.distance.size, 16))
     wavenumber, densities = scipy.signal.welch(
         np.array(heights), fs=1.0 / even.interval, nperseg=size, window="hann", detrend="linear"

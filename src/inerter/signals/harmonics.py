@@ -156,8 +156,8 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
         for ratio, excess, part in zip(ratios, excesses, (own, other), strict=True)
     )
     return {
-        track: replace(own, coefficient=np.asarray(total), label=f"{track} track of a {own.label}")
-        for track, total in (("left", mean + half), ("right", mean - half))
+        side: replace(own, coefficient=np.asarray(total), label=f"{side} track of a {own.label}")
+        for side, total in (("left", mean + half), ("right", mean - half))
     }
 
 

@@ -126,10 +126,10 @@ def assign(
 
 def _by_track(mechanism: Mechanism, moved: object) -> dict[str, object]:
     """Signal of each road if one is given for each track; else empty."""
-    tracks = {road.track for road in mechanism.roads}
+    tracks = {road.side for road in mechanism.roads}
     if not isinstance(moved, Mapping) or not {*moved} or not {*moved} <= {"left", "right"} or tracks != {*moved}:
         return {}
-    return {road.name: moved[road.track] for road in mechanism.roads}
+    return {road.name: moved[road.side] for road in mechanism.roads}
 
 
 def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal]:
@@ -347,6 +347,6 @@ def check_holds(system: PiecewiseSystem, signals: Sequence[Signal | None]) -> No
             )
         if signal.hold == "zero" and system.moves_elements[i]:
             raise SimulationError(
-                f"Friction or a gap moves with {road.name!r} without a mass between; {signal.label!r} jumps, and what "
-                f'slips or touches on the way of a jump is not determined. Use hold="cubic" or "linear".'
+                f"A friction element or a gap moves with {road.name!r} without a mass between; {signal.label!r} jumps, "
+                f'and what slips or touches on the way of a jump is not determined. Use hold="cubic" or "linear".'
             )

@@ -58,41 +58,41 @@ class InputPath:
         return ([0, *top] if self.displacement else top), bottom
 
 
-def inputs_of(arrivals: Sequence[InputPath]) -> tuple[str, ...]:
+def inputs_of(paths: Sequence[InputPath]) -> tuple[str, ...]:
     """The inputs that are reached, each once."""
-    return tuple(dict.fromkeys(arrival.input for arrival in arrivals))
+    return tuple(dict.fromkeys(path.input for path in paths))
 
 
-def excesses_of(arrivals: Sequence[InputPath]) -> dict[str, Excess]:
+def excesses_of(paths: Sequence[InputPath]) -> dict[str, Excess]:
     """Relative excess of the true density over that of the filter, by source; only where the filter is approximate."""
-    return {arrival.source: arrival.excess for arrival in arrivals if arrival.excess is not None}
+    return {path.source: path.excess for path in paths if path.excess is not None}
 
 
-def columns_of(arrivals: Sequence[InputPath]) -> list[Column]:
+def columns_of(paths: Sequence[InputPath]) -> list[Column]:
     """Sources at times of arrival, those of one source in the order of time; one for each input if all are plain."""
-    if _plain(arrivals):
-        return [(arrival.input, arrival.source, arrival.delay) for arrival in arrivals]
-    pairs = dict.fromkeys((arrival.source, arrival.delay) for arrival in arrivals)
+    if _plain(paths):
+        return [(path.input, path.source, path.delay) for path in paths]
+    pairs = dict.fromkeys((path.source, path.delay) for path in paths)
     return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
 
 
-def apply_excitation(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> Descriptor:
+def apply_excitation(descriptor: Descriptor, paths: Sequence[InputPath]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
     Raises `LinearSystemError` for the displacement of a road whose velocity acts on a damper directly.
     """
-    if _plain(arrivals):
+    if _plain(paths):
         return descriptor
-    columns = columns_of(arrivals)
-    at = [next(i for i, c in enumerate(columns) if c[1:] == (a.source, a.delay)) for a in arrivals]
-    d = _by_displacement(descriptor, {a.input for a in arrivals if a.displacement})
+    columns = columns_of(paths)
+    at = [next(i for i, c in enumerate(columns) if c[1:] == (a.source, a.delay)) for a in paths]
+    d = _by_displacement(descriptor, {a.input for a in paths if a.displacement})
     sums = {
-        name: tuple((a.input, a.whole) for i, a in zip(at, arrivals, strict=True) if i == number)
+        name: tuple((a.input, a.whole) for i, a in zip(at, paths, strict=True) if i == number)
         for number, (name, *_) in enumerate(columns)
     }
-    if all(a.filter is None or a.filter.order == 0 for a in arrivals):
-        return _scale_inputs(d, list(zip(at, arrivals, strict=True)), sums)
-    chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, arrivals, strict=True) if a.filter is not None))
+    if all(a.filter is None or a.filter.order == 0 for a in paths):
+        return _scale_inputs(d, list(zip(at, paths, strict=True)), sums)
+    chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, paths, strict=True) if a.filter is not None))
     old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
     edges = np.cumsum([old, *(one.order for _, one in chains)])
     places = [slice(int(i), int(j)) for i, j in pairwise(edges)]
@@ -103,7 +103,7 @@ def apply_excitation(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> D
         rows = np.arange(place.start, place.stop)
         X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
         X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
-    reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, arrivals, strict=True)]
+    reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, paths, strict=True)]
     wired = _FilterChains(reached, chains, places, len(columns), n)
     S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
     return replace(
@@ -127,22 +127,22 @@ def apply_excitation(descriptor: Descriptor, arrivals: Sequence[InputPath]) -> D
 def _scale_inputs(d: Descriptor, reached: Sequence[tuple[int, InputPath]], sums: Mapping[str, Sum]) -> Descriptor:
     """The descriptor whose inputs are columns times numbers."""
     levers = np.zeros((2, len(d.inputs), len(sums)), np.longdouble)  # and the sizes of their terms
-    for column, arrival in reached:
+    for column, path in reached:
         gain = (
             1.0
-            if arrival.filter is None
-            else arrival.filter.scaled_coefficients[1][0] / arrival.filter.scaled_coefficients[2][0]
+            if path.filter is None
+            else path.filter.scaled_coefficients[1][0] / path.filter.scaled_coefficients[2][0]
         )
-        lever = np.longdouble(arrival.lever) * gain
-        levers[:, d.inputs.index(arrival.input), column] += lever, abs(lever)
+        lever = np.longdouble(path.lever) * gain
+        levers[:, d.inputs.index(path.input), column] += lever, abs(lever)
     F, Y_u, X_u = d.F @ levers[0], d.Y_u @ levers[0], (d.X_u @ levers[0]).astype(float)
     F_size, Y_u_size = (d.sizes[i] @ levers[1].astype(float) for i in (2, 5))
     sizes = (*d.sizes[:2], F_size, *d.sizes[3:5], Y_u_size)
     return replace(d, F=F, Y_u=Y_u, X_u=X_u, inputs=tuple(sums), sizes=sizes, sums=sums)
 
 
-def _plain(arrivals: Sequence[InputPath]) -> bool:
-    return all(arrival.plain for arrival in arrivals) and len(inputs_of(arrivals)) == len(arrivals)
+def _plain(paths: Sequence[InputPath]) -> bool:
+    return all(path.plain for path in paths) and len(inputs_of(paths)) == len(paths)
 
 
 @dataclass(frozen=True)
@@ -170,15 +170,13 @@ class _FilterChains:
             bottom = np.abs(one.scaled_coefficients[2]) if sizes else one.scaled_coefficients[2]
             S2[0, unknown, unknown], R2[0, unknown, place] = bottom[-1], both * bottom[:-1]
             F2[0, unknown, column] = 1.0
-        for column, number, arrival in self.reached:
-            lever = np.longdouble(abs(arrival.lever) if sizes else arrival.lever)
-            if arrival.filter is None:
+        for column, number, path in self.reached:
+            lever = np.longdouble(abs(path.lever) if sizes else path.lever)
+            if path.filter is None:
                 F2[0, e + number, column] += lever
                 continue
-            chain = self.chains.index((column, arrival.filter))
-            top = lever * (
-                np.abs(arrival.filter.scaled_coefficients[1]) if sizes else arrival.filter.scaled_coefficients[1]
-            )
+            chain = self.chains.index((column, path.filter))
+            top = lever * (np.abs(path.filter.scaled_coefficients[1]) if sizes else path.filter.scaled_coefficients[1])
             S2[0, e + number, q + chain] += both * top[-1]
             R2[0, e + number, self.places[chain]] += top[:-1]
         return S2, R2, F2, Y_eta2, Y_x2, Y_u2

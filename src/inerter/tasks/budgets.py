@@ -46,9 +46,9 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
     @property
     def name(self) -> str:
         """Name of the task part in messages."""
-        return f"budget of {self.parameter}, {self.layout} {self.index}"
+        return f"break-even value of {self.parameter}, {self.layout} {self.index}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
         """Break-even value of the element in the best design found."""
         design, baseline = (
             study.design(layout).with_values(designs[Case(layout, self.index)].parameters)
@@ -59,7 +59,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         message = found.status.message + decisive_method_clause(budget_method(study), found.status)
         return self._answer(study, found, found.status.kind.value, message)
 
-    def failure_answer(self, study: Study, message: str) -> BudgetAnswer:
+    def failed_result(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""
         return self._answer(study, None, StatusKind.FAILED.value, message)
 
@@ -106,7 +106,8 @@ class Budgets(Task[BudgetAnswer]):
     """Task: break-even values of elements, for each layout but the baseline."""
 
     key = "budgets"
-    title = "Budgets"
+    title = "Break-even values"
+    items = "break-even values"
     answer = BudgetAnswer
 
     def parts(self, study: Study) -> list[BudgetPart]:
@@ -121,12 +122,14 @@ class Budgets(Task[BudgetAnswer]):
         ]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """Problems of `budgets`: given together with a sweep, no baseline, elements without a break-even value."""
-        place = ("study", "budgets")
+        """Problems of `break_even`: given together with a sweep, no baseline, elements without a break-even value."""
+        place = ("study", "budgets" if "budgets" in given else "break_even")
         if study.budgets and study.sweeps:
             yield at(place, fault="given together with a sweep", expected="one of the two")
         if study.budgets and study.baseline is None:
-            yield at(place, fault="only one layout is given", expected="another to compare it with, or no budgets")
+            yield at(
+                place, fault="only one layout is given", expected="another to compare it with, or no break-even values"
+            )
             return
         used = elements_used(study)
         for name in study.budgets:
@@ -143,7 +146,7 @@ class Budgets(Task[BudgetAnswer]):
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Names of the elements, by the heading of the report."""
-        return {"Budgets of": list(study.budgets)}
+        return {"Break-even values of": list(study.budgets)}
 
     def table(self, results: TaskResults[BudgetAnswer]) -> Table:
         """One row per break-even value."""

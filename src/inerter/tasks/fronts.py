@@ -13,9 +13,9 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import format_list
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import limits_in
+from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.files.study.ways import ways
 from inerter.formatting import format_quantity, label_with_unit
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
@@ -41,7 +41,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
         """Name of the task part in messages."""
         return f"front of {self.layout}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
         """Pareto front of the layout."""
         limits = [limit for several in limits_in(study) for limit in several]
         indices = [study.resolve_index(name, self.layout) for name in study.trade_off]
@@ -51,7 +51,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
         found = pareto_front(vehicle, indices, method, points=study.points, subject_to=limits, seed=study.seed)
         return _answer(self.layout, found, str(study.optimise))
 
-    def failure_answer(self, study: Study, message: str) -> FrontAnswer:
+    def failed_result(self, study: Study, message: str) -> FrontAnswer:
         """Answer without points, with status `failed`."""
         return _without(self.layout, StatusKind.FAILED.value, message)
 
@@ -208,7 +208,7 @@ def _title(study: Study) -> str:
 
 def _method_words(study: Study) -> str:
     """Method of the fronts in words, if the study has several."""
-    return ways(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
+    return method_labels(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
 
 
 def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterator[Row]:

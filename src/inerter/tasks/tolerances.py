@@ -41,7 +41,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
         """Name of the task part in messages."""
         return f"tolerance of {self.layout} {self.index}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
+    def compute(self, study: Study, designs: Designs, threads: int) -> ToleranceAnswer:
         """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
         found = tolerance_analysis(
@@ -63,7 +63,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             message=found.status.message + decisive_method_clause(method, found.status),
         )
 
-    def failure_answer(self, study: Study, message: str) -> ToleranceAnswer:
+    def failed_result(self, study: Study, message: str) -> ToleranceAnswer:
         """Answer without numbers, with status `failed`."""
         return ToleranceAnswer(
             layout=self.layout,

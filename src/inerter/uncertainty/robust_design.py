@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
 from inerter.formatting import format_share
-from inerter.indices.question import Index, OfIndex
+from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Differentiable, Objective

@@ -105,7 +105,7 @@ class FullCar(VehicleModel):
                 Tyre(f"tyre_{w}", Spring(self._of_axle("tyre_stiffness", w)), {f"unsprung_{w}": 1.0}, f"road_{w}")
                 for w in _WHEELS
             ),
-            roads=tuple(RoadInput(f"road_{w}", self._behind(w), track=w.partition("_")[2]) for w in _WHEELS),
+            roads=tuple(RoadInput(f"road_{w}", self._behind(w), side=w.partition("_")[2]) for w in _WHEELS),
             forces=(
                 Force("sprung_force", {"sprung": 1.0}),
                 Force("pitch_moment", {"pitch": 1.0}),

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
+from inerter.deprecation import RenamedAttribute, renamed_keywords
 from inerter.errors import DesignError, MechanismError
 from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
@@ -69,13 +70,17 @@ class Tyre:
 class RoadInput:
     """A road input of the mechanism.
 
-    It acts `distance` [m] behind the first one, with a delay of distance / speed, on the `track` "left" or "right", or
+    It acts `distance` [m] behind the first one, with a delay of distance / speed, on the `side` "left" or "right", or
     "" for a single track.
     """
 
     name: str
     distance: float = 0.0
-    track: str = ""
+    side: str = ""
+    track = RenamedAttribute("side")
+
+
+RoadInput.__init__ = renamed_keywords(track="side")(RoadInput.__init__)  # type: ignore[method-assign]
 
 
 @dataclass(frozen=True)
@@ -310,10 +315,10 @@ def _check_numbers(mechanism: Mechanism) -> None:
                 f"The distance of road {road.name!r} behind the first one must be zero or more metres, "
                 f"got {road.distance!r}. Measure from the foremost axle."
             )
-        if road.track not in TRACKS:
+        if road.side not in TRACKS:
             raise MechanismError(
                 f'The track of road {road.name!r} must be "left" or "right", or "" for a single track, '
-                f"got {road.track!r}."
+                f"got {road.side!r}."
             )
 
 

@@ -37,7 +37,7 @@ def antisymmetric_half(mechanism: Mechanism) -> Mechanism:
     Symmetric coordinates are at rest, and antisymmetric ones move. Right tyres are mirrored onto the left roads.
     """
     merged = mechanism.on_one_track()
-    if not mechanism.mirror or any(road.track != "left" for road in merged.roads) or not _is_its_image(merged):
+    if not mechanism.mirror or any(road.side != "left" for road in merged.roads) or not _is_its_image(merged):
         return mechanism
     follows: dict[str, Port] = {b: {a: -1.0} for a, b in mechanism.mirror if a != b}
     moved = {a for a, _ in mechanism.mirror}

@@ -11,8 +11,8 @@ from pathlib import Path
 from inerter.registry import cache_until_registration, plugin_paths, plugin_versions
 
 VERSION = version("inerter")
-_COMPUTE = ("numpy", "scipy", "numba", "llvmlite")
-_TELL = {"app", "cli", "report", "figures"}  # packages that present numbers only, also those of a paper
+_LIBRARIES = ("numpy", "scipy", "numba", "llvmlite")
+_PRESENTATION = {"app", "cli", "report", "figures"}  # packages that present numbers only, also those of a paper
 
 
 def versions() -> dict[str, str]:
@@ -29,7 +29,7 @@ def origin() -> str:
 
     Sources are hashed with their comments: a harmless change costs a computation, a missed one a wrong number.
     """
-    known = {**{name: version(name) for name in _COMPUTE}, **plugin_versions()}
+    known = {**{name: version(name) for name in _LIBRARIES}, **plugin_versions()}
     digest = hashlib.sha256("".join(f"{name} {number}\n" for name, number in known.items()).encode())
     for root in (Path(__file__).parents[1], *plugin_paths()):
         for place, path in _files(root):
@@ -43,5 +43,5 @@ def _files(root: Path) -> Iterator[tuple[str, Path]]:
         yield root.name, root
     for path in sorted(root.rglob("*")):
         place = path.relative_to(root)
-        if path.is_file() and not {*_TELL, "__pycache__"} & set(place.parts):
+        if path.is_file() and not {*_PRESENTATION, "__pycache__"} & set(place.parts):
             yield place.as_posix(), path

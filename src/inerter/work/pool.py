@@ -1,4 +1,4 @@
-"""Execution of pieces of work in this process, in worker processes, or on any executor.
+"""Execution of chunks of work in this process, in worker processes, or on any executor.
 
 An executor is one of `concurrent.futures`. Its calls can be pickled: an importable function, and plain data.
 """
@@ -17,19 +17,19 @@ from typing import Any
 
 from inerter.errors import WorkError
 from inerter.work import cluster
+from inerter.work.chunks import Chunk, Cutter, Item, Result, import_work, run_chunk
 from inerter.work.forwarding import receive
-from inerter.work.pieces import Cutter, Item, Piece, Result, import_work, run_chunk
 from inerter.work.processes import Processes, is_started
 from inerter.work.returns import ExecutorResult, check_executor, check_result, submit_call
 
 KILLS = 3  # processes that an item may end
-_FAULTS = 3  # invalid results of an executor per piece
+_FAULTS = 3  # invalid results of an executor per chunk
 _SHORT = 3.0  # seconds: typical start time of processes
 _TOLD = 0.5  # seconds after which the total duration is estimated from the first items
 _LOOK = 0.25  # seconds between polls of messages from worker processes
 _AT_ONCE = 0.1  # seconds for which results of this process are collected
-_AHEAD = 2  # pieces for each worker process: the running one, and the next
-_AFAR = 8  # for each of another executor, where the latency may be as long as a piece
+_AHEAD = 2  # chunks for each worker process: the running one, and the next
+_AFAR = 8  # for each of another executor, where the latency may be as long as a chunk
 
 
 class Pool:
@@ -50,7 +50,7 @@ class Pool:
         return self
 
     def __exit__(self, kind: object, error: object, trace: object) -> None:
-        if self._own is not None:  # Ctrl-C: do not wait for running pieces
+        if self._own is not None:  # Ctrl-C: do not wait for running chunks
             self._own.shutdown(wait=kind is None, cancel_futures=kind is not None)
 
     @property
@@ -60,7 +60,7 @@ class Pool:
 
     @property
     def slots(self) -> int:
-        """Number of concurrent pieces, as far as known of the executor."""
+        """Number of concurrent chunks, as far as known of the executor."""
         return self.jobs if self._given is None else cluster.slots(self._given)
 
     @contextmanager
@@ -101,8 +101,8 @@ class Pool:
         Items are consumed as needed. Until worker processes are worthwhile and ready, items are run in this process, by
         `here` if given, an equivalent function.
 
-        A piece whose process ends is resubmitted. If `KILLS` processes have ended on an item, its result is
-        `lost(item)`. If the iterator is abandoned, pending pieces are cancelled.
+        A chunk whose process ends is resubmitted. If `KILLS` processes have ended on an item, its result is
+        `lost(item)`. If the iterator is abandoned, pending chunks are cancelled.
 
         Raises `WorkError` if an item ends its processes and `lost` is not given, if the executor itself has ended, or
         if its processes have other sources or libraries than this one.
@@ -124,7 +124,7 @@ class Pool:
     def _submit_all(
         self, work: Callable[[Item], Result], cutter: Cutter[Item], lost: Callable[[Item], Result] | None
     ) -> Iterator[list[Result]]:
-        under_way: dict[Future[Any], Piece[Item]] = {}
+        under_way: dict[Future[Any], Chunk[Item]] = {}
         try:
             while True:
                 self._submit(work, cutter, under_way)
@@ -138,12 +138,12 @@ class Pool:
                         found = check_result(future, work, under_way[future])
                     except WorkError as none:
                         found = ExecutorResult([], error=none)
-                    piece = under_way.pop(future)
+                    chunk = under_way.pop(future)
                     if found.results:
                         yield found.results
-                    error = error or found.error or _record_result(cutter, piece, found)
-                    if piece.alone and piece.deaths + found.deaths >= KILLS:
-                        yield [_result_of_lost_item(piece.items[0], lost)]
+                    error = error or found.error or _record_result(cutter, chunk, found)
+                    if chunk.alone and chunk.deaths + found.deaths >= KILLS:
+                        yield [_result_of_lost_item(chunk.items[0], lost)]
                 if error is not None:  # when all that came with it is yielded
                     raise error
         finally:
@@ -156,14 +156,14 @@ class Pool:
             receive(message)
 
     def _submit(
-        self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Piece[Item]]
+        self, work: Callable[[Item], Result], cutter: Cutter[Item], under_way: dict[Future[Any], Chunk[Item]]
     ) -> None:
         executor = self._processes() if self._given is None else self._given
         slots, ahead = max(self.slots, 1), _AHEAD if self._given is None else _AFAR
-        while len(under_way) < ahead * slots and (piece := cutter.take(slots)):
-            under_way[submit_call(executor, run_chunk, work, piece)] = piece
-        if not under_way and (piece := cutter.take_alone()):
-            under_way[submit_call(executor, run_chunk, work, piece)] = piece
+        while len(under_way) < ahead * slots and (chunk := cutter.take(slots)):
+            under_way[submit_call(executor, run_chunk, work, chunk)] = chunk
+        if not under_way and (chunk := cutter.take_alone()):
+            under_way[submit_call(executor, run_chunk, work, chunk)] = chunk
 
     def _processes(self) -> Processes:
         if self._own is None:
@@ -209,16 +209,16 @@ def _at_home(work: Callable[[Item], Result], items: Iterator[Item], start: _Star
         yield found
 
 
-def _record_result(cutter: Cutter[Item], piece: Piece[Item], found: ExecutorResult[Any]) -> WorkError | None:
-    """Record the result of a piece; returns the error of an executor that fails repeatedly."""
-    rest = replace(piece, items=piece.items[len(found.results) :])
-    if found.fault and piece.faults + 1 >= _FAULTS:
+def _record_result(cutter: Cutter[Item], chunk: Chunk[Item], found: ExecutorResult[Any]) -> WorkError | None:
+    """Record the result of a chunk; returns the error of an executor that fails repeatedly."""
+    rest = replace(chunk, items=chunk.items[len(found.results) :])
+    if found.fault and chunk.faults + 1 >= _FAULTS:
         return WorkError(f"the executor has failed {_FAULTS} times on one chunk: {found.fault}.")
     if found.fault:
-        cutter.repeat(piece)
+        cutter.repeat(chunk)
     elif not found.deaths:
-        cutter.learn(piece, found.seconds)
-    elif not (piece.alone and piece.deaths + found.deaths >= KILLS):
+        cutter.learn(chunk, found.seconds)
+    elif not (chunk.alone and chunk.deaths + found.deaths >= KILLS):
         cutter.back(rest, found.deaths)
     return None
 

@@ -1,7 +1,7 @@
 """Progress of long computations, as data: computations report steps to listeners.
 
 A listener is called at least once a second. Steps of worker processes are forwarded to it; other executors send nothing
-until a piece is completed.
+until a chunk is completed.
 """
 
 from __future__ import annotations

@@ -9,8 +9,8 @@ from typing import Any, Generic
 
 from inerter.errors import InerterError, WorkError
 from inerter.work import cluster
+from inerter.work.chunks import Chunk, ChunkResult, Item, Result
 from inerter.work.origin import origin
-from inerter.work.pieces import ChunkResult, Item, Piece, Result
 
 GONE = "the executor has ended, or lost its connection."
 _EXPECTED = (
@@ -21,7 +21,7 @@ _LONGEST = 200  # characters of an error of another library
 
 @dataclass(frozen=True)
 class ExecutorResult(Generic[Result]):
-    """Results of a piece, or the number of processes that ended on it, or the fault for which it is repeated.
+    """Results of a chunk, or the number of processes that ended on it, or the fault for which it is repeated.
 
     `error` is an exception of the work itself, after the present results.
     """
@@ -57,10 +57,10 @@ def submit_call(executor: Executor, *call: Any) -> Future[Any]:
     return future
 
 
-def check_result(future: Future[Any], work: object, piece: Piece[Item]) -> ExecutorResult[Any]:
-    """Results of a piece, or the reason for their absence.
+def check_result(future: Future[Any], work: object, chunk: Chunk[Item]) -> ExecutorResult[Any]:
+    """Results of a chunk, or the reason for their absence.
 
-    Raises `WorkError` if the executor has ended, if its processes have other sources or libraries, or if the piece
+    Raises `WorkError` if the executor has ended, if its processes have other sources or libraries, or if the chunk
     cannot be sent to them.
     """
     try:
@@ -74,7 +74,7 @@ def check_result(future: Future[Any], work: object, piece: Piece[Item]) -> Execu
     except Exception as error:
         deaths = cluster.deaths(error)
         if not deaths:
-            _check_sent((work, piece))
+            _check_sent((work, chunk))
         return ExecutorResult([], deaths=deaths, fault="" if deaths else _words(error))
     if not isinstance(found, ChunkResult):
         return ExecutorResult([], fault=f"{_brief(repr(found))} returned instead of results")
@@ -83,13 +83,13 @@ def check_result(future: Future[Any], work: object, piece: Piece[Item]) -> Execu
             "a process of the executor has another version of inerter, or of the numerical libraries. "
             f"{cluster.INSTALL}"
         )
-    if found.piece != piece.number:
+    if found.chunk != chunk.number:
         return ExecutorResult([], fault="results of another chunk returned")
     results = list(found.results)
     if isinstance(found.error, MemoryError):
         return ExecutorResult(results, deaths=1)
-    if found.error is None and len(results) != len(piece.items):
-        return ExecutorResult([], fault=f"{len(results)} results of {len(piece.items)} returned")
+    if found.error is None and len(results) != len(chunk.items):
+        return ExecutorResult([], fault=f"{len(results)} results of {len(chunk.items)} returned")
     return ExecutorResult(results, found.seconds, error=found.error)
 
 

@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import Generic
 
 from inerter.errors import WorkError
-from inerter.work.pieces import THREADS, Item, Result
+from inerter.work.chunks import THREADS, Item, Result
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 

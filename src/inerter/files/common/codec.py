@@ -57,7 +57,7 @@ class LoadContext:
             self.add(error)
             return INVALID
 
-    def table(self, raw: Any) -> Mapping[str, Any]:
+    def as_table(self, raw: Any) -> Mapping[str, Any]:
         """The entry, if it is a table; raises `EntryError` for another."""
         if not isinstance(raw, Mapping):
             raise EntryError(got=quote_value(raw), fault="not a table", expected=self.example)
@@ -128,7 +128,7 @@ class Codec:
         """The entry of a file, valid or not, with other names of elements."""
         return raw
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables that the entry may hold or be, by their places."""
         yield from ()
 
@@ -145,6 +145,11 @@ class Declaration:
     attribute: str = ""  # in Python
     words: str = ""  # of its number, in sentences
     implied: bool = False  # whether the file may leave it out because other keys say it
+    former: str = ""  # its name in files of the previous version, which is read too
+
+    def name_in(self, raw: Mapping[str, Any]) -> str:
+        """Name of the key in a table of a file that gives it; empty in one that does not."""
+        return next((name for name in (self.name, self.former) if name and name in raw), "")
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the key."""
@@ -222,11 +227,14 @@ class TableCodec(Codec):
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """Object or dictionary of the table; unknown keys are problems."""
-        raw, count = self.before(context.table(raw)), len(context.problems)
+        raw, count = self.before(context.as_table(raw)), len(context.problems)
         values: dict[str, Any] = {}
         for one in self.keys:
-            if one.name in raw:
-                values[one.attribute] = context.at(one.name, one.example).read(one.codec, raw[one.name])
+            if name := one.name_in(raw):
+                values[one.attribute] = context.at(name, one.example).read(one.codec, raw[name])
+                if one.former in raw and name != one.former:
+                    both = f"given together with {one.name}, the new name of the same key"
+                    context.at(one.former).add(EntryError(fault=both, expected="one of the two"))
             elif one.default is REQUIRED:
                 example = one.example or f"a section [{'.'.join((*context.place, one.name))}]"
                 context.at(one.name).add(EntryError(fault="missing", expected=example))
@@ -236,7 +244,8 @@ class TableCodec(Codec):
             if not context.place:
                 context.loaded[one.name] = values[one.attribute]
         known = self.names
-        others = {name: entry for name, entry in raw.items() if name not in known}
+        former = {one.former for one in self.keys}
+        others = {name: entry for name, entry in raw.items() if name not in known and name not in former}
         if self.rest:
             values[self.rest] = others
         for name in () if self.rest else others:
@@ -249,7 +258,7 @@ class TableCodec(Codec):
         other = None if context.place else kind_with(name)
         if other is not None:
             return f"It is a section of {other.plural}, for: inerter {other.command}."
-        every = [(p, t) for p, t in context.root.tables(()) if p and "*" not in p and name in t.names]
+        every = [(p, t) for p, t in context.root.table_codecs(()) if p and "*" not in p and name in t.names]
         for place, table in every:
             if place == context.place[:1] and table.tag[1]:
                 return f'It is a key of {table.tag[0]} = "{table.tag[1]}".'
@@ -274,7 +283,13 @@ class TableCodec(Codec):
         """The JSON Schema of the table."""
         tag, word, what = self.tag
         decides = {"const": word, "type": "string", "description": what, "examples": [word]}
-        properties = {**({tag: decides} if tag else {}), **{one.name: one.schema() for one in self.keys}}
+        former = {
+            one.former: {**one.codec.schema(), "description": f"Former name of {one.name}.", "deprecated": True}
+            for one in self.keys
+            if one.former
+        }
+        own = {one.name: one.schema() for one in self.keys}
+        properties = {**({tag: decides} if tag else {}), **own, **former}
         required = [one.name for one in self.keys if one.default is REQUIRED and not one.implied]
         return {
             "type": "object",
@@ -301,22 +316,22 @@ class TableCodec(Codec):
     def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """The entries of all keys that a table gives."""
         for one in self.keys if isinstance(raw, Mapping) else ():
-            if one.name in raw:
-                for entry in one.codec.raw_entries(raw[one.name]):
-                    yield entry.below(one.name, sentence=one.sentence, words=one.words)
+            if name := one.name_in(raw):
+                for entry in one.codec.raw_entries(raw[name]):
+                    yield entry.below(name, sentence=one.sentence, words=one.words)
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
         """The table with other names of elements in the entries of its keys."""
         if not isinstance(raw, Mapping):
             return raw
-        codecs = {one.name: one.codec for one in self.keys}
+        codecs = {name: one.codec for one in self.keys for name in (one.name, one.former)}
         return {key: codecs[key].rename(entry, names) if key in codecs else entry for key, entry in raw.items()}
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table, and those at its keys."""
         yield place, self
         for one in self.keys:
-            yield from one.codec.tables((*place, one.name))
+            yield from one.codec.table_codecs((*place, one.name))
 
 
 def table_of(kind: Any, **more: Any) -> TableCodec:
@@ -326,15 +341,15 @@ def table_of(kind: Any, **more: Any) -> TableCodec:
 
 @dataclass(frozen=True)
 class Scalar(Codec):
-    """An entry without keys of its own: `check` parses it, and raises ValueError for an invalid one."""
+    """An entry without keys of its own: `parse` gives its value, and raises ValueError for an invalid one."""
 
-    check: Callable[[Any], Any]
+    parse: Callable[[Any], Any]
     describe: Callable[[], dict[str, Any]]  # its JSON Schema, made when it is asked for: rows may be added until then
     write: Callable[[Any], Any] = lambda value: value
 
     def load(self, raw: Any, context: LoadContext) -> Any:
-        """Value of the entry, as `check` returns it."""
-        return self.check(raw)
+        """Value of the entry, as `parse` returns it."""
+        return self.parse(raw)
 
     def dump(self, value: Any) -> Any:
         """Entry of a value, as `write` returns it."""

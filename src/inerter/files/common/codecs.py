@@ -24,7 +24,7 @@ class TaggedCodec(Codec):
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """Value of the table that the word at `tag` selects."""
-        table, inside = context.table(raw), context.at(self.tag)
+        table, inside = context.as_table(raw), context.at(self.tag)
         if self.tag not in table:
             inside.add(EntryError(fault="missing", expected=f'{self.tag} = "{self.usual}"'))
             return INVALID
@@ -69,10 +69,10 @@ class TaggedCodec(Codec):
         word = raw.get(self.tag) if isinstance(raw, Mapping) else None
         return self.of().get(word) if isinstance(word, str) else None
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """Tables of all words, by their key paths."""
         for table in self.of().values():
-            yield from table.tables(place)
+            yield from table.table_codecs(place)
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ class NamesCodec(Codec):
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """The values by their names."""
-        table = context.table(raw)
+        table = context.as_table(raw)
         if len(table) < self.least:
             raise EntryError(fault="none given", expected=context.example)
         count, values = len(context.problems), {}
@@ -132,9 +132,9 @@ class NamesCodec(Codec):
             return raw
         return {name: self.item.rename(part, names) for name, part in raw.items()}
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables of its entries."""
-        yield from self.item.tables((*place, "*"))
+        yield from self.item.table_codecs((*place, "*"))
 
 
 def with_name(words: str, name: str) -> str:
@@ -188,9 +188,9 @@ class EitherCodec(Codec):
         """JSON Schema of the table or the other entry."""
         return any_of([self.table.schema(), self.other.schema()])
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """Table of the codec and those in it, by their key paths."""
-        yield from self.table.tables(place)
+        yield from self.table.table_codecs(place)
 
 
 @dataclass(frozen=True)

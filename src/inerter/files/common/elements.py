@@ -149,7 +149,7 @@ class ElementCodec(Codec):
         tied = self.tied and is_tie(raw) and isinstance(raw[TIED], str)
         return {**raw, TIED: rename_in_expression(raw[TIED], names)} if tied else raw
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The table of a range."""
         if self.free:
             yield place, RANGE

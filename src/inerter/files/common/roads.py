@@ -113,7 +113,7 @@ class RoadSource:
         default=None,
     )
     track: str | None = key(
-        word("a track", _SIDES),
+        word("a side", _SIDES),
         "Track of a profile with two tracks; default: their mean.",
         'track = "left"',
         default=None,
@@ -188,7 +188,7 @@ class MeasuredLine:
 
     path: Path
     digest: str  # SHA-256 of the file
-    track: str  # empty: of two tracks the mean
+    side: str  # left or right; empty: of two tracks the mean
     roughness: float  # [m^3/cycle]
     unevenness: float  # of the profile's own line, at n0 [m^3]
     waviness: float  # of that line
@@ -204,7 +204,7 @@ class MeasuredLine:
     @property
     def source(self) -> str:
         """Name of the measured profile, with its track if it has several."""
-        return f"the {self.track} track of {self.path.name}" if self.track else self.path.name
+        return f"the {self.side} track of {self.path.name}" if self.side else self.path.name
 
     @property
     def note(self) -> str:
@@ -260,7 +260,7 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
     """
     if road is None or road["profile"] is None:
         return None, []
-    name, track, sampling = road["profile"], road["track"] or "", road["sampling"] or POINTS
+    name, side, sampling = road["profile"], road["track"] or "", road["sampling"] or POINTS
     path = (beside.parent / name).absolute()
     try:
         if not path.is_file():
@@ -268,13 +268,13 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
             raise EntryError(got=quote_value(name), fault=f"file not found {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, road["columns"], road["units"], road["interval"])
-        spectrum = road_spectrum(measured, track=track, sampling=sampling)
+        spectrum = road_spectrum(measured, side=side, sampling=sampling)
     except EntryError as error:
         problem = error.problem
         return None, [at(("road", "profile"), got=problem.got, fault=problem.fault, expected=problem.expected)]
     except (RecordError, OSError, ValueError) as error:  # the last: a name that no file can have
         return None, [at(("road", "profile"), str(error))]
-    return _line(path, digest, track, spectrum, measured.notes, sampling), []
+    return _line(path, digest, side, spectrum, measured.notes, sampling), []
 
 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
@@ -289,12 +289,12 @@ def remark(line: MeasuredLine | None) -> str:
 
 
 def _line(
-    path: Path, digest: str, track: str, spectrum: RoadSpectrum, reading: tuple[str, ...], sampling: str
+    path: Path, digest: str, side: str, spectrum: RoadSpectrum, reading: tuple[str, ...], sampling: str
 ) -> MeasuredLine:
     return MeasuredLine(
         path=path,
         digest=digest,
-        track=track,
+        side=side,
         roughness=spectrum.road(1.0).roughness,
         unevenness=spectrum.unevenness,
         waviness=spectrum.waviness,
@@ -344,7 +344,7 @@ def track_problems(place: tuple[str, ...], tracks: Mapping[str, str] | None) -> 
     """
     if tracks is None:
         return
-    loose = [name for name, track in tracks.items() if not track]
+    loose = [name for name, side in tracks.items() if not side]
     if len(loose) == len(tracks):
         fault = "this vehicle has no left and right track"
         yield at(place, fault=fault, expected='a vehicle with two tracks, such as model = "full-car", or no coherence')

@@ -166,7 +166,7 @@ _OWN = (
         _measured_road,
         {
             "file": _FILE,
-            "track": SignalKey("", 'track = "left"', "", _plain(word("a track", (*TRACKS, BOTH)))),
+            "track": SignalKey("", 'track = "left"', "", _plain(word("a side", (*TRACKS, BOTH)))),
             "columns": SignalKey(
                 "",
                 _escape_braces(profiles.COLUMNS_EXAMPLE),

@@ -95,10 +95,10 @@ class SignalCodec(Codec):
         """The JSON Schema of any kind in any unit."""
         return any_of([codec.schema() for codec in self.in_unit.values()])
 
-    def tables(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
+    def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables of all kinds in all units."""
         for codec in self.in_unit.values():
-            yield from codec.tables(place)
+            yield from codec.table_codecs(place)
 
 
 def signal_codec() -> SignalCodec:

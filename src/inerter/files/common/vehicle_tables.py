@@ -182,8 +182,8 @@ class RoadPlace:
         not_negative("m"), "Distance behind the first axle; it determines the delay.", 'distance = "2.5 m"', default=0.0
     )
     track: str = key(
-        word("a track", TRACKS),
-        "Track of the road input: left or right, for roads with two tracks.",
+        word("a side", TRACKS),
+        "Side of the vehicle: left or right, for roads with two tracks.",
         'track = "left"',
         default="",
     )

@@ -109,7 +109,7 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
         roads = build_vehicle(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
     except InerterError:
         return None
-    return {road.name: road.track for road in roads}
+    return {road.name: road.side for road in roads}
 
 
 class _Form(Protocol):
@@ -179,7 +179,7 @@ class _OwnMechanism:
             ),
             tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
             tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
-            tuple(RoadInput(name, **road) for name, road in values["roads"].items()),
+            tuple(RoadInput(name, road["distance"], road["track"]) for name, road in values["roads"].items()),
             tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
             PerformanceOutputs(
                 tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
@@ -197,8 +197,8 @@ class _OwnMechanism:
         for name, tyre in values["tyres"].items():
             yield f"tyre {name}", None, f"{_place(tyre['port'])} over {tyre['road']}"
         for name, road in values["roads"].items():
-            track = f", on the {road['track']}" if road["track"] else ""
-            yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{track}"
+            side = f", on the {road['track']}" if road["track"] else ""
+            yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{side}"
         for name, port in values["forces"].items():
             yield f"force {name}", None, f"on {_place(port)}"
 

@@ -44,11 +44,11 @@ class Case(StudyPart["Outcome"]):
         """Name of the case in messages: layout, index, and point of the sweeps."""
         return f"{self.layout} {self.index}{f' at point {self.point + 1}' if self.point else ''}"
 
-    def answer(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> Outcome:
+    def compute(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> Outcome:
         """The best design, evaluated by every method and index of the study."""
         return _run(study, self, threads)
 
-    def failure_answer(self, study: Study, message: str) -> Outcome:
+    def failed_result(self, study: Study, message: str) -> Outcome:
         """Outcome without a design."""
         failed = dict.fromkeys(study.evaluate, StatusKind.FAILED.value)
         return Outcome(self.layout, self.index, self.point, {}, {}, {}, 0, 0, 0, {}, {}, failed, message)

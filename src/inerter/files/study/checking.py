@@ -15,7 +15,7 @@ from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
-from inerter.files.study.limits import limits_in, questions_limited
+from inerter.files.study.limits import limited_definitions, limits_in
 from inerter.files.study.loading import load_study
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
@@ -43,7 +43,7 @@ def check_lines(path: Path) -> Iterator[str]:
     """
     study = load_study(path)
     check_study(study)
-    counts = {task.key: len(task.parts(study)) for task in tasks()}
+    counts = {task.items or task.key: len(task.parts(study)) for task in tasks()}
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
     swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
     yield (
@@ -97,10 +97,10 @@ def _check_design(study: Study, layout: str) -> None:
     loose = without_tied_values(vehicle)
     over = [study.over_conditions(name) for name in study.indices]
     each = [one for index in over for one in constituents_of(loose.vehicle if loose else vehicle, index)]
-    questions = [(case.mechanism(), index.question(case.mechanism())) for case, index in each]
+    definitions = [(case.mechanism(), index.definition(case.mechanism())) for case, index in each]
     if any(map(is_blind, study.methods)):
-        for mechanism, question in questions:
-            linear_problem(mechanism, question, CONVENTIONS[study.conventions])
+        for mechanism, definition in definitions:
+            linear_problem(mechanism, definition, CONVENTIONS[study.conventions])
     halfway = {name: middle(value) for name, value in vehicle.free_values().items()}
     if not all(map(is_blind, study.methods)):
         piecewise(vehicle.with_values(halfway))
@@ -139,7 +139,7 @@ def kernels(study: Study) -> list[Any]:
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, MethodWithKernels):
-            questions = [study.index(index).question(design.mechanism()) for index in study.indices]
-            for question in [*questions, *questions_limited(study, design)]:
-                found += method.kernels(question, search=name == study.optimise)
+            definitions = [study.index(index).definition(design.mechanism()) for index in study.indices]
+            for definition in [*definitions, *limited_definitions(study, design)]:
+                found += method.kernels(definition, search=name == study.optimise)
     return list(dict.fromkeys(found))

@@ -37,7 +37,7 @@ class WrittenNumber:
 
 @dataclass(frozen=True, eq=False)
 class Draft:
-    """What the tables of a study file give, valid or not."""
+    """Contents of the tables of a study file, valid or not."""
 
     tables: Tables
 
@@ -75,7 +75,7 @@ class Draft:
         return {layout: list(dict.fromkeys(several)) for layout, several in found.items()}
 
     @cached_property
-    def used(self) -> dict[str, list[str]]:
+    def elements_by_layout(self) -> dict[str, list[str]]:
         """Elements on which each layout depends: in its networks, in those of the vehicle, and those others follow."""
         common = [name for keys, text in self.networks.items() if keys[0] != _LAYOUTS for name in _names(text)]
         found = {}
@@ -91,7 +91,10 @@ class Draft:
         free = [(entry.codec, entry.keys[-1]) for entry in self.entries if isinstance(_value(entry), Free)]
         elements = {name for codec, name in free if isinstance(codec, ElementCodec)}
         others = [name for codec, name in free if not isinstance(codec, ElementCodec)]
-        return {layout: [*(name for name in used if name in elements), *others] for layout, used in self.used.items()}
+        return {
+            layout: [*(name for name in used if name in elements), *others]
+            for layout, used in self.elements_by_layout.items()
+        }
 
 
 def _numbers(entry: RawEntry) -> Iterator[WrittenNumber]:

@@ -240,10 +240,10 @@ def limit_results(
     return found
 
 
-def questions_limited(study: Study, vehicle: Vehicle) -> list[Any]:
+def limited_definitions(study: Study, vehicle: Vehicle) -> list[Any]:
     """Index definitions of all limited quantities for a vehicle."""
     return [
-        index.question(case.mechanism())
+        index.definition(case.mechanism())
         for several in limits_in(study)
         for limit in several
         for case, index in constituents_of(vehicle, limit.of)

@@ -138,8 +138,8 @@ def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[
     if element is not None and element.switch is not None and all(map(is_blind, study.evaluate)):
         yield at(
             place,
-            fault=f"{name} is a {element.key}, which linear analysis does not see",
-            expected=f"a method that does in evaluate, such as {quote_value(simulating_method())}",
+            fault=f"{name} is a {element.key} element, which linear analysis neglects",
+            expected=f"a method that models it in evaluate, such as {quote_value(simulating_method())}",
         )
 
 

@@ -77,30 +77,30 @@ class StudyPart(ABC, Generic[ResultT]):
         """Name of the part in messages."""
 
     @abstractmethod
-    def answer(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> ResultT:
-        """The result, by at most `threads` threads; what it raises of `FAILURES` becomes `failure_answer`.
+    def compute(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> ResultT:
+        """The result, by at most `threads` threads; what it raises of `FAILURES` becomes `failed_result`.
 
         `designs` are the best designs of the study, empty while they are computed.
         """
 
     @abstractmethod
-    def failure_answer(self, study: Study, message: str) -> ResultT:
+    def failed_result(self, study: Study, message: str) -> ResultT:
         """Result without numbers, with `message` as the reason."""
 
 
 def run_part(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[ResultT], threads: int = 1) -> ResultT:
-    """The result of a part; of one that raises an error of `FAILURES`, its `failure_answer`, and the study goes on."""
+    """The result of a part; of one that raises an error of `FAILURES`, its `failed_result`, and the study goes on."""
     try:
         with (
             one_blas_thread(),
             np.errstate(over="ignore", invalid="ignore", divide="ignore"),
             within(part.name),
         ):
-            return part.answer(study, designs, threads)
+            return part.compute(study, designs, threads)
     except FAILURES as error:
-        return part.failure_answer(study, str(error))
+        return part.failed_result(study, str(error))
 
 
 def lost_part(study: Study, part: StudyPart[ResultT]) -> ResultT:
     """Result of a part whose worker processes ended at every attempt."""
-    return part.failure_answer(study, ENDED)
+    return part.failed_result(study, ENDED)

@@ -9,7 +9,7 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.excitations import NameReference, SizeReference
 from inerter.files.study.study import Study
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import check_bounded, input_names, input_unit, main_outputs, outputs, velocity_of
 from inerter.units import are_compatible, quote_value
@@ -37,16 +37,16 @@ def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, IndexDef
     """Mechanism and index definition for each layout; empty if one cannot be built, which is reported elsewhere."""
     try:
         mechanisms = [study.design(layout).mechanism() for layout in study.layouts]
-        return [(mechanism, study.index(name).question(mechanism)) for mechanism in mechanisms]
+        return [(mechanism, study.index(name).definition(mechanism)) for mechanism in mechanisms]
     except InerterError:
         return []
 
 
 def _of_name(
-    place: Sequence[str], named: NameReference, mechanism: Mechanism, question: IndexDefinition
+    place: Sequence[str], named: NameReference, mechanism: Mechanism, definition: IndexDefinition
 ) -> Problem | None:
     """Problem of a name that the mechanism lacks or whose response is unbounded; None if it is valid."""
-    driven = question.drive.excited_mechanism(mechanism)
+    driven = definition.drive.excited_mechanism(mechanism)
     forces = [force.name for force in mechanism.forces if force.name != GROUND_ACCELERATION]
     told: Sequence[str]
     if named.what == "output":
@@ -68,19 +68,19 @@ def _of_name(
 
 
 def _of_size(
-    place: Sequence[str], size: SizeReference, mechanism: Mechanism, question: IndexDefinition
+    place: Sequence[str], size: SizeReference, mechanism: Mechanism, definition: IndexDefinition
 ) -> Iterator[Problem]:
     """Problem of a size whose unit does not match that of its input."""
-    (arrival, *_) = _inputs(mechanism, question) or ("",)
-    unit = input_unit(mechanism, arrival)
+    (path, *_) = _inputs(mechanism, definition) or ("",)
+    unit = input_unit(mechanism, path)
     if unit and not are_compatible(size.unit, size.expected(unit)):
-        fault = f"{arrival} is in {unit}"
+        fault = f"{path} is in {unit}"
         yield at(place, got=f"a size in {size.unit}", fault=fault, expected=f"one in {size.expected(unit)}")
 
 
-def _inputs(mechanism: Mechanism, question: IndexDefinition) -> list[str]:
+def _inputs(mechanism: Mechanism, definition: IndexDefinition) -> list[str]:
     """Sources of the input paths of the index; empty if an input is unknown, which is reported elsewhere."""
     try:
-        return [arrival.source for arrival in question.arrivals(mechanism)]
+        return [path.source for path in definition.input_paths(mechanism)]
     except InerterError:  # no such input, which is told with its name
         return []

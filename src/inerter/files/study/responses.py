@@ -13,7 +13,7 @@ from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
 from inerter.formatting import format_number, format_quantity
-from inerter.indices.question import IndexDefinition
+from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.norms.response import frequency_response
@@ -34,7 +34,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
     for (layout, index), vehicle in designs.items():
         mechanism = vehicle.mechanism()
         try:
-            problem = linear_problem(mechanism, study.index(index).question(mechanism), conventions)
+            problem = linear_problem(mechanism, study.index(index).definition(mechanism), conventions)
             systems[layout, index] = problem, problem.system(close(problem.descriptor, {}))
         except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
             if all(map(is_blind, study.methods)):
@@ -45,8 +45,8 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         mine = {layout: entry for (layout, i), entry in systems.items() if i == index}
         if not mine:
             continue
-        question = next(iter(mine.values()))[0].question
-        weights = np.array([abs(output.weight) for output in question.outputs])
+        definition = next(iter(mine.values()))[0].definition
+        weights = np.array([abs(output.weight) for output in definition.outputs])
         gains = np.full((len(study.layouts), weights.size, omega.size), np.nan)
         for layout, (problem, system) in mine.items():
             with np.errstate(over="ignore", invalid="ignore"):
@@ -55,12 +55,12 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
         mechanism = designs[next(iter(mine)), index].mechanism()
         attributes = {
-            "units": _per(question.unit, _source_unit(mechanism, question)),
+            "units": _per(definition.unit, _source_unit(mechanism, definition)),
             "long_name": _words(study, index),
         }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        units = [unit_of(mechanism, [o.output]) for o in question.outputs]
-        names = [_output_label(o, own, question.unit) for o, own in zip(question.outputs, units, strict=True)]
+        units = [unit_of(mechanism, [o.output]) for o in definition.outputs]
+        names = [_output_label(o, own, definition.unit) for o, own in zip(definition.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
 
@@ -71,11 +71,11 @@ def _per(unit: str, per: str) -> str:
     return f"{top or 1}/{bottom}" if per else unit
 
 
-def _source_unit(mechanism: Mechanism, question: IndexDefinition) -> str:
+def _source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
     """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
-    if question.drive.unit or not question.drive.is_random:
-        return question.drive.unit
-    return input_unit(mechanism, question.arrivals(mechanism)[0].input)
+    if definition.drive.unit or not definition.drive.is_random:
+        return definition.drive.unit
+    return input_unit(mechanism, definition.input_paths(mechanism)[0].input)
 
 
 def _words(study: Study, index: str) -> str:

@@ -15,11 +15,11 @@ import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.limits import each_of
+from inerter.files.study.method_labels import method_labels
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed
 from inerter.files.study.study import Study
-from inerter.files.study.ways import ways
 from inerter.methods.compare import difference_of
 from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
@@ -39,7 +39,7 @@ class DatasetBuilder:
         self.study = study
         self.cases = cases(study)
         self.done = np.zeros(len(self.cases), dtype=bool)  # by the number of the case
-        self.count = self.not_ok = 0
+        self.count = self.n_failures = 0
         self.kinds: set[str] = set()  # of statuses
         self.designs: dict[Case, Outcome] = {}  # where nothing is swept
         self._notes = Notes()
@@ -63,7 +63,7 @@ class DatasetBuilder:
         if not self.done[number]:
             self.done[number] = True
             self.count += 1
-            self.not_ok += kind != _OK
+            self.n_failures += kind != _OK
         self.kinds.add(kind)
         self._notes.add(number, case, outcome)
         self._enter_values(number, outcome)
@@ -218,7 +218,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "elements": ("layout", [_count(study, layout) for layout in study.layouts]),
         "index": list(indices),
         "method": list(study.evaluate),
-        "method_words": ("method", list(ways(study).values())),
+        "method_words": ("method", list(method_labels(study).values())),
         "other": list(indices),
         "parameter": list(parameters),
         "parameter_unit": ("parameter", list(parameters.values())),

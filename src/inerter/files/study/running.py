@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.atomic_io import write_netcdf, write_text
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, Status, StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
@@ -26,7 +27,7 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import DatasetBuilder
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
-from inerter.files.study.task_rows import TASKS
+from inerter.files.study.task_registry import TASKS
 from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, journal_entry, parts_of
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.table import csv_rows, csv_text
@@ -53,6 +54,9 @@ class StudyResult:
     answers: tuple[Answer, ...] = ()  # to the parts of its tasks
     failed: bool = False  # whether a case or a part has no number at all
 
+    not_ok = RenamedAttribute("n_failures")
+    failing = RenamedAttribute("iterate_failures")
+
     @property
     def status(self) -> Status:
         """`failed` if a case or a part has no number at all; the status of each design is a value of `data`."""
@@ -61,15 +65,15 @@ class StudyResult:
     @property
     def failures(self) -> list[str]:
         """Lines, one for every design or answer whose status is not ok."""
-        return list(self.failing())
+        return list(self.iterate_failures())
 
     @property
-    def not_ok(self) -> int:
+    def n_failures(self) -> int:
         """Number of lines in `failures`."""
         designs = int(np.count_nonzero(self.data.status.values != StatusKind.OK.value))
         return designs + sum(not answer.ok for answer in self.answers)
 
-    def failing(self) -> Iterator[str]:
+    def iterate_failures(self) -> Iterator[str]:
         """The lines of `failures`, one by one."""
         status = self.data.status
         labels = [status[dim].values.tolist() for dim in status.dims]
@@ -89,7 +93,7 @@ def run_study(
     executor: Executor | Pool | None = None,
     resume: bool = False,
     force: bool = False,
-    progress: Progress = lambda done, total, last, not_ok: None,
+    progress: Progress = lambda done, total, last, n_failures: None,
     compiling: ProgressCallback | None = None,
     finish: Callable[[StudyResult, Path], object] = lambda result, folder: None,
 ) -> StudyResult:
@@ -174,7 +178,7 @@ def _compute_outcomes(
 
     def tell(last: PartResult | None) -> None:
         troubled = sum(not one.ok for one in done.values())
-        progress(found.count + len(done), total, last, found.not_ok + troubled)
+        progress(found.count + len(done), total, last, found.n_failures + troubled)
 
     tell(None)
     results.list_journal(journals.NAME)

@@ -48,7 +48,7 @@ from inerter.files.common.vehicles import models
 from inerter.files.study.limits import LimitsCodec, StudyLimit
 from inerter.files.study.own_indices import indices_of, own_indices_codec
 from inerter.files.study.place import ELEMENTS, Sweep, place_of
-from inerter.files.study.task_rows import TASKS
+from inerter.files.study.task_registry import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
@@ -237,8 +237,10 @@ class Settings:
     budgets: tuple[str, ...] = key(
         some_names("f"),
         "Elements whose break-even value against the baseline is computed.",
-        'budgets = ["f"]',
+        'break_even = ["f"]',
         default=(),
+        name="break_even",
+        former="budgets",
     )
     limits: tuple[StudyLimit, ...] = key(
         LimitsCodec(),

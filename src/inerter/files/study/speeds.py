@@ -57,13 +57,13 @@ def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], facto
     assert study.road is not None
     speed = factor * study.road.speed
     there = with_numbers(study, [(place_of(SPEED), speed)])
-    question, way = there.resolve_index(index, layout), there.method(method)
+    asked_index, by = there.resolve_index(index, layout), there.method(method)
     try:
-        if isinstance(way, MethodWithExactFallback) and any(
-            way.share_unsure(*one, {}) for one in constituents_of(vehicle, question)
+        if isinstance(by, MethodWithExactFallback) and any(
+            by.share_unsure(*one, {}) for one in constituents_of(vehicle, asked_index)
         ):
             return np.nan, "it takes more digits than double precision has"
-        found = evaluate(vehicle, question, way)
+        found = evaluate(vehicle, asked_index, by)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
         return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no value ({str(error).rstrip('.')})"
     if not np.isfinite(found.value):
@@ -86,9 +86,11 @@ def _is_late(vehicle: Vehicle, asked: IndexLike) -> bool:
     """Whether random inputs act with different delays, or through a filter that depends on the speed."""
     for one, index in constituents_of(vehicle, asked):
         mechanism = one.mechanism()
-        question = index.question(mechanism)
-        arrivals = question.arrivals(question.drive.excited_mechanism(mechanism)) if question.drive.is_random else ()
-        coherence = getattr(getattr(question.drive, "road", None), "coherence", None)
-        if len({arrival.delay for arrival in arrivals}) > 1 or (arrivals and coherence is not None):
+        definition = index.definition(mechanism)
+        paths = (
+            definition.input_paths(definition.drive.excited_mechanism(mechanism)) if definition.drive.is_random else ()
+        )
+        coherence = getattr(getattr(definition.drive, "road", None), "coherence", None)
+        if len({path.delay for path in paths}) > 1 or (paths and coherence is not None):
             return True
     return False

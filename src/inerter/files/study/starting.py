@@ -164,7 +164,7 @@ def _answers(kind: type[VehicleModel], symbol: str) -> bool:
     if bare - {"road"}:
         return False
     try:
-        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).question(_unit_vehicle(kind).mechanism())
+        make_index(symbol, Road(roughness=1.0, speed=1.0), {}).definition(_unit_vehicle(kind).mechanism())
     except InerterError:
         return False
     return True

@@ -7,7 +7,7 @@ import xarray as xr
 
 from inerter.errors import InerterError
 from inerter.files.study.study import Study
-from inerter.indices.question import Combination
+from inerter.indices.definition import Combination
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
 from inerter.methods.ties import ACCURACY
@@ -38,12 +38,12 @@ def _static_gain(study: Study, layout: str, index: str, design: xr.Dataset) -> f
     try:
         vehicle = study.design(layout)
         vehicle = vehicle.with_values({name: n for name, n in numbers if name in vehicle.free_values()})
-        question = study.index(index).question(mechanism := vehicle.mechanism())
-        if question.combination is not Combination.PEAK_GAIN:
+        definition = study.index(index).definition(mechanism := vehicle.mechanism())
+        if definition.combination is not Combination.PEAK_GAIN:
             return np.nan
-        problem = linear_problem(mechanism, question, CONVENTIONS[study.conventions])
+        problem = linear_problem(mechanism, definition, CONVENTIONS[study.conventions])
         gains = frequency_response(problem.system(close(problem.descriptor, {})), np.zeros(1), problem.pade_order)
     except (InerterError, np.linalg.LinAlgError):
         return np.nan
-    weights = np.array([abs(output.weight) for output in problem.question.outputs])
+    weights = np.array([abs(output.weight) for output in problem.definition.outputs])
     return float(np.linalg.norm(weights * np.abs(gains[0, :, 0])))

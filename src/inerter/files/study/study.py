@@ -21,8 +21,8 @@ from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.place import Place, element_at, place_of
 from inerter.files.study.places import sections_of, with_numbers
 from inerter.files.study.sections import OVER, Settings, study_codec
+from inerter.indices.definition import Index
 from inerter.indices.names import index_names
-from inerter.indices.question import Index
 from inerter.indices.registry import INDICES, excitation_of, make_index
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.conditions import Conditions
@@ -121,7 +121,7 @@ class Study(Settings):
     def unit(self, name: str) -> str:
         """SI unit of the index of that name; may depend on the vehicle."""
         index = self.index(name)
-        return index.unit or index.question(self.design(next(iter(self.layouts))).mechanism()).unit
+        return index.unit or index.definition(self.design(next(iter(self.layouts))).mechanism()).unit
 
     def settings_of(self, name: str) -> dict[str, Any]:
         """Settings of the index of that name by key; user-defined values override those of the study."""

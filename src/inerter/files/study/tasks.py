@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.parts import PartResult, StudyPart
-from inerter.files.study.task_rows import TASKS
+from inerter.files.study.task_registry import TASKS
 from inerter.registry import cache_until_registration
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ class Task(ABC, Generic[AnswerT]):
 
     key: ClassVar[str]  # of its answers in the journal and in --json, and of their file
     title: ClassVar[str]  # of its section in a report
+    items: ClassVar[str] = ""  # its parts where they are counted, in the plural; the key if empty
     answer: type[AnswerT]
 
     @abstractmethod
@@ -102,7 +103,7 @@ class TaskResults(Generic[AnswerT]):
 @cache_until_registration
 def tasks() -> tuple[Task[Any], ...]:
     """All tasks, in the order in which they are computed and reported."""
-    return tuple(_task(row.home) for row in TASKS.values())
+    return tuple(_task(entry.home) for entry in TASKS.values())
 
 
 def _task(home: str) -> Task[Any]:

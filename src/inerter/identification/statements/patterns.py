@@ -24,7 +24,7 @@ COEFFICIENTS = {  # of the residual on a signal: its physical meaning and unit
     "displacement": ("a stiffness", "N/m"),
     "velocity": ("a damping", "N s/m"),
     "acceleration": ("an inertance", "kg"),
-    "direction": ("a friction", "N"),
+    "direction": ("a friction force", "N"),
     "force": ("a gain of the load cell", ""),
     "force rate": ("a delay of the force", "s"),
 }

@@ -179,11 +179,11 @@ def _below_print(rows: list[SimulatedRow]) -> Reason:
 def _root_of_the_road() -> Reason:
     """Effect of eq. (17) as printed on S1 of Table 1, by its linear response."""
     row = next(r for r in linear_rows() if (r.table, r.index, r.layout) == (1, "J1", "S1"))
-    question = row.asks().question(row.design().mechanism())
-    assert isinstance(question.drive, RoadVelocity)
-    road = question.drive.road
+    definition = row.asks().definition(row.design().mechanism())
+    assert isinstance(definition.drive, RoadVelocity)
+    road = definition.drive.road
     omega = 2.0 * np.pi * np.arange(1.0, 10_001.0) / 10.0
-    system = state_space(row.design(), "road", question.outputs[0].output)
+    system = state_space(row.design(), "road", definition.outputs[0].output)
     gain = np.abs(frequency_response(system, omega)[:, 0, 0])
     height = np.sqrt(8.0 * np.pi * road.roughness * road.speed * omega[0])
     as_printed, as_meant = (

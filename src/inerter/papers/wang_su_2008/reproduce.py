@@ -247,4 +247,4 @@ def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progres
 
 
 def _with_name(progress: Progress, name: str) -> Callable[[int, int, object, int], None]:
-    return lambda done, total, last, not_ok: progress(name, done, total)
+    return lambda done, total, last, n_failures: progress(name, done, total)

@@ -159,8 +159,8 @@ def _gain_from_rest(row: PrintedRow, peak: GainPeak) -> float:
     if not 0.0 < peak.omega < inf:
         return peak.gain
     mechanism = row.design().mechanism()
-    question = row.asks().question(mechanism)
-    (arrival,), (output,) = question.arrivals(mechanism), question.outputs
-    pushed = sine(question.amplitude or 1.0, peak.omega / (2.0 * pi))
-    run = simulate(row.design(), forces={arrival.input: pushed}, duration=_RUN, step=1e-3)
-    return abs(output.weight) * run.rms(output.output) / run.rms(arrival.input)
+    definition = row.asks().definition(mechanism)
+    (path,), (output,) = definition.input_paths(mechanism), definition.outputs
+    pushed = sine(definition.amplitude or 1.0, peak.omega / (2.0 * pi))
+    run = simulate(row.design(), forces={path.input: pushed}, duration=_RUN, step=1e-3)
+    return abs(output.weight) * run.rms(output.output) / run.rms(path.input)

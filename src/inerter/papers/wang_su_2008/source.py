@@ -10,8 +10,8 @@ from importlib.resources import as_file, files
 
 from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
+from inerter.indices.definition import Index
 from inerter.indices.load_carrying import LoadCarrying
-from inerter.indices.question import Index
 from inerter.vehicle.vehicle import Vehicle
 
 _DATA = files("inerter.papers.wang_su_2008") / "data"

@@ -1,55 +1,49 @@
-"""A task: which value of a catalogue is best for an element, with everything else optimised for it."""
+"""A task: the best value of an element among those of a catalogue, with everything else optimised for each."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 
 import inerter as it
-from inerter.files.common.codec import key, keyed_dataclass
-from inerter.files.common.entries import SWEEP_LIST, TEXT
-from inerter.files.common.problem import Problem, at
-from inerter.files.study.cases import Case, run_case
-from inerter.files.study.study import Study, elements_used
-from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.formatting import format_quantity
-from inerter.table import Cell, Row, Table, Writer
-from inerter.units import parse_quantity
+from inerter import tasks
 
 
-@keyed_dataclass
+@tasks.keyed_dataclass
 class CatalogueKeys:
-    """What [study] says of it."""
+    """Keys of the task in [study]."""
 
-    catalogue_of: str | None = key(TEXT, "The element that is bought.", 'catalogue_of = "c"', default=None)
-    catalogue: tuple[str, ...] = key(
-        SWEEP_LIST, "The values that are sold.", 'catalogue = ["1 kN s/m", "2 kN s/m"]', default=()
+    catalogue_of: str | None = tasks.key(
+        tasks.TEXT, "Element whose value is from the catalogue.", 'catalogue_of = "c"', default=None
+    )
+    catalogue: tuple[str, ...] = tasks.key(
+        tasks.SWEEP_LIST, "Values in the catalogue.", 'catalogue = ["1 kN s/m", "2 kN s/m"]', default=()
     )
 
 
-it.TASKS.add(it.TaskRow("catalogues", "inerter_extending.catalogue:Catalogues", CatalogueKeys))
+it.TASKS.add(it.TaskEntry("catalogues", "inerter_extending.catalogue:Catalogues", CatalogueKeys))
 
 
 @dataclass(frozen=True)
-class CataloguePart(TaskPart["CatalogueAnswer"]):
-    """Which value of the catalogue is best for an index of a layout?"""
+class CataloguePart(tasks.TaskPart["CatalogueAnswer"]):
+    """Part of the task: best value of the catalogue for one index of a layout."""
 
     layout: str
     index: str
 
     @property
     def name(self) -> str:
-        """What it is, in messages."""
+        """Name of the part in messages."""
         return f"catalogue for {self.layout} {self.index}"
 
-    def answer(self, study: Study, designs: Designs, threads: int) -> CatalogueAnswer:
-        """The value with the least index."""
+    def compute(self, study: tasks.Study, designs: tasks.Designs, threads: int) -> CatalogueAnswer:
+        """The value with the lowest index."""
         keys = study.tasks["catalogues"]
         element = study.elements[keys.catalogue_of]
         found = {}
         for text in keys.catalogue:
-            fixed = study.with_values({keys.catalogue_of: parse_quantity(text, element.unit)})
-            outcome = run_case(fixed, Case(self.layout, self.index), threads)
+            fixed = study.with_values({keys.catalogue_of: tasks.parse_quantity(text, element.unit)})
+            outcome = tasks.run_case(fixed, tasks.Case(self.layout, self.index), threads)
             found[text] = outcome.values.get(study.evaluate[0], {}).get(self.index, float("inf")), outcome
         best = min(found, key=lambda text: found[text][0])
         value, outcome = found[best]
@@ -64,8 +58,8 @@ class CataloguePart(TaskPart["CatalogueAnswer"]):
             message=outcome.message,
         )
 
-    def failure_answer(self, study: Study, message: str) -> CatalogueAnswer:
-        """The answer without numbers."""
+    def failed_result(self, study: tasks.Study, message: str) -> CatalogueAnswer:
+        """Result without numbers."""
         return CatalogueAnswer(
             layout=self.layout,
             index=self.index,
@@ -79,8 +73,8 @@ class CataloguePart(TaskPart["CatalogueAnswer"]):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CatalogueAnswer(Answer):
-    """The value that is best."""
+class CatalogueAnswer(tasks.Answer):
+    """Best value of the catalogue, and the index with it."""
 
     index: str
     element: str
@@ -90,69 +84,66 @@ class CatalogueAnswer(Answer):
 
     @property
     def part(self) -> CataloguePart:
-        """What it answers."""
+        """Part to which the answer belongs."""
         return CataloguePart(self.layout, self.index)
 
 
-class Catalogues(Task[CatalogueAnswer]):
-    """Which of the values that are sold is best."""
+class Catalogues(tasks.Task[CatalogueAnswer]):
+    """Task: best values of a catalogue."""
 
     key = "catalogues"
     title = "From the catalogue"
     answer = CatalogueAnswer
 
-    def parts(self, study: Study) -> list[CataloguePart]:
-        """In the order of indices, layouts; those that have the element."""
-        having = elements_used(study).get(study.tasks["catalogues"].catalogue_of, ())
+    def parts(self, study: tasks.Study) -> list[CataloguePart]:
+        """Parts in the order of indices and layouts; layouts without the element are left out."""
+        having = tasks.elements_used(study).get(study.tasks["catalogues"].catalogue_of, ())
         return [CataloguePart(layout, index) for index in study.indices for layout in having]
 
-    def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """An element that there is not, a catalogue that is empty, or a value in the unit of another kind."""
+    def problems(self, study: tasks.Study, given: Collection[str]) -> Iterator[tasks.Problem]:
+        """Problems of the keys: an unknown element, an empty catalogue, or a value in a unit of another kind."""
         keys = study.tasks["catalogues"]
         if keys.catalogue_of is None:
             return
         element = study.elements.get(keys.catalogue_of)
         if element is None:
-            yield at(("study", "catalogue_of"), got=keys.catalogue_of, expected="an element")
+            yield tasks.at(("study", "catalogue_of"), got=keys.catalogue_of, expected="an element")
         elif not keys.catalogue:
-            yield at(("study", "catalogue"), fault="missing", expected='catalogue = ["1 kN s/m", "2 kN s/m"]')
+            yield tasks.at(("study", "catalogue"), fault="missing", expected='catalogue = ["1 kN s/m", "2 kN s/m"]')
         else:
             for text in keys.catalogue:
                 try:
-                    parse_quantity(text, element.unit)
+                    tasks.parse_quantity(text, element.unit)
                 except it.InerterError as error:
-                    yield at(("study", "catalogue"), got=text, expected=f"a unit of {element.unit}", hint=str(error))
+                    yield tasks.at(
+                        ("study", "catalogue"), got=text, expected=f"a unit of {element.unit}", hint=str(error)
+                    )
 
-    def description(self, study: Study) -> Mapping[str, list[str]]:
-        """The values that are sold."""
+    def description(self, study: tasks.Study) -> Mapping[str, list[str]]:
+        """Values in the catalogue, by the heading of the report."""
         return {"Catalogue": list(study.tasks["catalogues"].catalogue)}
 
-    def csv(self, study: Study, answers: Sequence[CatalogueAnswer]) -> Iterator[Sequence[object]]:
-        """One row a design."""
-        yield ["layout", "index", "element", "best", "value", "unit", "status"]
-        for one in answers:
-            yield [one.layout, one.index, one.element, one.best, one.value, one.unit, one.status_text]
-
-    def lines(self, results: TaskResults[CatalogueAnswer], width: int) -> Iterator[str]:
-        """A line for each design."""
-        yield from ("", "from the catalogue:")
-        for one in results.answers:
-            yield f"  {one.layout} {one.index}: {one.element} = {one.best}, {format_quantity(one.value, one.unit)}"
-
-    def tables(self, results: TaskResults[CatalogueAnswer]) -> list[Table]:
-        """One table."""
-        rows = [
-            Row(
-                f"{one.layout}, {one.index}",
-                [Cell(one.best), Cell(format_quantity(one.value, one.unit))],
-                status=one.doubt,
-            )
-            for one in results.answers
+    def table(self, results: tasks.TaskResults[CatalogueAnswer]) -> tasks.Table:
+        """One row for each design; columns with a heading are for people, those with a key are in the CSV file."""
+        columns = [
+            tasks.Column("Design"),
+            tasks.Column(key="layout"),
+            tasks.Column(key="index"),
+            tasks.Column(key="element"),
+            tasks.Column("Best value", "best", words=True),
+            tasks.Column("Index", "value"),
+            tasks.Column(key="unit"),
+            tasks.Column(key="status"),
         ]
-        return [Table("Best of the catalogue", ["Design", "Value that is sold", "Index"], rows)]
+        rows = []
+        for one in results.answers:
+            value = tasks.Quantity(one.value, one.unit)
+            contents = [f"{one.layout}, {one.index}", one.layout, one.index, one.element, one.best, value, one.unit]
+            rows.append(tasks.Row(tasks.cells(*contents, one.status_text), status=one.doubt))
+        return tasks.Table("Best values of the catalogue", columns, rows)
 
-    def sentences(self, results: TaskResults[CatalogueAnswer], write: Writer) -> Iterator[str]:
-        """The best value for each index."""
+    def sentences(self, results: tasks.TaskResults[CatalogueAnswer]) -> Iterator[str]:
+        """Best value of the catalogue for each index."""
         for index in results.study.indices:
             own = [one for one in results.answers if one.index == index]
             known = [one for one in own if one.value < float("inf")]  # a failed answer has none

@@ -31,32 +31,32 @@ class Quadrature:
 
     def estimate(self, vehicle: Any, index: Any) -> it.Estimate:
         mechanism = vehicle.mechanism()
-        question = index.question(mechanism)
-        if question.combination is not it.Combination.SUM_OF_RMS:
+        definition = index.definition(mechanism)
+        if definition.combination is not it.Combination.SUM_OF_RMS:
             raise it.InerterError(f"Quadrature is for r.m.s. values, and {index.symbol} is none.")
-        names = [weighted.output for weighted in question.outputs]
-        mechanism = question.drive.excited_mechanism(mechanism)
-        arrivals = question.arrivals(mechanism)
-        system = it.state_space(mechanism, list(dict.fromkeys(arrival.input for arrival in arrivals)), names)
+        names = [weighted.output for weighted in definition.outputs]
+        mechanism = definition.drive.excited_mechanism(mechanism)
+        paths = definition.input_paths(mechanism)
+        system = it.state_space(mechanism, list(dict.fromkeys(path.input for path in paths)), names)
         omega, weights = _nodes(self.points, self.middle)
         s = 1j * omega
         resolvent = np.linalg.solve(s[:, None, None] * np.eye(system.order) - system.A, system.B + 0j)
         gains = system.C @ resolvent + system.D
         squares = np.zeros((omega.size, len(names)))
-        for source in {arrival.source for arrival in arrivals}:
+        for source in {path.source for path in paths}:
             response = np.zeros((omega.size, len(names)), dtype=complex)
-            for arrival in arrivals:
-                if arrival.source == source:
-                    passed = 1.0 if arrival.filter is None else arrival.filter.response(omega)
-                    factor = arrival.lever * passed * np.exp(-s * arrival.delay)
-                    response += gains[:, :, system.inputs.index(arrival.input)] * factor[:, None]
+            for path in paths:
+                if path.source == source:
+                    passed = 1.0 if path.filter is None else path.filter.response(omega)
+                    factor = path.lever * passed * np.exp(-s * path.delay)
+                    response += gains[:, :, system.inputs.index(path.input)] * factor[:, None]
             squares += np.abs(response) ** 2
-        for column, filter in enumerate(question.filters):
+        for column, filter in enumerate(definition.filters):
             if filter is not None:
                 squares[:, column] *= np.abs(filter.response(omega)) ** 2
-        rms = question.drive.size * np.sqrt(weights @ squares / pi)
-        value = sum(abs(w.weight) * r for w, r in zip(question.outputs, rms.tolist(), strict=True))
-        return it.Estimate(value, question.unit, notes=system.notes)
+        rms = definition.drive.amplitude_density * np.sqrt(weights @ squares / pi)
+        value = sum(abs(w.weight) * r for w, r in zip(definition.outputs, rms.tolist(), strict=True))
+        return it.Estimate(value, definition.unit, notes=system.notes)
 
     def estimate_many(self, vehicle: Any, indices: Sequence[Any], points: Mapping[str, Any]) -> Any:
         designs = [

@@ -18,6 +18,6 @@ class SuspensionTravel:
     unit = "m"
     response = "travel per road velocity"
 
-    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+    def definition(self, mechanism: it.Mechanism) -> it.IndexDefinition:
         travels = tuple(it.OutputWeight(f"{strut.name}_travel") for strut in mechanism.struts)
         return it.on_road(self, mechanism, travels, "struts")

@@ -25,6 +25,6 @@ class WeightedComfort:
     unit = "m/s^2"
     response = "body acceleration per road velocity"
 
-    def question(self, mechanism: it.Mechanism) -> it.IndexDefinition:
+    def definition(self, mechanism: it.Mechanism) -> it.IndexDefinition:
         weighting = it.Filter((1.0, 0.0, 0.0), (1.0, sqrt(2.0) * self.corner, self.corner**2))  # Butterworth
         return it.on_road(self, mechanism, mechanism.measures.comfort, "measures.comfort", weighting)

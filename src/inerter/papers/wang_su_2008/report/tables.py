@@ -132,9 +132,9 @@ def _simulated_row(r: SimulatedRow) -> Row:
     found = [
         *cells(_design(r.row), r.row.table, r.row.index, r.row.case, r.row.title, r.unit),
         Cell(Shown(r.row.value, r.row.printed)),
-        Cell(_measured(r.paper2008, r.paper2008_error), _percent_text(100.0 * r.difference)),
+        Cell(_value_with_error(r.paper2008, r.paper2008_error), _percent_text(100.0 * r.difference)),
         Cell(r.paper2008_error),
-        *cells(_measured(r.exact, r.exact_error), r.exact_error),
+        *cells(_value_with_error(r.exact, r.exact_error), r.exact_error),
         improvement,
         *cells(100.0 * r.difference, r.score),
         Cell(r.verdict, strong=r.verdict in (DIFFERS, OTHER_PEAK)),
@@ -153,7 +153,14 @@ def optima_table(found: Reproduction) -> Table | None:
         index, layout = name.split()
         percent, error = numbers["percent"], numbers["percent_error"]
         contents = [
-            *(name, index, layout, _measured(numbers["value"], numbers["error"]), numbers["error"], numbers["unit"]),
+            *(
+                name,
+                index,
+                layout,
+                _value_with_error(numbers["value"], numbers["error"]),
+                numbers["error"],
+                numbers["unit"],
+            ),
             *(_number(numbers["linear_value"]), Shown(percent, f"{format_uncertain(-percent, error)} %"), error),
             *(numbers["status"], *(_number(numbers["parameters"][key], 5) for key in ("c", "b"))),
         ]
@@ -246,7 +253,7 @@ def _number(value: float, digits: int = 6) -> Shown:
     return Shown(value, format_number(value, digits))
 
 
-def _measured(value: float, error: float) -> Shown:
+def _value_with_error(value: float, error: float) -> Shown:
     """A value with its standard error; with six digits if it has none."""
     return Shown(value, format_uncertain(value, error) if error > 0.0 else format_number(value))
 

@@ -17,7 +17,7 @@ _SEEN = {
 }
 
 
-def ways(study: Study) -> dict[str, str]:
+def method_labels(study: Study) -> dict[str, str]:
     """Words for each method of `evaluate`, such as "with friction"; empty without nonlinear elements.
 
     Two methods that see the same are told apart by what they are.

@@ -12,6 +12,7 @@ from typing import Any, Protocol, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
@@ -72,6 +73,8 @@ class IndexDefinition:
         """Excitation of the mechanism."""
         return cast(Excitation, self.excitation)
 
+    arrivals = RenamedAttribute("input_paths")
+
     @property
     def is_peak(self) -> bool:
         """Whether the index is a peak gain; else it is made of r.m.s. values."""
@@ -89,13 +92,13 @@ class IndexDefinition:
             return np.asarray(weights**2 * rms / max(float(self.combine(rms, weights)), 1e-300))
         return weights
 
-    def arrivals(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
+    def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the excitation in the order of their delays; `mechanism` is the excited one."""
-        return tuple(sorted(self.drive.arrivals(mechanism), key=lambda arrival: arrival.delay))
+        return tuple(sorted(self.drive.input_paths(mechanism), key=lambda path: path.delay))
 
 
 class DescribedIndex(Protocol):
-    """What reports say of an index: its symbol, title, unit and frequency response."""
+    """Description of an index for reports: its symbol, title, unit and frequency response."""
 
     @property
     def symbol(self) -> str:
@@ -121,7 +124,7 @@ class DescribedIndex(Protocol):
 class Index(DescribedIndex, Protocol):
     """Index: symbol, title, unit, and its definition for a given mechanism."""
 
-    def question(self, mechanism: Mechanism) -> IndexDefinition:
+    def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Definition for `mechanism`; raises `PerformanceIndexError` if the mechanism has no answer."""
         ...
 

@@ -8,7 +8,7 @@ from inerter.registry import Registry
 
 
 @dataclass(frozen=True)
-class TaskRow:
+class TaskEntry:
     """Task: its class as module:class, imported when a study uses the task, and the keys of [study] that belong to it.
 
     `keys` is a declared class; what a file says of it is `study.tasks[key]`.
@@ -24,8 +24,8 @@ TASKS = Registry(
     "key",
     ("home", "keys"),
     own=(
-        TaskRow("fronts", "inerter.tasks.fronts:Fronts"),
-        TaskRow("tolerances", "inerter.tasks.tolerances:Tolerances"),
-        TaskRow("budgets", "inerter.tasks.budgets:Budgets"),
+        TaskEntry("fronts", "inerter.tasks.fronts:Fronts"),
+        TaskEntry("tolerances", "inerter.tasks.tolerances:Tolerances"),
+        TaskEntry("budgets", "inerter.tasks.budgets:Budgets"),
     ),
 )

@@ -1,6 +1,6 @@
 """Chunks of tasks that are submitted together, and their results.
 
-An item is plain data, and so is its result, which depends on nothing else: a piece can be run anywhere and in any
+An item is plain data, and so is its result, which depends on nothing else: a chunk can be run anywhere and in any
 order, by an importable function.
 """
 
@@ -23,46 +23,46 @@ from inerter.work.origin import origin
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 THREADS: ContextVar[int | None] = ContextVar("threads", default=None)  # allowed threads; None: the number of cores
-WORTH = 0.5  # target duration of a piece [s]: its submission takes a few milliseconds at most
-_MOST = 2000  # items of a piece
-_GROWTH = 8  # largest ratio of items to those of completed pieces
+WORTH = 0.5  # target duration of a chunk [s]: its submission takes a few milliseconds at most
+_MOST = 2000  # items of a chunk
+_GROWTH = 8  # largest ratio of items to those of completed chunks
 _PROCESS, _NUMBERS = token_hex(8), count()
 
 
 @dataclass(frozen=True)
-class Piece(Generic[Item]):
+class Chunk(Generic[Item]):
     """A chunk of items, with the number of processes that ended while running it."""
 
     number: str  # unique identifier over all runs, also for equal calls
     items: tuple[Item, ...]
     origin: str  # required fingerprint of the numerical code
     deaths: int = 0
-    alone: bool = False  # whether it runs without any other piece
+    alone: bool = False  # whether it runs without any other chunk
     faults: int = 0  # number of invalid results
 
 
 @dataclass(frozen=True)
 class ChunkResult(Generic[Result]):
-    """Results of a piece, duration [s], fingerprint of the numerical code, and the error that ended it early."""
+    """Results of a chunk, duration [s], fingerprint of the numerical code, and the error that ended it early."""
 
     results: tuple[Result, ...]
     seconds: float
     origin: str
-    piece: str = ""  # identifier of the piece
+    chunk: str = ""  # identifier of the chunk
     error: Exception | None = None
 
 
-def run_chunk(work: Callable[[Item], Result], piece: Piece[Item]) -> ChunkResult[Result]:
-    """Run all items of a piece in this process; none if the numerical code differs."""
-    if piece.origin != origin():
+def run_chunk(work: Callable[[Item], Result], chunk: Chunk[Item]) -> ChunkResult[Result]:
+    """Run all items of a chunk in this process; none if the numerical code differs."""
+    if chunk.origin != origin():
         return ChunkResult((), 0.0, origin())
     begin = time.perf_counter()
-    before = THREADS.set(1)  # the other cores run other pieces
+    before = THREADS.set(1)  # the other cores run other chunks
     results: list[Result] = []
     failed: Exception | None = None
     try:
         with forwarding():
-            for item in piece.items:
+            for item in chunk.items:
                 results.append(work(item))
     except Exception as error:  # distinguished from errors of the executor
         if not isinstance(error, InerterError):
@@ -70,7 +70,7 @@ def run_chunk(work: Callable[[Item], Result], piece: Piece[Item]) -> ChunkResult
         failed = error
     finally:
         THREADS.reset(before)
-    return ChunkResult(tuple(results), time.perf_counter() - begin, origin(), piece.number, failed)
+    return ChunkResult(tuple(results), time.perf_counter() - begin, origin(), chunk.number, failed)
 
 
 def import_work(work: Callable[..., object]) -> None:
@@ -78,26 +78,26 @@ def import_work(work: Callable[..., object]) -> None:
 
 
 class Cutter(Generic[Item]):
-    """Divide items into pieces of suitable duration, estimated from completed ones.
+    """Divide items into chunks of suitable duration, estimated from completed ones.
 
-    Towards the end, if the number `left` is known, pieces become smaller, so that all processes end together.
+    Towards the end, if the number `left` is known, chunks become smaller, so that all processes end together.
     """
 
     def __init__(self, items: Iterator[Item], left: int | None) -> None:
         self._items = items
         self._left = left
-        self._again: deque[Piece[Item]] = deque()
+        self._again: deque[Chunk[Item]] = deque()
         self._pace: float | None = None  # seconds an item takes
         self._largest = 1
 
-    def learn(self, piece: Piece[Item], seconds: float) -> None:
-        """Record the duration of a piece."""
-        pace = max(seconds / len(piece.items), 1e-9)
+    def learn(self, chunk: Chunk[Item], seconds: float) -> None:
+        """Record the duration of a chunk."""
+        pace = max(seconds / len(chunk.items), 1e-9)
         self._pace = pace if self._pace is None else 0.5 * (self._pace + pace)
-        self._largest = max(self._largest, _GROWTH * len(piece.items))
+        self._largest = max(self._largest, _GROWTH * len(chunk.items))
 
-    def take(self, slots: int) -> Piece[Item] | None:
-        """The next piece for one of `slots` processes; None if there is none that may run with others."""
+    def take(self, slots: int) -> Chunk[Item] | None:
+        """The next chunk for one of `slots` processes; None if there is none that may run with others."""
         if self._again and self._again[0].deaths < 2:
             return replace(self._again.popleft(), number=_number())
         size = 1 if self._pace is None else min(int(WORTH / self._pace), self._largest, _MOST)
@@ -106,22 +106,22 @@ class Cutter(Generic[Item]):
         items = tuple(islice(self._items, max(size, 1)))
         if self._left is not None:
             self._left -= len(items)
-        return Piece(_number(), items, origin()) if items else None
+        return Chunk(_number(), items, origin()) if items else None
 
-    def take_alone(self) -> Piece[Item] | None:
-        """A piece on which two processes ended, to be run without others, so that the cause is certain."""
+    def take_alone(self) -> Chunk[Item] | None:
+        """A chunk on which two processes ended, to be run without others, so that the cause is certain."""
         if not self._again:
             return None
         return replace(self._again.popleft(), number=_number(), alone=True)
 
-    def back(self, piece: Piece[Item], deaths: int) -> None:
-        """Resubmit the items of a piece separately after `deaths` processes have ended on it."""
-        pieces = [Piece("", (item,), piece.origin, piece.deaths + deaths) for item in piece.items]
-        self._again = deque(sorted([*self._again, *pieces], key=lambda piece: piece.deaths))
+    def back(self, chunk: Chunk[Item], deaths: int) -> None:
+        """Resubmit the items of a chunk separately after `deaths` processes have ended on it."""
+        chunks = [Chunk("", (item,), chunk.origin, chunk.deaths + deaths) for item in chunk.items]
+        self._again = deque(sorted([*self._again, *chunks], key=lambda chunk: chunk.deaths))
 
-    def repeat(self, piece: Piece[Item]) -> None:
-        """Resubmit a piece after an invalid result."""
-        self._again.appendleft(replace(piece, faults=piece.faults + 1))
+    def repeat(self, chunk: Chunk[Item]) -> None:
+        """Resubmit a chunk after an invalid result."""
+        self._again.appendleft(replace(chunk, faults=chunk.faults + 1))
 
 
 def _number() -> str:

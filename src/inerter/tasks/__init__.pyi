@@ -1,0 +1,32 @@
+"""What the task of another distribution needs, and where it lives."""
+
+from inerter.errors import StatusKind as StatusKind
+from inerter.files.common.codec import key as key
+from inerter.files.common.codec import keyed_dataclass as keyed_dataclass
+from inerter.files.common.entries import POSITIVE as POSITIVE
+from inerter.files.common.entries import SHARE as SHARE
+from inerter.files.common.entries import SWEEP_LIST as SWEEP_LIST
+from inerter.files.common.entries import TEXT as TEXT
+from inerter.files.common.entries import YES_OR_NO as YES_OR_NO
+from inerter.files.common.problem import Problem as Problem
+from inerter.files.common.problem import at as at
+from inerter.files.study.cases import Case as Case
+from inerter.files.study.cases import Outcome as Outcome
+from inerter.files.study.cases import run_case as run_case
+from inerter.files.study.study import Study as Study
+from inerter.files.study.study import elements_used as elements_used
+from inerter.files.study.task_registry import TASKS as TASKS
+from inerter.files.study.task_registry import TaskEntry as TaskEntry
+from inerter.files.study.tasks import Answer as Answer
+from inerter.files.study.tasks import Designs as Designs
+from inerter.files.study.tasks import Task as Task
+from inerter.files.study.tasks import TaskPart as TaskPart
+from inerter.files.study.tasks import TaskResults as TaskResults
+from inerter.formatting import format_quantity as format_quantity
+from inerter.table import Cell as Cell
+from inerter.table import Column as Column
+from inerter.table import Quantity as Quantity
+from inerter.table import Row as Row
+from inerter.table import Table as Table
+from inerter.table import cells as cells
+from inerter.units import parse_quantity as parse_quantity

@@ -50,7 +50,7 @@ def test_every_check_of_an_entry_says_what_arrived_and_what_was_expected() -> No
     for check, value in (
         (positive_number, -1),
         (one_of("a word", ("one", "two")), "thre"),
-        (some_names("k").check, []),
+        (some_names("k").parse, []),
     ):
         with pytest.raises(EntryError) as refused:
             check(value)

@@ -26,7 +26,9 @@ def test_its_density_is_the_line(waviness):
     speed, spectrum = 20.0, line(waviness)
     shaped = it.measured_road(spectrum, speed)
     n = np.geomspace(0.011, 2.83, 300)
-    velocity = np.abs(shaped.filter.response(2 * np.pi * n * speed)) ** 2 * shaped.size**2  # two-sided, per Hz
+    velocity = (
+        np.abs(shaped.filter.response(2 * np.pi * n * speed)) ** 2 * shaped.amplitude_density**2
+    )  # two-sided, per Hz
     density = 2.0 * velocity / (2 * np.pi * n * speed) ** 2 * speed  # of heights, one-sided, per cycle/m
     np.testing.assert_allclose(density, 64e-6 * (n / 0.1) ** -waviness, rtol=5.01e-3)
 

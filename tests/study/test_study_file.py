@@ -24,6 +24,7 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of
 from inerter.files.study.place import Sweep, place_of
+from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings

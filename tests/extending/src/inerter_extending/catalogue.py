@@ -138,8 +138,9 @@ class Catalogues(tasks.Task[CatalogueAnswer]):
         rows = []
         for one in results.answers:
             value = tasks.Quantity(one.value, one.unit)
-            contents = [f"{one.layout}, {one.index}", one.layout, one.index, one.element, one.best, value, one.unit]
-            rows.append(tasks.Row(tasks.cells(*contents, one.status_text), status=one.doubt))
+            labels = tasks.cells(f"{one.layout}, {one.index}", one.layout, one.index)
+            found = tasks.cells(one.element, one.best, value, one.unit, one.status_text)
+            rows.append(tasks.Row([*labels, *found], status=one.doubt))
         return tasks.Table("Best values of the catalogue", columns, rows)
 
     def sentences(self, results: tasks.TaskResults[CatalogueAnswer]) -> Iterator[str]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from inerter.figures.labels import swept_places
 from inerter.files.study.running import StudyResult
 from inerter.files.study.tasks import by_task
 from inerter.formatting import shown_decimals
@@ -23,7 +24,11 @@ _JSON = {"improvement_error": "improvement_error_percent"}
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces, so that a list of a million designs is never in memory."""
     further = {task.key: [one.to_json() for one in own] for task, own in by_task(result.answers).items()}
-    whole = json.dumps({**result.data.attrs, "designs": [None], **further}, indent=2)
+    swept = [
+        {"name": place, "words": result.data[place].attrs["long_name"], "unit": result.data[place].attrs["units"]}
+        for place in swept_places(result.data)
+    ]
+    whole = json.dumps({**result.data.attrs, "swept": swept, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"
     yield before

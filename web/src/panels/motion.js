@@ -251,14 +251,19 @@ function standing({ mechanism }) {
     Object.entries(upper.port).reduce((sum, [name, lever]) => sum + (angles.has(name) ? 0 : lever), 0) > 0.5);
 }
 
-/** The end of a body beyond the first or the last of its mounts, in line with the one next to it.
- * @param {number[][]} mounts @param {number} end */
-function beyond(mounts, end) {
-  const [x, y] = mounts[end];
-  const [nextX, nextY] = mounts[end === 0 ? 1 : end - 1] ?? [x, y];
+/** The end of a body beyond a mount, in line with the one next to it if there is one.
+ * @param {number[]} mount @param {number[]} next @param {number} reach */
+function beyond([x, y], next, reach) {
+  const [nextX, nextY] = next ?? [x, y];
   const slope = nextX === x ? 0 : (nextY - y) / (nextX - x);
-  const reach = end === 0 ? -OVERHANG : OVERHANG;
   return [x + reach, y + reach * slope];
+}
+
+/** The lower edge of a body that joins its mounts, from the left to the right, with an overhang at both ends.
+ * @param {number[][]} mounts @returns {number[][]} */
+export function underside(mounts) {
+  const last = mounts.length - 1;
+  return [beyond(mounts[0], mounts[1], -OVERHANG), ...mounts, beyond(mounts[last], mounts[last - 1], OVERHANG)];
 }
 
 /** What is carried: a body that joins the places where the upper ends of struts are.
@@ -269,8 +274,7 @@ function drawBody(pen, scene, pose, across) {
     [across(strutPlace(scene, strut)), levelOf(scene, strut.upper.port, pose)]);
   if (mounts.length === 0) return;
   mounts.sort((a, b) => a[0] - b[0]);
-  const [front, back] = [0, mounts.length - 1].map((end) => beyond(mounts, end));
-  const below = [front, ...mounts, back];
+  const below = underside(mounts);
   const above = below.map(([x, y]) => [x, y - THICK]).reverse();
   drawShape(pen, () => {
     for (const [x, y] of [...below, ...above]) pen.lineTo(x, y);

@@ -169,8 +169,9 @@ function SweepResult({ store, api, job }) {
   const indices = [...new Set(rows.map(({ index }) => index))];
   const [index, setIndex] = useChoice(indices);
   const shownRows = rows.filter((row) => row.index === index);
-  const swept = sweptIn(shownRows);
-  if (!swept) return html`<${RunResult} store=${store} api=${api} job=${job} />`;
+  const [of] = job.result.swept ?? [];
+  const swept = (/** @type {any} */ row) => row[of.name];
+  if (!of) return html`<${RunResult} store=${store} api=${api} job=${job} />`;
   const x = [...new Set(shownRows.map(swept))].sort((a, b) => a - b);
   const curves = [...new Set(shownRows.map(({ layout }) => layout))].map((layout) => ({
     label: layout,
@@ -178,17 +179,9 @@ function SweepResult({ store, api, job }) {
   }));
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
     <${IndexChips} indices=${indices} picked=${index} pick=${setIndex} />
-    <${Plot} x=${x} curves=${curves} xLabel="swept value, in SI" yLabel=${withUnit(String(index), shownRows[0]?.unit)}
-      title=${`${index} over the swept value`} theme=${store.get().view.theme} />
+    <${Plot} x=${x} curves=${curves} xLabel=${withUnit(of.words, of.unit)}
+      yLabel=${withUnit(String(index), shownRows[0]?.unit)}
+      title=${`${index} over ${of.words}`} theme=${store.get().view.theme} />
     <${Files} api=${api} job=${job} />`;
 }
 
-const COLUMNS = ["layout", "index", "method", "value", "decimals", "unit", "error_bound", "improvement_percent",
-  "improvement_error_percent", "standard_error", "realisations", "status", "parameters"]; // of every result
-
-/** How the swept value is read from a row, if there is one. @param {any[]} rows
- * @returns {((row: any) => number) | null} */
-function sweptIn(rows) {
-  const key = Object.keys(rows[0] ?? {}).find((each) => !COLUMNS.includes(each) && typeof rows[0][each] === "number");
-  return key === undefined ? null : (row) => row[key];
-}

@@ -84,7 +84,7 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
                 element_name(name)
     text = terminal_text(result.data)
     assert max(map(len, text.splitlines())) <= WIDTH
-    assert "1 % more of it changes" in " ".join(text.split())
+    assert "raising it by 1 % changes" in " ".join(text.split())
     assert "Every design satisfies these constraints" in report(result.data, study, tmp_path)
 
 

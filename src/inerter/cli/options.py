@@ -42,7 +42,7 @@ Resume = Annotated[
     Parameter(
         negative="",
         show_default=False,
-        help="Continue an interrupted run; completed cases are reused.",
+        help="Continue an interrupted run; what was computed is reused.",
     ),
 ]
 Force = Annotated[
@@ -51,7 +51,7 @@ Force = Annotated[
         negative="",
         show_default=False,
         help="Replace previous results once the run has completed. "
-        "Files that inerter did not write, or that were edited, are kept.",
+        "Your own files in the folder, and files you edited, are kept.",
     ),
 ]
 Json = Annotated[

@@ -51,7 +51,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
     if swept:
         heads = [*labels, Column("Active", words=True), Column("Where", prose=True)]
         return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
-    return Table(caption, [*labels, Column("Value"), Column("If it is active", prose=True)], rows)
+    return Table(caption, [*labels, Column("Value"), Column("Effect of the limit", prose=True)], rows)
 
 
 def _limit_text(results: xr.Dataset, limit: str) -> str:
@@ -73,10 +73,10 @@ def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     if bool(infeasible(entry)):
         return content, "the nearest design"
     if not bool(entry["limit_active"]):
-        return content, ""
+        return content, "not reached"
     if np.isnan(cost):
         return content, "at its limit"
-    return content, f"1 % more of it changes {index} by {format_share(cost / 100.0, 2, '+')}"
+    return content, f"raising it by 1 % changes {index} by {format_share(cost / 100.0, 2, '+')}"
 
 
 def _describe_swept_limit(entry: xr.Dataset, index: str) -> tuple[str, str]:

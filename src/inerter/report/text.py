@@ -126,7 +126,7 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
     cut = _total_width(grid.columns, cut_headings=True) <= width < _total_width(grid.columns, cut_headings=False)
     widths = [column.width(cut) for column in grid.columns if not column.wraps]
     rest = max(width - len(_GAP) * (len(widths) + 1) - sum(widths), _NARROWEST)
-    headings = [wrap(c.heading, rest if c.wraps else c.width(cut)) if cut else [c.heading] for c in grid.columns]
+    headings = [_heading_lines(c, rest if c.wraps else c.width(cut)) for c in grid.columns]
     yield from _side_by_side(headings, widths)
     for i, row in enumerate(grid.rows):
         cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]
@@ -135,6 +135,10 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
         yield from _side_by_side(cells, widths)
         if row.status:
             yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
+
+
+def _heading_lines(column: _TextColumn, width: int) -> list[str]:
+    return wrap(column.heading, width, break_long_words=False, break_on_hyphens=False) or [""]
 
 
 def _ascii(text: str) -> str:

@@ -147,6 +147,12 @@ def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(
     page.keyboard.press("Enter")
     page.get_by_role("button", name="heavy kept").click()
     rows = _compared(visitor, ["S5", "S1", "heavy"])
+    page.wait_for_function(  # it is kept a moment after the last change
+        """() => {
+          const { elements, road } = JSON.parse(sessionStorage.getItem('inerter.document')).study;
+          return elements.b === '150 kg' && road.speed === '25 m/s';
+        }"""
+    )
     study = study_from(page.evaluate("() => JSON.parse(sessionStorage.getItem('inerter.document'))")["study"])
     heavy = it.evaluate(design_of(study, "S5", {}).vehicle, study.index("J3"), it.Norm()).value
     assert rows[1][2]["value"] == heavy == rows[1][0]["value"]

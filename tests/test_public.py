@@ -167,3 +167,30 @@ def test_old_names_are_no_attributes_of_a_class() -> None:
         warnings.simplefilter("error")
         members = dict(inspect.getmembers(it.Optimum))
     assert members["agreed"].new == "n_converged"
+
+
+@pytest.mark.parametrize("make", [it.Norm, it.ExpectedValue, it.StatisticalLinearisation, it.ApproximateLinear])
+def test_attributes_of_methods_have_their_old_names(make: type) -> None:
+    names = {"sees": "nonlinearity_support", "words": "description", "searches": "supports_optimisation"}
+    for old, new in names.items():
+        with pytest.warns(DeprecationWarning, match=f"`{old}` is now `{new}`"):
+            assert getattr(make(), old) == getattr(make(), new)
+
+
+def test_a_method_written_with_the_old_names_is_one() -> None:
+    class Halved:
+        """A method of another distribution, written for 0.1."""
+
+        name, sees, words, searches = "halved", it.Norm.nonlinearity_support, "half of the norm", False
+        needs_amplitude = False
+        estimate_many = objective = it.Norm.objective
+
+        def estimate(self, vehicle: it.Vehicle, index: object) -> it.Estimate:
+            return it.Estimate(0.5 * it.Norm().estimate(vehicle, index).value, "m/s^2")
+
+    car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(20e3) | it.Damper(2e3))
+    index = it.RideComfort(it.Road(5e-7, 25.0))
+    with pytest.warns(DeprecationWarning, match="is now") as warned:
+        found = it.evaluate(car, index, Halved())
+    assert len(warned) == 3
+    assert found.value == 0.5 * it.evaluate(car, index, it.Norm()).value

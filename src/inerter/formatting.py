@@ -28,9 +28,12 @@ _TENTH = 0.1 * (1.0 + 1e-9)
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _POWER = re.compile(r"\^(-?\d)")
-_EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-])0*(\d+)\b")  # of a number, not within a name
-_MICRO = re.compile(r"(?:^|(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
+_MICRO = re.compile(r"(?:(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
 _UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
+_LEAST = 1e-12  # of a number that is written without a power of ten, and its inverse
+_EXPONENT = re.compile(
+    rf"(?<![\w.])(\d+(?:\.\d+)?)e([+-])(?=\d\d|\d[ \xa0]{_UNIT})0*(\d+)\b"
+)  # not in a name, such as 1e-3
 _QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -158,10 +161,14 @@ def format_with_interval(value: float, low: float, high: float, unit: str) -> tu
     ('113.012 kg', '112.992 to 113.033 kg')
     >>> format_with_interval(9.9997, 9.9973, 10.002, "N")
     ('9.9997 N', '9.9973 to 10.0020 N')
+    >>> format_with_interval(-0.5e-3, -0.512e-3, -0.488e-3, "s")
+    ('-0.500 ms', '-0.512 to -0.488 ms')
     """
-    if low <= 0.0 or high > _FAR * low:
+    small, large = sorted((abs(low), abs(high)))
+    own = _scale(value or high, unit) if math.isfinite(value or high) else Scale(1.0, unit)
+    is_plain = low * high > 0.0 and large <= _FAR * small and _LEAST <= large * own.factor < 1.0 / _LEAST
+    if not is_plain or not math.isfinite(value):
         return format_quantity(value, unit, 3), format_range(low, high, unit, 3)
-    own = _scale(value or high, unit)
     value, low, high = value * own.factor, low * own.factor, high * own.factor
     decimals = _decimals(low, high)
     ends = f"{low:.{decimals}f} to {high:.{decimals}f}"
@@ -293,12 +300,12 @@ def label_with_unit(what: str, unit: str) -> str:
 def typeset(text: str) -> str:
     """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs; names are kept.
 
-    >>> typeset("5e-07 m^3/cycle"), typeset("S1e-3 with um at 3 um")
-    ('5 × 10⁻⁷ m³/cycle', 'S1e-3 with um at 3 µm')
+    >>> typeset("5e-07 m^3/cycle"), typeset("um = 3 um in 1e-3"), typeset_unit("um/N")
+    ('5 × 10⁻⁷ m³/cycle', 'um = 3 µm in 1e-3', 'µm/N')
     """
     text = text.replace(" +- ", " ± ")
-    text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
     text = _EXPONENT.sub(_power_of_ten, text)
+    text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
     text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
     return _MICRO.sub("µ", re.sub(r"^-(?=[\d.i])", "−", text))
 
@@ -306,6 +313,11 @@ def typeset(text: str) -> str:
 def _power_of_ten(number: re.Match[str]) -> str:
     mantissa, sign, exponent = number.groups()
     return f"{mantissa} × 10{(sign.strip('+') + exponent).translate(_SUPERSCRIPT)}"
+
+
+def typeset_unit(unit: str) -> str:
+    """Printed form of a unit alone, as on an axis."""
+    return re.sub(r"^u(?=[ms]\b)", "µ", typeset(unit))
 
 
 def typeset_quantity(

@@ -351,7 +351,7 @@ def test_a_report_tells_of_the_states_that_an_element_can_have(session: Session,
     (tmp_path / "stopped.toml").write_text(STOPPED, encoding="utf-8")
     said, _ = session.command("simulate", "stopped.toml", cwd=tmp_path)
     (row,) = [line for line in said.splitlines() if "kb_stop" in line]
-    assert re.search(r"one-sided stop kb_stop +\d+  open \d+\.\d %, contact \d+\.\d %$", row)
+    assert re.search(r"one-sided stop kb_stop +\d+ +open \d+\.\d %, contact \d+\.\d %$", row)
     assert "never" not in said
     text = STOPPED[: STOPPED.index("[signal]")] + '[road]\nspeed = "20 m/s"\nroughness = "5e-7 m^3/cycle"\n'
     text += '[study]\nindices = ["J1"]\nevaluate = ["norm", "expected-value"]\nrealisations = 2\n'

@@ -125,7 +125,7 @@ def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_
         "No feasible design with suspension travel at most 9 mm and tyre load at most 1.3 kN; closest: S2 with "
         "suspension travel 9.9 mm and tyre load 1.29 kN."
     )
-    assert not any("All designs satisfy" in sentence for sentence in told)
+    assert not any("All designs found satisfy" in sentence for sentence in told)
     assert "improvement" not in [figure.name for figure in study_figures(results)]
     for figure in study_figures(results):
         assert figure.caption.endswith("Of a layout without a feasible design, that of the closest design.")

@@ -16,7 +16,7 @@ from inerter.formatting import (
     format_quantity,
     is_prefixed,
     label_with_unit,
-    typeset,
+    typeset_unit,
 )
 from inerter.table import Quantity
 from inerter.units import parse_quantity
@@ -221,5 +221,5 @@ def capital(text: str) -> str:
 
 def axis_label(what: str, unit: str) -> str:
     """Label of an axis: quantity and unit in brackets; on two lines if long."""
-    text = label_with_unit(what, typeset(unit).replace(" ", _NO_BREAK_SPACE))
+    text = label_with_unit(what, typeset_unit(unit).replace(" ", _NO_BREAK_SPACE))
     return text if len(text) <= _LONGEST_LABEL else fill(text, _LONGEST_LABEL, break_long_words=False)

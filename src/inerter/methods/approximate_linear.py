@@ -25,7 +25,7 @@ from inerter.methods.excitation import Excitation, ExcitedInputs, MultisineExcit
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
 from inerter.methods.linear import CONVENTIONS, check_conventions, linear_problem, with_convention_filters
 from inerter.methods.measured_road_errors import road_errors
-from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
@@ -51,7 +51,7 @@ _MOST = 1000  # realisations
 
 
 @dataclass(frozen=True)
-class ApproximateLinear:
+class ApproximateLinear(FormerMethodNames):
     """Gains |Y|/|U| of the design itself on a random input, in the place of linear gains.
 
     An index of r.m.s. values adds up the squared gains of all harmonics; a peak gain is the largest. `road` (heights,

@@ -23,7 +23,7 @@ from inerter.methods.linear import (
     linear_problem,
     with_convention_filters,
 )
-from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.objective import Objective
 from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
@@ -45,7 +45,7 @@ _MORE = 400  # roads on which the first-order change is averaged, which is quick
 
 
 @dataclass(frozen=True)
-class ExpectedValue:
+class ExpectedValue(FormerMethodNames):
     """Simulation of the nonlinear design, with friction and gaps: on random roads, or under sinusoidal forces.
 
     Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the

@@ -13,6 +13,7 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.deprecation import RenamedAttribute, adopt_renamed
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
 from inerter.indices.definition import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
@@ -64,6 +65,14 @@ class Estimate:
         `ok` means that it is no larger than what the method promises.
         """
         return float(sum(source.bound for source in self.error_sources)) if self.error_sources else nan
+
+
+class FormerMethodNames:
+    """Names that attributes of methods had in 0.1.0."""
+
+    sees = RenamedAttribute("nonlinearity_support")
+    words = RenamedAttribute("description")
+    searches = RenamedAttribute("supports_optimisation")
 
 
 @runtime_checkable
@@ -248,6 +257,8 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
     check_vehicle(vehicle)
     if not is_index(index):
         raise PerformanceIndexError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
+    if not isinstance(method, type | Method):  # perhaps written for the previous version
+        adopt_renamed(method, sees="nonlinearity_support", words="description", searches="supports_optimisation")
     if isinstance(method, type) or not isinstance(method, Method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     loose = without_tied_values(vehicle)

@@ -13,7 +13,7 @@ from inerter.errors import DesignError
 from inerter.indices.definition import Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
-from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Norm:
+class Norm(FormerMethodNames):
     """Exact norms of the linear design: H2 for indices that are r.m.s. values, H-infinity for peak gains.
 
     `conventions` is "exact", or "paper2008" for what the printed numbers of Wang and Su (2008) need: a fifth-order

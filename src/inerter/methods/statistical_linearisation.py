@@ -16,7 +16,7 @@ from inerter.methods.describing_function import HarmonicBalance, harmonic_balanc
 from inerter.methods.equivalent import PROMISE, check_damped, check_outputs, has_friction
 from inerter.methods.gaussian_closure import GaussianClosure
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.method import Estimate, NonlinearitySupport
+from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.norm import Norm
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class StatisticalLinearisation:
+class StatisticalLinearisation(FormerMethodNames):
     """Dry friction without simulation, for surrogates and trends.
 
     Indices of r.m.s. values: each friction f [N] becomes a damper sqrt(2/pi) f / sigma, with sigma [m/s] the r.m.s.

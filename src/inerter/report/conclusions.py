@@ -62,7 +62,7 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
             for name in layouts(results)
             if (at := _infeasible_places_clause(results, name)) is not None
         ]
-        yield f"All designs satisfy {format_list(limits)}.{''.join(none)}"
+        yield f"All designs found satisfy {format_list(limits)}.{''.join(none)}"
 
 
 def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:

@@ -142,6 +142,11 @@ def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
     return extreme(finite[np.argmin(numbers[finite])]), extreme(finite[np.argmax(numbers[finite])])
 
 
+def is_compared(results: xr.Dataset, index: str) -> bool:
+    """Whether some layout has an improvement over the baseline, which is not so where the baseline has no value."""
+    return bool(compared_layouts(results)) and bool(np.isfinite(results["improvement"].sel(index=index)).any())
+
+
 def place_text(results: xr.Dataset, place: dict[str, float], *, named: bool = False) -> str:
     """Swept values with their units, and with their names if `named`, as text."""
     texts = []
@@ -288,18 +293,20 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
     words = next((method_label(every, method) for method in methods(every)), "")
     by = f", {words}" if words else ""
     swept, title, baseline = swept_words(results), _index_label(results, index), results.attrs["baseline"]
-    names_there = compared_layouts(results) or results["layout"].values.tolist()
-    rows = results["improvement" if compared_layouts(results) else "value"].sel(index=index)
+    versus = is_compared(results, index)
+    names_there = compared_layouts(results) if versus else layouts(results)
+    rows = results["improvement" if versus else "value"].sel(index=index)
     found = {name: ends for name in names_there if (ends := extremes(rows.sel(layout=name))) is not None}
     if not found:
         return f"Best {title}: {_no_best_clause(results, index)}."
-    if not compared_layouts(results):
+    if not versus:
         least_of_all = [ends[0][0] for ends in found.values()]
         names = _simplest_first(results, [list(found)[i] for i in equally_least(least_of_all)])
         value, at = found[names[0]][0]
         text = format_quantity(value, index_unit(results, index))
         where = place_text(results, at, named=True)
-        return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}."
+        missing = f"; {_missing_value_clause(results, index, baseline)}" if compared_layouts(results) else ""
+        return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}{missing}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
@@ -315,7 +322,7 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
 
 def _missing_value_clause(results: xr.Dataset, index: str, layout: str) -> str:
     """Clause on a layout without a value: infeasible, or not finite."""
-    missed = bool(infeasible(results.sel(layout=layout, index=index)))
+    missed = bool(infeasible(results.sel(layout=layout, index=index)).all())
     return f"no feasible {layout}" if missed else f"{layout} has no finite value"
 
 

@@ -41,7 +41,7 @@ def as_text(result: StudyResult) -> Iterator[str]:
 def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
     """Data of each design and method, for JSON."""
     data = result.data
-    errors = [name for name in ("standard_error", "improvement_error", "realisations") if "realisations" in data]
+    errors = [name for name in ("standard_error", "improvement_error", "realisations") if _is_known(data, name)]
     errors = ["error_bound", *errors] if "error_bound" in data else errors
     arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
     labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
@@ -64,6 +64,11 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             "status": arrays["status"][design],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }
+
+
+def _is_known(data: xr.Dataset, name: str) -> bool:
+    """Whether a variable says something: where designs were simulated, and errors also of a quantile."""
+    return name in data and ("realisations" in data or bool(np.isfinite(data[name]).any()))
 
 
 def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:

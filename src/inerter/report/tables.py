@@ -30,7 +30,7 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, choose_scale, format_number, format_percent, format_quantity
-from inerter.report.index_summary import best_layout, extremes, place_text
+from inerter.report.index_summary import best_layout, extremes, is_compared, place_text
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
@@ -147,16 +147,18 @@ def extreme_tables(results: xr.Dataset) -> list[Table]:
 
 
 def _extreme_table(results: xr.Dataset, index: str) -> Table:
-    versus = bool(compared_layouts(results))
+    versus = is_compared(results, index)
     values, unit = results["improvement" if versus else "value"].sel(index=index), index_unit(results, index)
     rows = []
-    for name in compared_layouts(results) or layouts(results):
+    for name in compared_layouts(results) if versus else layouts(results):
         ends = extremes(values.sel(layout=name)) or ((np.nan, {}),) * 2
         texts = [
             f"{format_percent(value) if versus else format_quantity(value, unit)} at {place_text(results, at)}"
+            if at
+            else ""
             for value, at in ends
         ]
-        cells = [Cell(text) for text in (texts[::-1] if versus else texts)]
+        cells = [Cell(text or None) for text in (texts[::-1] if versus else texts)]
         rows.append(Row([Cell(name), *cells], status=_first_problem(results, name, index)))
     than = f", compared with {results.attrs['baseline']}" if versus else ""
     over = f"over {' and '.join(swept_words(results))}"

@@ -48,7 +48,9 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     labels = [text for text, _ in grid.columns[0].cells]
     if _total_width(grid.columns, cut_headings=True) > width:
         grid = replace(grid, columns=[grid.columns[0].with_short_labels(), *grid.columns[1:]])
-    while len(grid.columns) > 1:
+    if not grid.columns[1:]:
+        yield from _lines(grid, labels, width)
+    while grid.columns[1:]:
         count = _count_fitting(grid, width)
         yield from _lines(replace(grid, columns=grid.columns[:count]), labels, width)
         grid = _Grid([replace(row, status="") for row in grid.rows], [grid.columns[0], *grid.columns[count:]])

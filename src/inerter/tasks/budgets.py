@@ -209,7 +209,7 @@ def element_break_even(
 
 def _verdict(found: BudgetAnswer) -> str:
     end = _end_of_range(found) or MISSING
-    return f"not certain: {end}" if found.doubt else end
+    return f"not certain: {end}" if found.doubt and end != MISSING else end
 
 
 def _end_of_range(found: BudgetAnswer) -> str:

@@ -224,7 +224,7 @@ def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterat
         doubt = front.doubt if i == max(shown, default=0) else ""
         yield Row(cells(*contents), status=doubt, shown=i in shown)
     if not front.values:
-        unknown = [""] * (len(study.trade_off) + len(parameters) + 2)
+        unknown = [None] * (len(study.trade_off) + len(parameters) + 2)
         yield Row(cells(front.layout, "", "", *unknown, front.status_text), status=front.doubt)
 
 

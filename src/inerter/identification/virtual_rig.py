@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy  # its signal is loaded at first use: checking a file does not need it
 from numpy.typing import NDArray
-from scipy.signal import cont2discrete, detrend, get_window, lfilter, lfilter_zi
 
 from inerter.errors import IdentificationError
 from inerter.formatting import format_quantity
@@ -179,8 +179,10 @@ def highest_frequency(motion: Matrix, step: float, least: float) -> float:
 
     `motion` has a value every `step` [s].
     """
-    window = get_window("hann", motion.size)
-    square = np.abs(np.fft.rfft(window * detrend(motion))) ** 2 * 2.0 / (motion.size * float(window @ window))
+    window = scipy.signal.get_window("hann", motion.size)
+    square = (
+        np.abs(np.fft.rfft(window * scipy.signal.detrend(motion))) ** 2 * 2.0 / (motion.size * float(window @ window))
+    )
     above = np.sqrt(np.cumsum(square[::-1])[::-1])
     seen = np.flatnonzero(above > max(least, _SMALL * float(above[0])))
     return float(seen[-1]) / (motion.size * step) if seen.size else 0.0
@@ -198,11 +200,11 @@ def _low_pass(signal: Matrix, bandwidth: float, damping: float, step: float) -> 
     w = 2.0 * math.pi * bandwidth
     A = np.array([[0.0, 1.0], [-w * w, -2.0 * damping * w]])
     system = (A, np.array([[0.0], [w * w]]), np.eye(2), np.zeros((2, 1)))
-    Ad, Bd, Cd, Dd, _ = cont2discrete(system, step, "foh")
+    Ad, Bd, Cd, Dd, _ = scipy.signal.cont2discrete(system, step, "foh")
     denominator = np.poly(Ad)
     results = []
     for row in range(2):
         numerator = np.poly(Ad - Bd @ Cd[row : row + 1]) + (Dd[row, 0] - 1.0) * denominator
-        start = lfilter_zi(numerator, denominator) * signal[0]
-        results.append(lfilter(numerator, denominator, signal, zi=start)[0])
+        start = scipy.signal.lfilter_zi(numerator, denominator) * signal[0]
+        results.append(scipy.signal.lfilter(numerator, denominator, signal, zi=start)[0])
     return results[0], results[1]

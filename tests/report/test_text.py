@@ -207,3 +207,19 @@ def test_a_wide_table_continues_below_and_tells_a_doubt_once():
             f"{label}{i}" for i in range(12)
         ]
         assert sum(f"! {label} is doubtful" in line for line in lines) == 1
+
+
+def test_a_table_of_labels_alone_keeps_its_rows_and_doubts():
+    table = Table("Names", columns("Layout"), [Row(cells("S1")), Row(cells("S2"), status="bad")])
+    assert list(table_lines(table)) == ["Names", "  Layout", "  S1", "  S2", "    ! bad"]
+
+
+def test_a_sweep_whose_baseline_has_no_value_shows_those_of_the_others():
+    results = sweep(["S1", "S2"], stiffness=[10e3, 100e3])
+    results = with_value(results, math.nan, "infeasible: no feasible design", layout="S1", index="J1")
+    results["improvement"].loc[{"index": "J1"}] = math.nan
+    least = results["value"].sel(layout="S2", index="J1").min().item()
+    shown = f"{format_quantity(least, 'm/s^2')} at "
+    assert headlines(results)[0].startswith(f"Best ride comfort: S2, {shown}")
+    assert headlines(results)[0].endswith("; no feasible S1.")
+    assert shown in terminal_text(results)

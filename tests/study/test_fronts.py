@@ -107,6 +107,7 @@ def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> Non
     assert any(line.startswith("front of S1: infeasible") for line in result.failures)
     table = Fronts().table(TaskResults(study, result.data, result.answers))
     assert all("infeasible" in row.status for row in table.rows)
+    assert all(cell.content is None for row in table.rows for cell in row.cells[3:-1])
     assert "front" not in [figure.name for figure in study_figures(result.data)]
     assert report(result.data, study, tmp_path)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
+from inerter.report.study_data import as_text
 from inerter.report.text import table_lines
 from inerter.tasks.tolerances import Tolerances
 
@@ -118,6 +120,8 @@ def test_a_tied_value_scatters_by_its_own_name(tmp_path: Path) -> None:
         assert one.numbers["mean"] == pytest.approx(by_hand.mean, rel=1e-9)
         if line:
             assert float(found.data["value"].squeeze()) == pytest.approx(by_hand.quantile(0.9), rel=1e-3)
+            (design,) = json.loads("".join(as_text(found)))["designs"]
+            assert design["standard_error"] == float(found.data["standard_error"].squeeze()) > 0.0
 
 
 def test_what_no_layout_is_made_of_does_not_scatter(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from inerter.deprecation import warn_renamed
-from inerter.lazy_names import homes
+from inerter.lazy_names import homes, load_name
 
 _HOME = homes(__file__)
 _OLD = {  # former names
@@ -55,11 +55,7 @@ def __getattr__(name: str) -> Any:
     if name in _OLD:
         warn_renamed(name, _OLD[name])
         return __getattr__(_OLD[name])
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = getattr(import_module(_HOME[name]), name)
-    globals()[name] = value
-    return value
+    return load_name(__name__, _HOME, name)
 
 
 def __dir__() -> list[str]:

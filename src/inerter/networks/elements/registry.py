@@ -34,11 +34,6 @@ def format_unit_kinds() -> str:
     return ", ".join(f"{unit} {kind.key}{notes[kind]}" for unit, kind in kinds_by_unit().items())
 
 
-def kinds_in_unit() -> dict[str, type[Element]]:
-    """First kind of element with a value in each unit."""
-    return {**{kind.unit: kind for kind in reversed(list(ELEMENTS.values()))}, **kinds_by_unit()}
-
-
 def parse_element(text: str, known: Mapping[str, type[Element]] | None = None) -> tuple[str, float]:
     """SI unit of an element value (a key of `known`, by default of `kinds_by_unit`), and the value in that unit.
 

@@ -156,6 +156,10 @@ def test_everything_that_a_study_says_begins_with_its_doubt_and_names_who_decide
         assert not re.match("not certain", sound[name].strip(), re.IGNORECASE), name
         assert re.match("not certain", doubtful[name].strip(), re.IGNORECASE), (name, doubtful[name])
         assert "expected-value" in doubtful[name].replace("<wbr>", ""), (name, doubtful[name])
+    for key in ("budgets", "tolerances"):
+        shown = {kind: " ".join(made["terminal"][key].split()) for kind, made in (("ok", sound), ("no", doubtful))}
+        assert "inaccurate" not in shown["ok"]
+        assert re.search(r"! (inaccurate|failed): .*expected-value", shown["no"]), shown["no"]
     assert doubtful["tolerance"].startswith(("failed", "not certain"))
     assert "expected-value" in doubtful["tolerance"]
     assert "so so" in doubtful["table"]

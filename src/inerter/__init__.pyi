@@ -86,6 +86,8 @@ from inerter.networks.elements.roles import GuardRole as GuardRole
 from inerter.networks.elements.roles import LinearRole as LinearRole
 from inerter.networks.elements.roles import StatisticalRole as StatisticalRole
 from inerter.networks.elements.roles import SwitchRole as SwitchRole
+from inerter.networks.enumeration import Topology as Topology
+from inerter.networks.enumeration import enumerate_networks as enumerate_networks
 from inerter.networks.parser import network as network
 from inerter.norms.h2 import h2_norm as h2_norm
 from inerter.norms.hinf import hinf_norm as hinf_norm

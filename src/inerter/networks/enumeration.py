@@ -221,7 +221,7 @@ def canonical_tree(tree: Tree) -> Tree:
         )
     operator, *parts = tree[0], *map(canonical_tree, tree[1:])
     if operator == BRIDGE:
-        return (BRIDGE, *min(_arrangements(parts), key=lambda arms: [_order(arm) for arm in arms]))
+        return (BRIDGE, *min(arrangements(parts), key=lambda arms: [_order(arm) for arm in arms]))
     flat = chain.from_iterable(part[1:] if part[0] == operator else (part,) for part in parts)
     return (operator, *sorted(flat, key=_order))
 
@@ -232,7 +232,7 @@ def _is_node(tree: Tree) -> bool:
     return len(tree) == 6 if tree[0] == BRIDGE else len(tree) > 2
 
 
-def _arrangements(arms: Sequence[Tree]) -> Iterator[tuple[Tree, ...]]:
+def arrangements(arms: Sequence[Tree]) -> Iterator[tuple[Tree, ...]]:
     """Arms of the same bridge with its sides, its ends, or both exchanged."""
     a, b, c, d, e = arms
     yield from ((a, b, c, d, e), (c, d, a, b, e), (b, a, d, c, e), (d, c, b, a, e))
@@ -263,9 +263,9 @@ def _numbered_name(symbol: str, used: Counter[str], taken: Set[str]) -> str:
 
 
 def _join_bridge(arms: Sequence[Network]) -> Network:
-    from inerter.networks.elements.bridge import Bridge  # noqa: PLC0415
+    from inerter.networks.elements.bridge import Bridge  # type: ignore[import-untyped]  # noqa: PLC0415
 
-    return Bridge(*arms)
+    return Bridge(*arms)  # type: ignore[no-any-return]
 
 
 _JOIN: dict[str, Callable[[Sequence[Network]], Network]] = {

@@ -10,8 +10,8 @@ Classes are the closure of three transformations of linear networks, applied to 
   two, which makes a bridge with such arms a series-parallel network.
 
 Numerical fits found no further pair of equal series-parallel networks of up to five springs, dampers and inerters:
-the 551 networks form 221 classes. A bridge of two kinds has no admittance that Foster's network of its degree lacks, but
-may lack some; such bridges are not in the class of that network.
+the 551 networks form 221 classes. A bridge of two kinds has no admittance that Foster's network of its degree lacks,
+but may lack some; such bridges are not in the class of that network.
 
 Sources: Zobel, Bell System Technical Journal 2 (1923) 1; Cauer, Archiv fuer Elektrotechnik 17 (1926) 355; Foster, Bell
 System Technical Journal 3 (1924) 259; Morelli and Smith, Passive Network Synthesis, SIAM (2019).

@@ -16,14 +16,15 @@ tyre's elongation is a state and the road's velocity the input, which makes J1 a
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass, field, replace
+from functools import lru_cache, partial
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, LinearSystemError
+from inerter.errors import DesignError, InerterError, LinearSystemError
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import Frame, Long, split
@@ -37,10 +38,12 @@ from inerter.systems.linear import ExtendedMatrices, LinearSystem, Origin
 from inerter.systems.observe import StackedOutput, observe, observed_by_default
 from inerter.systems.outputs import check_inputs, force_of, input_names
 from inerter.systems.polynomials import Polynomial, TransferFunctions
+from inerter.systems.structure import Structure, structure_of
 from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
+Names = tuple[str, ...] | None
 Sum = Sequence[tuple[str, tuple[Polynomial, Polynomial] | None]]  # inputs of the mechanism, with factors
 _ROUNDING = float(np.finfo(np.longdouble).eps)
 _TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
@@ -66,7 +69,6 @@ class Descriptor:
     notes: tuple[str, ...]
     sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
     mechanism: Mechanism
-    graph: Graph
     filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `with_filters`)
     sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
     precision_warning: str = ""  # why digits of the matrices are uncertain; empty where they are certain
@@ -138,7 +140,7 @@ def _functions(
 ) -> TransferFunctions:
     sums = [descriptor.sums.get(name, [(name, None)]) for name in inputs]
     moved = list(dict.fromkeys(name for terms in sums for name, _ in terms))
-    functions = transfer_functions(descriptor.mechanism, descriptor.graph, values, moved, outputs)
+    functions = transfer_functions(descriptor.mechanism, linear_graph(descriptor.mechanism), values, moved, outputs)
     if descriptor.sums:
         functions = functions.with_inputs([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
     filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))
@@ -158,7 +160,17 @@ def describe(
 
     Raises `MechanismError` for what is ill-posed, `LinearSystemError` for a name that is not there.
     """
-    graph = linear_graph(mechanism)
+    chosen = tuple(None if names is None else tuple(names) for names in (inputs, outputs))
+    structure = structure_of(mechanism)
+    if structure is not None:
+        try:
+            return _with_values(_describe_structure(structure, *chosen), structure)
+        except InerterError:  # whose sentence is to name what the mechanism itself has
+            pass
+    return _describe(mechanism, linear_graph(mechanism), *chosen)
+
+
+def _describe(mechanism: Mechanism, graph: Graph, inputs: Names, outputs: Names) -> Descriptor:
     names = input_names(mechanism)
     beside = [force_of(branch.label) for branch in graph.branches]
     chosen = names if inputs is None else list(inputs)
@@ -168,6 +180,68 @@ def describe(
     balanced = balance(frame)
     observed = [observe(frame, name) for name in (observed_by_default(frame) if outputs is None else outputs)]
     return _join_arrays(frame, balanced, observed, chosen)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layout:
+    """Descriptor in which every value is a parameter, with its stacks side by side."""
+
+    descriptor: Descriptor
+    parameters: list[str]
+    stacks: NDArray[np.longdouble]  # S, R, F, Y_eta, Y_x, Y_u (1 + parameters, entries)
+    sizes: Matrix
+
+
+@lru_cache(maxsize=256)
+def _describe_structure(structure: Structure, inputs: Names, outputs: Names) -> _Layout:
+    mechanism, graph = structure.parametrise()
+    d = _describe(mechanism, graph, inputs, outputs)
+    masses = {c.inertia.name for c in mechanism.coordinates if isinstance(c.inertia, Free)}
+    names = sorted(d.free, key=lambda name: name not in masses)  # in the order in which `balance` adds them up
+    order = [0, *(1 + list(d.free).index(name) for name in names)]
+    joined = (
+        np.concatenate([stack[order].reshape(len(order), -1) for stack in stacks], axis=1)
+        for stacks in ((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), d.sizes)
+    )
+    return _Layout(d, names, *joined)
+
+
+def _with_values(layout: _Layout, structure: Structure) -> Descriptor:
+    """The descriptor of a mechanism from that of its structure: numbers enter the constant slices."""
+    d, values = layout.descriptor, structure.parameters
+    chosen = [values[name] for name in layout.parameters]
+    free = {str(value.name): value for name in d.free if isinstance(value := values[name], Free)}
+    places = {name: 1 + i for i, name in enumerate(free)}
+    weights = np.zeros((1 + len(free), 1 + len(chosen)), np.longdouble)
+    weights[0, 0] = 1.0
+    for i, value in enumerate(chosen, start=1):
+        place, factor = (places[str(value.name)], 1.0) if isinstance(value, Free) else (0, value)
+        weights[place, i] = factor
+    S, R, F, Y_eta, Y_x, Y_u = _split_stacks(weights @ layout.stacks, d.sizes)
+    sizes = _split_stacks(weights.astype(float) @ layout.sizes, d.sizes)
+    return replace(
+        d,
+        S=S,
+        R=R,
+        F=F,
+        Y_eta=Y_eta,
+        Y_x=Y_x,
+        Y_u=Y_u,
+        free=free,
+        sizes=sizes,
+        mechanism=structure.mechanism,
+    )
+
+
+def _split_stacks(joined: Any, like: Sequence[Matrix]) -> tuple[Any, ...]:
+    """Stacks that are side by side, with as many rows and columns as those in `like`."""
+    edges = [0, *accumulate(stack[0].size for stack in like)]
+    return tuple(
+        [
+            joined[:, begin:end].reshape(len(joined), *stack.shape[1:])
+            for (begin, end), stack in zip(pairwise(edges), like, strict=True)
+        ]
+    )
 
 
 def is_held_by_springs(mechanism: Mechanism) -> bool:
@@ -209,7 +283,6 @@ def _join_arrays(
         notes=frame.graph.notes,
         sizes=tuple(size.astype(float) for size in sizes),
         mechanism=frame.mechanism,
-        graph=frame.graph,
         precision_warning=frame.precision_warning,
     )
 

@@ -91,6 +91,7 @@ DIFFERENT = [
     car(K | C - B, sprung_mass=it.free(100.0, 300.0)),
     car(K | C - B).on_moving_ground(),
     car(K | C - B, sprung_mass=251.0).on_moving_ground(),
+    car(K | C - B, sprung_mass=it.free(100.0, 300.0)).on_moving_ground(),
     car(it.Spring(it.free(1e4, 1e6, "x")) | it.Spring(it.free(1e4, 1e6, "x")) - C),
     car(K | C - B | K),
 ]

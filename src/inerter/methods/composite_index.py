@@ -70,7 +70,7 @@ def is_index(given: object) -> bool:
 
 def is_composite(index: object) -> TypeIs[CompositeIndex]:
     """Whether an index is composed."""
-    return not isinstance(index, type) and isinstance(index, CompositeIndex)
+    return hasattr(index, "constituents") and not isinstance(index, type) and isinstance(index, CompositeIndex)
 
 
 def estimate_of(vehicle: Vehicle, index: IndexLike, method: Method) -> Estimate:

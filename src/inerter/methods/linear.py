@@ -154,7 +154,8 @@ class LinearProblem:
     def system_at(self, values: Mapping[str, float]) -> LinearSystem:
         """The system for these free values; others that have no effect here may be among them."""
         d = self.descriptor
-        return self.system(close(d, {name: value for name, value in values.items() if name in d.free}))
+        known = {name: value for name, value in values.items() if name in d.free}
+        return close(d, known, self.sources, self.delays)
 
     def estimate(self, values: Mapping[str, float]) -> Estimate:
         """The value of the index for these free values."""

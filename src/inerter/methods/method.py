@@ -175,6 +175,9 @@ class Method(Protocol):
         ...
 
 
+_METHOD_NAMES = [name for name in vars(Method) if not name.startswith("_")]
+
+
 def evaluate(vehicle: Vehicle, index: IndexLike, method: Method, *, executor: Executor | None = None) -> Estimate:
     """Estimate of one index of one design by one method.
 
@@ -257,14 +260,22 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
     check_vehicle(vehicle)
     if not is_index(index):
         raise PerformanceIndexError(f"Expected an index such as RideComfort(road) or LoadCarrying(), got {index!r}.")
-    if not isinstance(method, type | Method):  # perhaps written for the previous version
-        adopt_renamed(method, sees="nonlinearity_support", words="description", searches="supports_optimisation")
-    if isinstance(method, type) or not isinstance(method, Method):
+    if not _is_method(method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     loose = without_tied_values(vehicle)
     for asked, one in constituents_of(vehicle if loose is None else loose.vehicle, index):
         mechanism = asked.mechanism()
         _check_names(mechanism, one.definition(mechanism))
+
+
+def _is_method(given: object) -> bool:
+    if isinstance(given, type):
+        return False
+    if all(hasattr(type(given), name) for name in _METHOD_NAMES):  # which is found sooner than by the protocol
+        return True
+    if not isinstance(given, Method):  # perhaps written for the previous version
+        adopt_renamed(given, sees="nonlinearity_support", words="description", searches="supports_optimisation")
+    return isinstance(given, Method)
 
 
 def _check_names(mechanism: Mechanism, definition: IndexDefinition) -> None:

@@ -85,6 +85,8 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     Raises `DesignError` where one name has two different ranges, or a value is tied to an unknown one.
     """
     found = [element for network in networks.values() for element in network.elements()]
+    if not any(isinstance(element.value, Free | Tied) for element in found):
+        return dict(networks)
     taken = {e.value.name or e.name for e in found if isinstance(e.value, Free)} - {None}
     known: dict[str, tuple[str, float, float]] = {}
 

@@ -72,7 +72,7 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     fine = system.fine
     if fine is None:
         return _of_matrices(system, pade_order)
-    if not (np.any(system.D) or np.any(fine.errors[3])):
+    if not (system.D.any() or fine.errors[3].any()):
         found = _squares(system, fine, pade_order)
         if found is not None:
             return H2(np.sqrt(found[0]), OK, 0.5 * found[1])
@@ -112,7 +112,7 @@ def _merged_direct(system: LinearSystem) -> Matrix:
 
 def _drifting(A: Matrix) -> NDArray[np.bool_]:
     """States driven by the inputs alone, such as a tyre's share of the road profile."""
-    return np.asarray(~np.any(A, axis=1))
+    return np.asarray(~A.any(axis=1))
 
 
 def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
@@ -127,7 +127,7 @@ def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matri
     None unless the weights of each source add up to zero, so that the sums stay where they are.
     """
     result = np.zeros((B.shape[0], B.shape[0]), B.dtype)
-    for source in dict.fromkeys(sources):
+    for source in dict.fromkeys(sources if result.size else ()):
         arrivals = [j for j in np.argsort(delays, kind="stable") if sources[j] == source]
         so_far = np.cumsum(B[:, arrivals], axis=1)
         if np.any(np.abs(so_far[:, -1]) > 4.0 * _EPS * np.sum(np.abs(B[:, arrivals]), axis=1)):
@@ -157,22 +157,22 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
     moved = EA + np.abs(fine_A - A).astype(float)
     W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
     try:
-        solver = _Lyapunov(A[np.ix_(~drifting, ~drifting)])
+        solver = _Lyapunov(A[np.ix_(~drifting, ~drifting)] if drifting.any() else A)
         P, residual, solved = _covariance(solver, A, (fine_A, W), (drifting, covariance.astype(float)))
         size, C = np.abs(P), fine_C.astype(float)
         seen = np.abs(C) @ size
         squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
-        goals = np.where(np.sum(seen * np.abs(C), axis=1) > 0.0, squares, np.inf).astype(float)
-        if not np.all(goals > 0.0):
+        goals = np.where((seen * np.abs(C)).sum(axis=1) > 0.0, squares, np.inf).astype(float)
+        if not (goals > 0.0).all():
             return None
         Q = [_adjoint(solver, A, row, drifting) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
-    change = np.array([np.sum(one * residual) for one in Q])
+    change = np.array([(one * residual).sum() for one in Q])
     together = np.abs(Q).sum(axis=0)
-    unsure = np.sum(together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size)))
-    unsure += np.sum(seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None])
-    terms = float(np.sum(together * np.abs(residual)))
+    unsure = (together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size))).sum()
+    unsure += (seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None]).sum()
+    terms = float((together * np.abs(residual)).sum())
     if not (unsure <= ACCURATE and terms <= _SMALL and solved):
         return None
     error = float(unsure) + _SECOND_ORDER * terms + len(A) * _EPS
@@ -187,35 +187,53 @@ def _covariance(
     Of states that only drift the covariance is known, and the others follow them.
     """
     (fine_A, W), (drifting, covariance) = fine, known
-    P = np.zeros_like(A)
-    decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
-    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
-    follow, noise = A[dw], W.astype(float)
-    P[np.ix_(w, w)] = covariance
-    P[dw] = _solve_or_empty(A[d], -(follow @ covariance + noise[dw]))
-    P[np.ix_(w, decays)] = P[dw].T
-    P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+    noise = W.astype(float)
+    if drifting.any():
+        P = np.zeros_like(A)
+        decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
+        d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+        follow = A[dw]
+        P[np.ix_(w, w)] = covariance
+        P[dw] = np.linalg.solve(A[d], -(follow @ covariance + noise[dw]))
+        P[np.ix_(w, decays)] = P[dw].T
+        P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+    else:
+        P = solver.refine(fine_A, W)
     residual = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
-    residual[np.ix_(w, w)] = 8.0 * _EPS * covariance
-    enters = np.diag(noise)
-    terms = 2.0 * np.sum(np.abs(A) * np.abs(P), axis=1) + enters
-    return P, residual, not np.any((enters > 0.0) & (np.abs(np.diag(residual)) > _RESIDUAL * terms))
+    if drifting.any():
+        residual[np.ix_(w, w)] = 8.0 * _EPS * covariance
+    enters = noise.diagonal()
+    terms = 2.0 * (np.abs(A) * np.abs(P)).sum(axis=1) + enters
+    return P, residual, not ((enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)).any()
 
 
 def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drifting: NDArray[np.bool_]) -> Matrix:
     """Q of `_squares` for one output."""
-    Q, goal = np.zeros_like(A), np.outer(row, row)
+    goal = np.outer(row, row)
+    if not drifting.any():
+        return solver.solve(goal, adjoint=True)
+    Q = np.zeros_like(A)
     decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
     d, dw = np.ix_(decays, decays), np.ix_(decays, w)
     Q[d] = solver.solve(goal[d], adjoint=True)
-    Q[dw] = _solve_or_empty(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
+    Q[dw] = np.linalg.solve(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
     Q[np.ix_(w, decays)] = Q[dw].T
     Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _add_transpose(Q[dw].T @ A[dw])
     return Q
 
 
-def _solve_or_empty(A: Matrix, right: Matrix) -> Matrix:
-    return np.asarray(np.linalg.solve(A, right)) if right.size else right
+def _schur(A: Matrix) -> tuple[Matrix, Matrix]:
+    """Real Schur form; `scipy.linalg.schur` takes longer to call LAPACK than that for its answer."""
+    if not np.isfinite(A).all():
+        raise np.linalg.LinAlgError("a matrix has entries that are not finite")
+    T, _, _, _, Z, _, info = scipy.linalg.lapack.dgees(_select_none, A)
+    if info:
+        raise np.linalg.LinAlgError("the Schur form was not found")
+    return T, Z
+
+
+def _select_none(real: float, imaginary: float) -> None:
+    """LAPACK calls it for no pole where it is not to sort them."""
 
 
 class _Lyapunov:
@@ -226,8 +244,8 @@ class _Lyapunov:
     """
 
     def __init__(self, A: Matrix) -> None:
-        self.T, self.Z = scipy.linalg.schur(A, output="real") if len(A) else (A, A)
-        if len(A) and np.diag(self.T).max() >= -_AT_ZERO * np.abs(self.T).max():
+        self.T, self.Z = _schur(A) if len(A) else (A, A)
+        if len(A) and self.T.diagonal().max() >= -_AT_ZERO * np.abs(self.T).max():
             raise np.linalg.LinAlgError("a pole may lie at zero")
 
     def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
@@ -249,7 +267,7 @@ class _Lyapunov:
         for turn in range(20):
             step = self.solve(np.asarray(_add_transpose(A @ P) + W, dtype=float))
             change = float(np.linalg.norm(step))
-            if turn == 0 and np.any(np.abs(np.diag(step)) > _DAMPED * np.diag(P)):
+            if turn == 0 and (np.abs(step.diagonal()) > _DAMPED * P.diagonal()).any():
                 raise np.linalg.LinAlgError("damping lost to rounding")
             if not change < 0.5 * before:
                 break

@@ -35,7 +35,10 @@ class Structure:
     @property
     def parameters(self) -> dict[str, float | Free]:
         """The values by name: by their number, or by the name of a free value."""
-        return {_parameter_name(number, value): value for number, value in enumerate(self.values)}
+        found = {_parameter_name(number, value): value for number, value in enumerate(self.values)}
+        if self.mechanism.ground_moves:  # whose masses are part of the structure, free ones too
+            found |= {str(c.inertia.name): c.inertia for c in self.mechanism.coordinates if isinstance(c.inertia, Free)}
+        return found
 
     def parametrise(self) -> tuple[Mechanism, Graph]:
         """The mechanism whose inertias are free, by the names of `parameters`, and its linear graph with all values so.

@@ -156,8 +156,9 @@ class Mechanism:
         if masses:
             coordinates = (_with_inertia(c, named[c.name]) if c.name in masses else c for c in self.coordinates)
             object.__setattr__(self, "coordinates", tuple(coordinates))
-        object.__setattr__(self, "struts", tuple(replace(s, network=named[s.name]) for s in self.struts))
-        object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
+        if any(named[mount.name] is not mount.network for mount in self.mounts()):
+            object.__setattr__(self, "struts", tuple(replace(s, network=named[s.name]) for s in self.struts))
+            object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
 
     def mechanism(self) -> Mechanism:
         """The mechanism itself, since a mechanism is a vehicle."""

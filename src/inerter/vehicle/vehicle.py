@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import wraps
 from typing import Any, ClassVar, Protocol, Self
 
 from inerter.errors import DesignError, MechanismError
@@ -51,6 +52,11 @@ class VehicleModel:
     moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
 
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        super().__init_subclass__(**arguments)
+        if "mechanism" in vars(cls):
+            cls.mechanism = _remember_last(cls.mechanism)  # type: ignore[assignment,method-assign]
+
     def __post_init__(self) -> None:
         name_free_quantities(self, f"the {self.key.replace('-', ' ')}")
         for name, network in name_free_values(self.networks()).items():
@@ -78,6 +84,21 @@ class VehicleModel:
         networks = {name: with_values(network, values) for name, network in self.networks().items()}
         fixed: dict[str, Any] = {**networks, **_fixed_quantities(self, values)}
         return replace(self, **fixed)
+
+
+def _remember_last(build: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
+    """The method that builds the mechanism of a frozen vehicle, which several questions in a row ask for."""
+    last: tuple[object, Mechanism] | None = None
+
+    @wraps(build)
+    def mechanism(self: Any) -> Mechanism:
+        nonlocal last  # both together, so that threads see one or the other
+        known = last
+        if known is None or known[0] is not self:
+            known = last = self, build(self)
+        return known[1]
+
+    return mechanism
 
 
 class Stage(ABC):

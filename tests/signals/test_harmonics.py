@@ -30,6 +30,7 @@ def largest_error(got, expected):
 @given(st.integers(0, 2**32), st.integers(1, 300), st.integers(1, 700), st.floats(-3.0, 3.0), st.integers(1, 900))
 @example(0, 40, 100, 0.0, 30)
 @example(0, 40, 100, 0.0, 250)
+@example(0, 50, 100, 0.0, 250)
 @example(0, 120, 100, 0.0, 250)
 def test_transform_is_the_plain_sum(seed, harmonics, points, start, count):
     """Also with fewer points a period than harmonics (they fold back), odd ones, and grids of several periods."""

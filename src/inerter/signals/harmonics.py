@@ -72,9 +72,11 @@ class Harmonics(Signal):
         """One Fourier transform for a grid of `length` points per period; higher harmonics are aliased exactly."""
         orders = len(self.coefficient)
         rows = self._rows if start == 0.0 else self._rows * self._waves(np.array([start]))[:, 0]
-        if orders < length / 2:
+        if orders <= length / 2:
             half = np.zeros((2, orders + 1), complex)  # the transform pads higher harmonics with zeros
             np.multiply(0.5, rows, out=half[:, 1:])
+            if orders == length / 2:  # which has no mirror image
+                half[:, -1] = rows[:, -1].real
         else:
             padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
             spectrum = padded.reshape(2, -1, length).sum(axis=1)

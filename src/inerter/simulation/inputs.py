@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -25,6 +26,7 @@ Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one
 MEMORY_LIMIT = 4 * 2**30
 _LARGEST = 1e100
+_KEPT = 100_000  # largest number of steps times inputs of a table that is kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,6 +237,25 @@ def tabulate(
         moving=tuple(signal is not None for signal in signals),
         jumps=bool(jumped.any()),
     )
+
+
+def tabulate_once(
+    signals: Sequence[Signal | None],
+    delays: Sequence[float],
+    duration: float,
+    step: float,
+    every: int = 1,
+    start: float = 0.0,
+    joined: bool = False,
+) -> InputTable:
+    """The table of `tabulate`, which is kept for further runs over the same signals; not to be written to."""
+    small = duration / step * max(1, len(signals)) <= _KEPT
+    frozen = all(signal is None or type(signal).__hash__ is object.__hash__ for signal in signals)
+    given = (tuple(signals), tuple(delays), float(duration), float(step), every, float(start), joined)
+    return (_tabulate_and_keep if small and frozen else tabulate)(*given)
+
+
+_tabulate_and_keep = lru_cache(maxsize=8)(tabulate)  # a frozen signal is equal to itself alone
 
 
 def parts_of(interval: float, delays: Sequence[float]) -> int:

@@ -26,7 +26,7 @@ def trajectory_of(integration: Integration, steady: PeriodicState | None, label:
         reached = int(np.sum(table.slot[: integration.segment + 1] >= 0))
     rows = integration.record.events[: integration.events]
     return Trajectory(
-        time=table.sampled[:reached],
+        time=table.sampled[:reached].copy(),  # the table may be that of other runs too
         status=integration.status if not integration.status.ok else integration.warning,
         outputs=system.outputs,
         states=_states(integration, rows),

@@ -22,7 +22,7 @@ from inerter.simulation.inputs import (
     check_keywords,
     check_steps,
     initial_of,
-    tabulate,
+    tabulate_once,
     whole_steps,
 )
 from inerter.simulation.observe import trajectory_of
@@ -107,7 +107,7 @@ def simulate(
     if integrator == "time-stepping":
         return time_stepping_run.run(system, signals, delays, initial, plan.begin, length, step, int(every))
     joined = isinstance(initial, Trajectory)
-    table = tabulate(signals, delays, length, step, int(every), plan.begin, joined)
+    table = tabulate_once(signals, delays, length, step, int(every), plan.begin, joined)
     state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None
     integration = event_driven.start(system, table, state, account=energy, after=ending_of(initial))
     if plan.is_periodic:

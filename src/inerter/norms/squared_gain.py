@@ -51,12 +51,17 @@ class SquaredGain:
 
     def _top(self, slope: Polynomial, low: Fraction, high: Fraction) -> tuple[float, float]:
         """The maximum between `low` and `high`, where `slope` changes its sign once."""
+        at_low, at_high = self.gain(low), self.gain(high)
         while True:
             middle = (low + high) / 2
-            gains = [self.gain(x) for x in (low, middle, high)]
-            if max(gains) - min(gains) <= _FLAT * max(gains):
-                return _root(middle.numerator, middle.denominator), max(gains)
-            low, high = (middle, high) if value(slope, middle) > 0 else (low, middle)
+            at_middle = self.gain(middle)
+            largest = max(at_low, at_middle, at_high)
+            if largest - min(at_low, at_middle, at_high) <= _FLAT * largest:
+                return _root(middle.numerator, middle.denominator), largest
+            if value(slope, middle) > 0:
+                low, at_low = middle, at_middle
+            else:
+                high, at_high = middle, at_middle
 
 
 def _on_axis_squared(p: Polynomial) -> Polynomial:

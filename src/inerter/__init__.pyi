@@ -69,6 +69,7 @@ from inerter.methods.registry import METHODS as METHODS
 from inerter.methods.static_stiffness import static_stiffness as static_stiffness
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.networks.catalogue import LAYOUTS as LAYOUTS
+from inerter.networks.elements import Bridge as Bridge
 from inerter.networks.elements import Damper as Damper
 from inerter.networks.elements import Element as Element
 from inerter.networks.elements import Free as Free

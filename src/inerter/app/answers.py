@@ -25,7 +25,7 @@ from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
-from inerter.networks.elements.algebra import Network, Parallel
+from inerter.networks.elements.algebra import CombinedNetwork, Network
 from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
@@ -129,8 +129,8 @@ def tree_of(network: Network) -> Answer:
             "unit": network.unit,
             "value": network.value,
         }
-    sign = "parallel" if isinstance(network, Parallel) else "series"
-    return {"kind": sign, "parts": [tree_of(part) for part in network.parts]}  # type: ignore[attr-defined]
+    assert isinstance(network, CombinedNetwork)
+    return {"kind": type(network).__name__.lower(), "parts": [tree_of(part) for part in network.parts]}
 
 
 def optimum(

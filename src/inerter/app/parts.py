@@ -10,10 +10,10 @@ from inerter.files.common.entries import expression
 from inerter.files.common.problem import EntryError
 from inerter.formatting import format_quantity
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
-from inerter.networks.parser import ExpressionError, ExpressionPart, parse_expression
+from inerter.networks.parser import BRIDGE, ExpressionError, ExpressionPart, parse_expression
 from inerter.units import is_unit, parse_quantity, quote_value
 
-_JOINED = {"|": "parallel", "-": "series"}
+_JOINED = {"|": "parallel", "-": "series", BRIDGE: "bridge"}
 
 
 def parse_network(text: str, elements: Container[str] | None) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Schematics of networks: upper end at the top, parallel parts side by side between bars, series parts in a column.
 
+A bridge has its arms in three columns: a above b, then e, then c above d; e runs down from the left to the right node.
 `schematic` only says where things are, in points; what draws only draws it.
 """
 
@@ -32,11 +33,12 @@ from inerter.figures.symbols import (
 )
 from inerter.formatting import typeset_quantity
 from inerter.networks.elements import (
+    Bridge,
+    CombinedNetwork,
     Element,
     Free,
     Network,
     Parallel,
-    Series,
     Tied,
     check_network,
 )
@@ -123,11 +125,16 @@ def schematic(network: Network, *, values: bool = False) -> Schematic:
     Raises `NetworkError` if `network` is none.
     """
     network = check_network(network)
-    if isinstance(network, Parallel | Series):
+    if isinstance(network, CombinedNetwork):
         parts = [schematic(part, values=values) for part in network.parts]
         if not parts:
             raise NetworkError("A network without elements cannot be drawn. Give it at least one.")
-        return _side_by_side(parts) if isinstance(network, Parallel) else _in_a_column(parts)
+        match network:
+            case Parallel():
+                return _side_by_side(parts)
+            case Bridge():
+                return _in_a_bridge(*parts)
+        return _in_a_column(parts)
     (element,) = network.elements()
     middle = PlacedElement(element, element_label(element, values=values), 0.0, -HALF_HEIGHT)
     return Schematic(HALF_WIDTH, middle.right, 2.0 * HALF_HEIGHT, (middle,))
@@ -145,17 +152,42 @@ def _side_by_side(parts: Sequence[Schematic]) -> Schematic:
     middle = (xs[(len(xs) - 1) // 2] + xs[len(xs) // 2]) / 2.0
     xs = [x - middle for x in xs]
     inside = max(part.height for part in parts)
-    top, bottom = -_STUB, -_STUB - inside
-    lines: list[SymbolLine] = [((0.0, y), (0.0, y - _STUB)) for y in (0.0, bottom)]
-    lines += [((xs[0] - _OVERHANG, y), (xs[-1] + _OVERHANG, y)) for y in (top, bottom)]
+    lines = _bars(xs, inside)
     at: list[Point] = []
     for x, part in zip(xs, parts, strict=True):
-        lead = (inside - part.height) / 2.0
-        at.append((x, top - lead))
-        if lead:
-            lines += [((x, y), (x, y - lead)) for y in (top, bottom + lead)]
+        at.append(_between(part, x, 0.0, inside, lines))
     size = (parts[0].left - xs[0], parts[-1].right + xs[-1], inside + 2.0 * _STUB)
     return _join_schematics(parts, at, size, lines)
+
+
+def _in_a_bridge(a: Schematic, b: Schematic, c: Schematic, d: Schematic, e: Schematic) -> Schematic:
+    """Arms a and b, e, c and d in three columns between two bars; the ends of the whole are at the middle one."""
+    columns = [_in_a_column([a, b]), e, _in_a_column([c, d])]
+    xs = [-(columns[0].right + _BETWEEN + e.left), 0.0, e.right + _BETWEEN + columns[2].left]
+    left = max(a.height, c.height - e.height)  # depths of the nodes below the upper bar
+    right = max(left + e.height, c.height)
+    inside = max(left + b.height, right + d.height)
+    wires = ((xs[0], 0.0, -_STUB - left), (0.0, xs[2], -_STUB - right))
+    lines = [*_bars(xs, inside), *(((x, y), (x2, y)) for x, x2, y in wires)]
+    spans = ((a, 0, 0.0, left), (b, 0, left, inside), (c, 2, 0.0, right), (d, 2, right, inside), (e, 1, left, right))
+    at = [_between(arm, xs[i], upper, lower, lines) for arm, i, upper, lower in spans]
+    size = (columns[0].left - xs[0], columns[2].right + xs[2], inside + 2.0 * _STUB)
+    return _join_schematics((a, b, c, d, e), at, size, lines)
+
+
+def _bars(xs: Sequence[float], inside: float) -> list[SymbolLine]:
+    """Bars over columns, this far apart, with the leads to the ends of the whole."""
+    top, bottom = -_STUB, -_STUB - inside
+    lines: list[SymbolLine] = [((0.0, y), (0.0, y - _STUB)) for y in (0.0, bottom)]
+    return lines + [((xs[0] - _OVERHANG, y), (xs[-1] + _OVERHANG, y)) for y in (top, bottom)]
+
+
+def _between(part: Schematic, x: float, upper: float, lower: float, lines: list[SymbolLine]) -> Point:
+    """Upper end of a part in the middle between two depths below the upper bar, with its leads added to `lines`."""
+    lead = (lower - upper - part.height) / 2.0
+    if lead:
+        lines += [((x, -_STUB - y), (x, -_STUB - y - lead)) for y in (upper, lower - lead)]
+    return x, -_STUB - upper - lead
 
 
 def _in_a_column(parts: Sequence[Schematic]) -> Schematic:

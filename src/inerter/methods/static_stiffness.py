@@ -12,9 +12,9 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.definition import Index
 from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
-from inerter.networks.elements import Element, Free, Network, Parallel
+from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Friction, Network, Parallel
 from inerter.networks.elements.roles import LinearRole
-from inerter.networks.transform import linearise
+from inerter.networks.transform import UpsideDown, expand_elements, linearise
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -103,28 +103,51 @@ class _Stiffness:
         raise AssertionError("a static stiffness is one smooth function")
 
     def _value_and_gradients(self, points: Array) -> tuple[Array, Array]:
-        left = linearise(self.network)
+        left = linearise(expand_elements(self.network, _at_rest))
         if left.network is None:
             return np.array([np.inf if left.rigid else 0.0]), np.zeros((len(self.names), 1))
         columns = dict(zip(self.names, points.T, strict=True))
         return _stiffness(left.network, columns, np.eye(len(self.names))[:, :, None], self.names)
 
 
+def _at_rest(element: Element) -> Network:
+    """The element in linear analysis, but nothing in place of a damper or an inerter."""
+    view = element.as_linear()
+    return _NOTHING if view is element and element.linear in (LinearRole.DAMPING, LinearRole.MASS) else view
+
+
+_NOTHING = Friction(0.0)
+
+
 def _stiffness(network: Network, columns: Mapping[str, Array], eye: Array, names: Sequence[str]) -> tuple[Array, Array]:
-    """Stiffness (n,) and gradient (names, n)."""
-    if isinstance(network, Element):
-        if network.linear is not LinearRole.STIFFNESS:
-            return np.zeros(1), np.zeros((len(names), 1))
-        if isinstance(network.value, Free):
-            place = names.index(str(network.value.name))
-            return network.gain * columns[names[place]], network.gain * eye[place]
-        return np.array([network.coefficient]), np.zeros((len(names), 1))
-    assert hasattr(network, "parts")
+    """Stiffness (n,) and gradient (names, n) of a network of springs."""
+    match network:
+        case Element():
+            if isinstance(network.value, Free):
+                place = names.index(str(network.value.name))
+                return network.gain * columns[names[place]], network.gain * eye[place]
+            return np.array([network.coefficient]), np.zeros((len(names), 1))
+        case UpsideDown(turned):
+            return _stiffness(turned, columns, eye, names)
+    assert isinstance(network, CombinedNetwork)
     found = [_stiffness(part, columns, eye, names) for part in network.parts]
-    if isinstance(network, Parallel):
-        return sum((k for k, _ in found), np.zeros(1)), sum((g for _, g in found), np.zeros((len(names), 1)))
-    if any(not np.any(k) for k, _ in found):  # one of them lets go at every point
-        return np.zeros(1), np.zeros((len(names), 1))
-    compliance = sum((1.0 / k for k, _ in found), np.zeros(1))
-    total = 1.0 / compliance
-    return total, sum((g * (total / k) ** 2 for k, g in found), np.zeros((len(names), 1)))
+    stiffnesses = [k for k, _ in found]
+    match network:
+        case Parallel():
+            total, strokes = sum(stiffnesses, np.zeros(1)), [np.ones(1)] * len(found)
+        case Bridge():
+            total, strokes = _bridge_stiffness(*stiffnesses)
+        case _:
+            total = 1.0 / sum((1.0 / k for k in stiffnesses), np.zeros(1))
+            strokes = [total / k for k in stiffnesses]
+    gradients = (g * x**2 for (_, g), x in zip(found, strokes, strict=True))
+    return total, sum(gradients, np.zeros((len(names), 1)))
+
+
+def _bridge_stiffness(a: Array, b: Array, c: Array, d: Array, e: Array) -> tuple[Array, list[Array]]:
+    """Stiffness of a bridge of springs, and the elongation of each arm for an elongation of one of the whole."""
+    across = (a + b) * (c + d) + e * (a + b + c + d)
+    total = (e * (a + c) * (b + d) + a * b * (c + d) + c * d * (a + b)) / across
+    upper, right = (b * (c + d + e) + e * d) / across, (d * (a + b + e) + e * b) / across
+    left, lower = (a * (c + d + e) + e * c) / across, (c * (a + b + e) + e * a) / across
+    return total, [upper, left, right, lower, (a * d - b * c) / across]

@@ -8,8 +8,10 @@ from dataclasses import dataclass, replace
 from typing import NoReturn
 
 from inerter.errors import NetworkError
-from inerter.networks.elements import Element, Network, Parallel, Series, check_network
+from inerter.networks.elements import Bridge, Element, Network, Parallel, Series, check_network
 
+BRIDGE = "bridge"  # before a bracket it begins a bridge; else it is a name
+_ARMS = 5
 _DEEPEST = 100
 
 
@@ -24,15 +26,15 @@ class ExpressionError(NetworkError):
         return str(self.args[0])
 
 
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|()\-]))")
+_NAME = re.compile(rf"({BRIDGE}(?=\s*\())|[A-Za-z][A-Za-z0-9_]*")
+_TOKEN = re.compile(r"\s*(?:([A-Za-z][A-Za-z0-9_]*)|([|(),\-]))")
 
 
 def network(expression: str, /, **parts: Network) -> Network:
     """The network that `expression` describes, with each name replaced by the given element or network.
 
-    `|` is parallel, `-` is series and binds tighter, brackets group. An element without a name takes its name in the
-    expression.
+    `|` is parallel, `-` is series and binds tighter, brackets group; `bridge(a, b, c, d, e)` is a `Bridge` whose arms
+    are expressions. An element without a name takes its name in the expression.
 
     Raises `NetworkError` for a syntax error or an undefined name; given names need not be used.
 
@@ -51,7 +53,7 @@ class ExpressionPart:
     begin: int
     end: int
     name: str = ""
-    sign: str = ""  # operator of its parts: "|" or "-"
+    sign: str = ""  # operator of its parts: "|" or "-", or `BRIDGE`
     parts: tuple[ExpressionPart, ...] = ()
 
 
@@ -68,7 +70,9 @@ def names(expression: str) -> tuple[str, ...]:
 
     Raises `NetworkError` for characters that are not part of the syntax.
     """
-    return tuple(dict.fromkeys(text for text, _ in _tokens(expression) if text[0].isalpha()))
+    tokens = [text for text, _ in _tokens(expression)]
+    following = [*tokens[1:], ""]
+    return tuple(dict.fromkeys(t for t, after in zip(tokens, following, strict=True) if _is_name(t, after)))
 
 
 def rename_in_expression(expression: str, names: Mapping[str, str]) -> str:
@@ -77,7 +81,7 @@ def rename_in_expression(expression: str, names: Mapping[str, str]) -> str:
     >>> rename_in_expression("c | k - (c |", {"c": "k", "k": "c"})
     'k | c - (k |'
     """
-    return _NAME.sub(lambda found: names.get(found[0], found[0]), expression)
+    return _NAME.sub(lambda found: found[1] or names.get(found[0], found[0]), expression)
 
 
 def format_expression(network: Network, names: Iterable[str]) -> str:
@@ -97,6 +101,8 @@ def format_expression(network: Network, names: Iterable[str]) -> str:
             case Series(parts):
                 joined = " - ".join([text(each, "-") for each in parts])
                 return f"({joined})" if inside == "-" else joined
+            case Bridge():
+                return f"{BRIDGE}({', '.join([text(arm, '') for arm in part.parts])})"
         return next(rest)
 
     return text(network, "")
@@ -106,7 +112,10 @@ def _build(part: ExpressionPart, known: Mapping[str, Network]) -> Network:
     """The network of a part of an expression."""
     if part.name:
         return known[part.name]
-    first, *rest = (_build(each, known) for each in part.parts)
+    parts = [_build(each, known) for each in part.parts]
+    if part.sign == BRIDGE:
+        return Bridge(*parts)
+    first, *rest = parts
     for other in rest:
         first = first | other if part.sign == "|" else first - other
     return first
@@ -143,18 +152,15 @@ class _Parser:
     def _atom(self) -> ExpressionPart:
         token = self._next()
         if token == "(":
-            self.position += 1
-            self.depth += 1
-            if self.depth > _DEEPEST:
-                self._fail(f"more than {_DEEPEST} nested brackets")
-            result = self._parallel()
-            self.depth -= 1
-            if self._next() != ")":
-                self._fail("')' expected here")
-            self.position += 1
+            (result,) = self._in_brackets(1)
             return result
         if token is None or not token[0].isalpha():
             self._fail("element name or '(' expected here")
+        if not _is_name(token, self._next(1)):
+            begin = self._place()
+            self.position += 1
+            arms = self._in_brackets(_ARMS)
+            return ExpressionPart(begin, self._end(), sign=BRIDGE, parts=arms)
         if self.known is not None and token not in self.known:
             names = ", ".join(self.known) if isinstance(self.known, Iterable) else ""
             self._fail(f"undefined element {token!r}; defined: {names or 'none'}")
@@ -162,8 +168,27 @@ class _Parser:
         self.position += 1
         return ExpressionPart(begin, begin + len(token), token)
 
-    def _next(self) -> str | None:
-        return self.tokens[self.position][0] if self.position < len(self.tokens) else None
+    def _in_brackets(self, count: int) -> tuple[ExpressionPart, ...]:
+        """`count` expressions between brackets, with commas between them."""
+        self.position += 1
+        self.depth += 1
+        if self.depth > _DEEPEST:
+            self._fail(f"more than {_DEEPEST} nested brackets")
+        parts = [self._parallel()]
+        while len(parts) < count:
+            if self._next() != ",":
+                self._fail(f"',' expected here, as a bridge has {count} arms: a, b, c, d, e")
+            self.position += 1
+            parts.append(self._parallel())
+        self.depth -= 1
+        if self._next() != ")":
+            self._fail("')' expected here")
+        self.position += 1
+        return tuple(parts)
+
+    def _next(self, ahead: int = 0) -> str | None:
+        at = self.position + ahead
+        return self.tokens[at][0] if at < len(self.tokens) else None
 
     def _place(self) -> int:
         """Position of the next token."""
@@ -176,6 +201,11 @@ class _Parser:
 
     def _fail(self, problem: str) -> NoReturn:
         raise _wrong(self.expression, self._place(), f"{problem}.")
+
+
+def _is_name(token: str, after: str | None) -> bool:
+    """Whether a token is the name of an element, with the token after it."""
+    return token[0].isalpha() and not (token == BRIDGE and after == "(")
 
 
 def _wrong(expression: str, place: int, problem: str) -> ExpressionError:
@@ -191,7 +221,7 @@ def _tokens(expression: str) -> list[tuple[str, int]]:
         match = _TOKEN.match(expression, position)
         if match is None:
             place = position + len(expression[position:]) - len(expression[position:].lstrip())
-            remedy = "Use names, '|' (parallel), '-' (series) and brackets."
+            remedy = "Use names, '|' (parallel), '-' (series), brackets and bridge(a, b, c, d, e)."
             raise _wrong(expression, place, f"{expression[place]!r} is not part of the syntax. {remedy}")
         result.append((match.group(1) or match.group(2), match.start(match.lastindex or 0)))
         position = match.end()

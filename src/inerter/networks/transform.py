@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
 from inerter.formatting import format_range
-from inerter.networks.elements import Element, Free, Network, Parallel, Series, Tied
+from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Network, Parallel, Series, Tied
+from inerter.networks.elements.algebra import Complex, Fraction, reduce_bridge
 from inerter.networks.elements.roles import LinearRole
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
     """The same network with each element replaced by `change(element)`."""
     match network:
-        case Parallel(parts) | Series(parts):
-            return replace(network, parts=tuple(map_elements(part, change) for part in parts))
+        case CombinedNetwork():
+            return network.with_parts([map_elements(part, change) for part in network.parts])
         case Element():
             return change(network)
     raise TypeError(f"not a network: {network!r}")
@@ -36,8 +37,8 @@ def expand_elements(network: Network, view: Callable[[Element], Network]) -> Net
         if isinstance(seen, Element):
             return expand_elements(seen if seen.name is not None else _with_name(seen, element.label), view)
         named = map_elements(seen, lambda part: _named_after(element.label, part))
-        assert isinstance(named, Parallel | Series)
-        return expand_elements(replace(named, name=element.label), view)
+        assert isinstance(named, CombinedNetwork)
+        return expand_elements(replace(named, name=element.label), view)  # type: ignore[type-var]
 
     return map_elements(network, change)
 
@@ -170,18 +171,56 @@ def linearise(network: Network) -> LinearisedNetwork:
     return LinearisedNetwork(kept, rigid, left_out, closed, idle)
 
 
-def _linear(network: Network) -> tuple[Network | None, bool]:
+@dataclass(frozen=True)
+class UpsideDown(Network):
+    """A linear network with its ends exchanged: arm e of a bridge where it is passed from the right to the left."""
+
+    network: Network
+
+    def elements(self) -> Iterator[Element]:
+        return self.network.elements()
+
+    def fraction(self, s: Complex) -> Fraction:
+        return self.network.fraction(s)
+
+
+_Reduced = tuple[Network | None, bool]  # what is left of a network; if nothing is, whether it is rigid
+
+
+def _linear(network: Network) -> _Reduced:
     if isinstance(network, Element):
         left_out = network.linear in _LEFT_OUT
         return None if left_out else network, network.linear is LinearRole.CLOSED
-    assert isinstance(network, Parallel | Series)
+    assert isinstance(network, CombinedNetwork)
     parts = [_linear(part) for part in network.parts]
+    return _bridge(network, parts) if isinstance(network, Bridge) else _join(type(network), parts, network.name)
+
+
+def _join(kind: type[CombinedNetwork], parts: Sequence[_Reduced], name: str | None = None) -> _Reduced:
     rigid = [r for kept, r in parts if kept is None]
     kept_parts = tuple(kept for kept, _ in parts if kept is not None)
-    in_parallel = isinstance(network, Parallel)
+    in_parallel = kind is Parallel
     if in_parallel in rigid:  # a rigid branch in parallel, or an open link in series, determines the whole
         return None, in_parallel
     if not kept_parts:
         return None, not in_parallel
-    alone = len(kept_parts) == 1 and network.name is None
-    return (kept_parts[0] if alone else replace(network, parts=kept_parts)), False
+    alone = len(kept_parts) == 1 and name is None
+    return (kept_parts[0] if alone else kind(kept_parts, name=name)), False  # type: ignore[call-arg]
+
+
+def _bridge(bridge: Bridge, arms: Sequence[_Reduced]) -> _Reduced:
+    """The bridge of what is left of its arms; a series-parallel network if one of them is open or rigid."""
+    lost = next((i for i, (kept, _) in enumerate(arms) if kept is None), None)
+    if lost is None:
+        return bridge.with_parts([kept for kept, _ in arms if kept is not None]), False
+    kept, rigid = reduce_bridge(
+        arms,
+        lost,
+        arms[lost][1],
+        lambda *two: _join(Parallel, two),
+        lambda *two: _join(Series, two),
+        lambda arm: (None if arm[0] is None else UpsideDown(arm[0]), arm[1]),
+    )
+    if kept is not None and bridge.name is not None:
+        return Parallel((kept,), name=bridge.name), False
+    return kept, rigid

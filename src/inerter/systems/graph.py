@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from copy import copy
 from dataclasses import dataclass, field, replace
 
@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
-from inerter.networks.elements import Element, Free, Network, Parallel, Series
-from inerter.networks.transform import expand_elements, linearise, map_elements, to_analysis, to_simulation
+from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Network, Parallel, Series
+from inerter.networks.transform import UpsideDown, expand_elements, linearise, map_elements, to_analysis, to_simulation
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
-Labelled = Element | Parallel | Series
+Labelled = Element | CombinedNetwork
+Carriers = dict[int, float]  # branches by number, with the sign of their share in a force
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +31,11 @@ class Branch:
 
 @dataclass(frozen=True, eq=False)
 class Mount:
-    """A network in its place: its own elongation, and branches whose forces add up to its force."""
+    """A network in its place: its own elongation, and branches whose forces, with their signs, add up to its force."""
 
     nodes: Matrix
     roads: Matrix
-    carriers: tuple[int, ...]
+    carriers: Carriers
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +153,7 @@ def _collect_labels(
 
 def _with_labels(network: Network) -> Iterator[Labelled]:
     """Groups and elements."""
-    if isinstance(network, Parallel | Series):
+    if isinstance(network, CombinedNetwork):
         if network.name is not None:
             yield network
         for part in network.parts:
@@ -162,9 +163,10 @@ def _with_labels(network: Network) -> Iterator[Labelled]:
 
 
 def _with_groups(network: Network, labels: Mapping[int, str]) -> Network:
-    if not isinstance(network, Parallel | Series):
+    if not isinstance(network, CombinedNetwork):
         return network
-    return replace(network, parts=tuple(_with_groups(p, labels) for p in network.parts), name=labels.get(id(network)))
+    parts = [_with_groups(part, labels) for part in network.parts]
+    return replace(network.with_parts(parts), name=labels.get(id(network)))  # type: ignore[type-var]
 
 
 def _expand(
@@ -198,26 +200,33 @@ def _expand(
 class _Builder:
     nodes: list[str]
     branches: list[tuple[Element, Matrix]] = field(default_factory=list)
-    groups: dict[str, tuple[Matrix, tuple[int, ...]]] = field(default_factory=dict)
+    groups: dict[str, tuple[Matrix, Carriers]] = field(default_factory=dict)
 
-    def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
+    def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> Carriers:
         """Add `network` between two ends; returns the branches whose forces add up to its force."""
         carriers = self._add(mount, network, upper, lower)
-        if isinstance(network, Parallel | Series) and network.name is not None:
+        if isinstance(network, CombinedNetwork) and network.name is not None:
             self.groups[network.name] = (upper - lower, carriers)
         return carriers
 
-    def _add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> tuple[int, ...]:
+    def _add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> Carriers:
         match network:
             case Element():
                 self.branches.append((network, upper - lower))
-                return (len(self.branches) - 1,)
+                return {len(self.branches) - 1: 1.0}
             case Parallel(parts):
-                return sum((self.add(mount, part, upper, lower) for part in parts), ())
+                return _merge(self.add(mount, part, upper, lower) for part in parts)
             case Series(parts):
                 ends = [upper, *(self._node(mount, i, upper.size) for i in range(1, len(parts))), lower]
                 carriers = [self.add(mount, part, ends[i], ends[i + 1]) for i, part in enumerate(parts)]
                 return min(carriers, key=len)
+            case Bridge():
+                left, right = self._node(mount, 1, upper.size), self._node(mount, 2, upper.size)
+                places = ((upper, left), (left, lower), (upper, right), (right, lower), (left, right))
+                a, b, c, d, _ = (self.add(mount, arm, *at) for arm, at in zip(network.parts, places, strict=True))
+                return min(_merge((a, c)), _merge((b, d)), key=len)
+            case UpsideDown(turned):
+                return {branch: -sign for branch, sign in self.add(mount, turned, lower, upper).items()}
         raise TypeError(f"not a network: {network!r}")
 
     def _node(self, mount: str, number: int, size: int) -> Matrix:
@@ -227,12 +236,20 @@ class _Builder:
         return end
 
 
+def _merge(several: Iterable[Carriers]) -> Carriers:
+    return {branch: sign for carriers in several for branch, sign in carriers.items()}
+
+
 def _inner_nodes(network: Network) -> int:
     match network:
         case Parallel(parts):
             return sum(map(_inner_nodes, parts))
         case Series(parts):
             return len(parts) - 1 + sum(map(_inner_nodes, parts))
+        case Bridge():
+            return 2 + sum(map(_inner_nodes, network.parts))
+        case UpsideDown(turned):
+            return _inner_nodes(turned)
     return 0
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
-from inerter.networks.elements import Element, Network, Parallel, Series
+from inerter.networks.elements import CombinedNetwork, Element, Network
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
@@ -100,7 +100,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
 def _network_shape(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
         return type(network), network.name, network.role
-    assert isinstance(network, Parallel | Series)
+    assert isinstance(network, CombinedNetwork)
     return (type(network), network.name, *map(_network_shape, network.parts))
 
 

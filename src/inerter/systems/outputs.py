@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError, PerformanceIndexError
 from inerter.networks.elements.roles import GuardRole, LinearRole
-from inerter.systems.graph import Branch, Graph, Mount, full_graph
+from inerter.systems.graph import Branch, Carriers, Graph, Mount, full_graph
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, TrackedPoint, Tyre
 
 Matrix = NDArray[np.float64]
@@ -158,7 +158,7 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for part in mechanism.mounts():
         mount, (force, travel) = graph.mounts[part.name], of_mount(part)
         total = np.zeros(len(graph.branches))
-        total[list(mount.carriers)] = 1.0
+        total[list(mount.carriers)] = list(mount.carriers.values())
         found += [
             Output(force, "N", _readable_name(force), forces=total),
             Output(travel, "m", _readable_name(travel), displacement=mount.nodes, road=mount.roads),
@@ -167,16 +167,16 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
 
 
 def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
-    places: dict[str, tuple[Branch | Mount, tuple[int, ...]]] = {
+    places: dict[str, tuple[Branch | Mount, Carriers]] = {
         label: (group, group.carriers) for label, group in graph.groups.items()
     }
     for i, branch in enumerate(graph.branches):
         if branch.label not in graph.silent:
-            places.setdefault(branch.label, (branch, (i,)))
+            places.setdefault(branch.label, (branch, {i: 1.0}))
     found, lost = [], ~_positioned_nodes(mechanism, graph)
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
-        total[list(carriers)] = 1.0
+        total[list(carriers)] = list(carriers.values())
         moved = {"velocity": place.nodes, "road_velocity": place.roads}
         found += [
             Output(velocity_of(label), "m/s", f"velocity across {label}", **moved),

@@ -4,7 +4,7 @@ Signs: the elongation of an element is the displacement of its upper end minus t
 positive in tension, when it pulls its ends together.
 """
 
-from inerter.networks.elements.algebra import Network, Parallel, Series, check_network
+from inerter.networks.elements.algebra import Bridge, CombinedNetwork, Network, Parallel, Series, check_network
 from inerter.networks.elements.damper import Damper
 from inerter.networks.elements.element import Element
 from inerter.networks.elements.friction import Friction
@@ -17,6 +17,8 @@ from inerter.networks.elements.values import NAME, Free, Tied, Value, free, midd
 __all__ = [
     "ELEMENT_TYPES",
     "NAME",
+    "Bridge",
+    "CombinedNetwork",
     "Damper",
     "Element",
     "Free",

@@ -1,11 +1,11 @@
-"""The algebra of networks: `|` in parallel, `-` in series."""
+"""The algebra of networks: `|` in parallel, `-` in series, and bridges."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import reduce
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,11 +16,13 @@ from inerter.networks.elements.values import Free, Tied
 if TYPE_CHECKING:
     from inerter.networks.elements.element import Element
 
+T = TypeVar("T")
 Complex = NDArray[np.complex128]
+Fraction = tuple[Complex, Complex]  # numerator and denominator
 
 
 class Network:
-    """A two-terminal network: an element, or elements combined by `|` and `-`."""
+    """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`."""
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))
@@ -38,7 +40,7 @@ class Network:
         """The elements in the order of the expression."""
         raise NotImplementedError
 
-    def fraction(self, s: Complex) -> tuple[Complex, Complex]:
+    def fraction(self, s: Complex) -> Fraction:
         """Numerator and denominator of the admittance at `s`, up to a common factor; neither is ever infinite."""
         raise NotImplementedError
 
@@ -68,37 +70,112 @@ class Network:
             return np.where(denominator == 0.0, np.inf, numerator / denominator)[()]
 
 
-@dataclass(frozen=True)
-class Parallel(Network):
-    """Parts in parallel: equal elongations, forces add. Named parts stay one part, whose force is an output."""
+class CombinedNetwork(Network):
+    """Interface of a network of several parts. One with a name stays one part, whose force is an output."""
 
     parts: tuple[Network, ...]
-    name: str | None = field(default=None, kw_only=True, repr=False)
+    name: str | None
 
     def elements(self) -> Iterator[Element]:
         for part in self.parts:
             yield from part.elements()
 
-    def fraction(self, s: Complex) -> tuple[Complex, Complex]:
+    def with_parts(self, parts: Sequence[Network]) -> Self:
+        """The same combination of other parts."""
+        return replace(self, parts=tuple(parts))  # type: ignore[type-var]
+
+
+@dataclass(frozen=True)
+class Parallel(CombinedNetwork):
+    """Parts in parallel: equal elongations, forces add."""
+
+    parts: tuple[Network, ...]
+    name: str | None = field(default=None, kw_only=True, repr=False)
+
+    def fraction(self, s: Complex) -> Fraction:
         return reduce(_parallel, (part.fraction(s) for part in self.parts))
 
 
 @dataclass(frozen=True)
-class Series(Network):
-    """Parts in series, the first at the upper end: equal forces, elongations add; named as `Parallel`."""
+class Series(CombinedNetwork):
+    """Parts in series, the first at the upper end: equal forces, elongations add."""
 
     parts: tuple[Network, ...]
     name: str | None = field(default=None, kw_only=True, repr=False)
 
-    def elements(self) -> Iterator[Element]:
-        for part in self.parts:
-            yield from part.elements()
-
-    def fraction(self, s: Complex) -> tuple[Complex, Complex]:
+    def fraction(self, s: Complex) -> Fraction:
         return reduce(_series, (part.fraction(s) for part in self.parts))
 
 
-Fraction = tuple[Complex, Complex]
+@dataclass(frozen=True)
+class Bridge(CombinedNetwork):
+    """Five arms between the upper end, two inner nodes (left and right) and the lower end.
+
+    The upper end of each arm is named first: a from the upper end to the left node, b from the left node to the lower
+    end, c from the upper end to the right node, d from the right node to the lower end, e from the left node to the
+    right node.
+
+    Raises `NetworkError` if an arm is not a network.
+
+    >>> from inerter.networks.elements import Damper
+    >>> Bridge(Damper(1.0), Damper(2.0), Damper(2.0), Damper(1.0), Damper(1.0)).admittance(1j)
+    np.complex128(1.4+0j)
+    """
+
+    a: Network
+    b: Network
+    c: Network
+    d: Network
+    e: Network
+    name: str | None = field(default=None, kw_only=True, repr=False)
+
+    def __post_init__(self) -> None:
+        for arm in self.parts:
+            check_network(arm)
+
+    @property
+    def parts(self) -> tuple[Network, ...]:  # type: ignore[override]
+        """The five arms, a to e."""
+        return self.a, self.b, self.c, self.d, self.e
+
+    def with_parts(self, parts: Sequence[Network]) -> Bridge:
+        return Bridge(*parts, name=self.name)
+
+    def fraction(self, s: Complex) -> Fraction:
+        arms = [_normalise(*arm.fraction(s)) for arm in self.parts]
+        whole = _bridge(*arms)
+        for i, (n, d) in enumerate(arms):
+            for is_rigid, there in ((False, n == 0.0), (True, d == 0.0)):
+                if np.any(there):
+                    reduced = reduce_bridge(arms, i, is_rigid, _parallel, _series, lambda arm: arm)
+                    whole = np.where(there, reduced[0], whole[0]), np.where(there, reduced[1], whole[1])
+        return whole
+
+
+def reduce_bridge(
+    arms: Sequence[T],
+    which: int,
+    is_rigid: bool,
+    parallel: Callable[[T, T], T],
+    series: Callable[[T, T], T],
+    turn: Callable[[T], T],
+) -> T:
+    """The series-parallel network that a bridge becomes if one of its arms (a to e: 0 to 4) is open or rigid.
+
+    `turn` exchanges the ends of arm e where that then lies the other way round.
+    """
+    if which == 4:
+        a, b, c, d, _ = arms
+        return series(parallel(a, c), parallel(b, d)) if is_rigid else parallel(series(a, b), series(c, d))
+    e = turn(arms[4]) if is_rigid == (which in (1, 2)) else arms[4]
+    follower, neighbour, opposite = (arms[i] for i in _BESIDE[which])
+    if is_rigid:
+        return parallel(follower, series(parallel(e, neighbour), opposite))
+    return series(neighbour, parallel(opposite, series(e, follower)))
+
+
+# of each arm a to d: the arm that follows at its inner node, its neighbour at the same end, and the opposite arm
+_BESIDE = ((1, 2, 3), (0, 3, 2), (3, 0, 1), (2, 1, 0))
 
 
 def _parallel(one: Fraction, other: Fraction) -> Fraction:
@@ -111,6 +188,17 @@ def _series(one: Fraction, other: Fraction) -> Fraction:
     (n, d), (n2, d2) = one, other
     both_open = (n == 0.0) & (n2 == 0.0)
     return _normalise(n * n2, np.where(both_open, 1.0, n * d2 + n2 * d))
+
+
+def _bridge(a: Fraction, b: Fraction, c: Fraction, d: Fraction, e: Fraction) -> Fraction:
+    """Sum over the spanning trees of the bridge, over that of the bridge with its two ends joined (Kirchhoff)."""
+    (na, da), (nb, db), (nc, dc), (nd, dd), (ne, de) = a, b, c, d, e
+    ab, cd = na * db + nb * da, nc * dd + nd * dc
+    upper, lower = na * dc + nc * da, nb * dd + nd * db
+    return _normalise(
+        ne * upper * lower + de * (na * nb * cd + nc * nd * ab),
+        de * ab * cd + ne * (ab * dc * dd + cd * da * db),
+    )
 
 
 def _normalise(n: Complex, d: Complex) -> Fraction:

@@ -108,7 +108,7 @@ def test_order_names_and_text(size):
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4, 5])
 def test_networks_are_those_of_the_expression(size):
-    for topology in it.enumerate_networks(size, like_neighbours=True):
+    for topology in it.enumerate_networks(size, like_neighbours=True, bridges=True):
         elements = [
             KINDS[symbol](1.0 + i, name)
             for i, (symbol, name) in enumerate(zip(topology.kinds, topology.names(), strict=True))

@@ -94,6 +94,8 @@ DIFFERENT = [
     car(K | C - B, sprung_mass=it.free(100.0, 300.0)).on_moving_ground(),
     car(it.Spring(it.free(1e4, 1e6, "x")) | it.Spring(it.free(1e4, 1e6, "x")) - C),
     car(K | C - B | K),
+    car(it.Bridge(K, C, B, C, K)),
+    car(K | it.Bridge(K, C, B - it.Friction(5.0, "f") | C, C, K) - C),
 ]
 
 

@@ -11,7 +11,7 @@ from operator import index, or_, sub
 from typing import Any, TypeAlias
 
 from inerter.errors import NetworkError
-from inerter.networks.elements import ELEMENT_TYPES, Damper, Element, Inerter, Network, Spring
+from inerter.networks.elements import ELEMENT_TYPES, Bridge, Damper, Element, Inerter, Network, Spring
 
 Tree: TypeAlias = Any  # a leaf is the symbol of an element; else (operator, part, part, ...) with an operator below
 PARALLEL, SERIES, BRIDGE = OPERATORS = ("|", "-", "bridge")  # a bridge has five arms, as `Bridge`
@@ -262,14 +262,8 @@ def _numbered_name(symbol: str, used: Counter[str], taken: Set[str]) -> str:
     return _numbered_name(symbol, used, taken) if name in taken else name
 
 
-def _join_bridge(arms: Sequence[Network]) -> Network:
-    from inerter.networks.elements.bridge import Bridge  # type: ignore[import-untyped]  # noqa: PLC0415
-
-    return Bridge(*arms)  # type: ignore[no-any-return]
-
-
 _JOIN: dict[str, Callable[[Sequence[Network]], Network]] = {
     PARALLEL: lambda parts: reduce(or_, parts),
     SERIES: lambda parts: reduce(sub, parts),
-    BRIDGE: _join_bridge,
+    BRIDGE: lambda arms: Bridge(*arms),
 }

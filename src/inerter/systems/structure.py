@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Hashable
 from dataclasses import dataclass, replace
 
-from inerter.networks.elements import Element, Free, Network, Parallel, Series, Tied
+from inerter.networks.elements import CombinedNetwork, Element, Free, Network, Tied
 from inerter.networks.transform import map_elements
 from inerter.systems.graph import Graph, linear_graph
 from inerter.vehicle.mechanism import Mechanism, Port
@@ -91,7 +91,7 @@ class _DependsOnValuesError(Exception):
 
 def _key(network: Network, values: Values) -> Hashable:
     """The structure of a network, whose values are appended to `values`."""
-    if isinstance(network, Parallel | Series):
+    if isinstance(network, CombinedNetwork):
         return (type(network), network.name, *[_key(part, values) for part in network.parts])
     if not isinstance(network, Element) or not network.plain or isinstance(value := network.value, Tied):
         raise _DependsOnValuesError

@@ -253,9 +253,9 @@ class _Lyapunov:
         if not W.size:
             return W
         kinds = ("T", "N") if adjoint else ("N", "T")
-        right = -(self.Z.T @ W @ self.Z)
+        right = -self.Z.T.dot(W).dot(self.Z)
         Y, scale, _ = scipy.linalg.lapack.dtrsyl(self.T, self.T, right, trana=kinds[0], tranb=kinds[1])
-        P = self.Z @ (Y / scale) @ self.Z.T
+        P = self.Z.dot(Y / scale).dot(self.Z.T)
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
     def refine(self, A: Matrix, W: Matrix) -> Matrix:

@@ -217,7 +217,8 @@ class LinearProblem:
         if self.excesses:
             own = (*own, ErrorSource(DENSITY, integral))
         promise = CORRECTED if self.excesses else PROMISE
-        return with_error_sources(replace(found, error_sources=(*stand_ins, *more)), own, promise)
+        known = replace(found, error_sources=(*stand_ins, *more)) if stand_ins or more else found
+        return with_error_sources(known, own, promise)
 
 
 def linear_problem(mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions) -> LinearProblem:

@@ -17,8 +17,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 from itertools import accumulate, pairwise
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,7 @@ Matrix = NDArray[np.float64]
 Names = tuple[str, ...] | None
 Sum = Sequence[tuple[str, tuple[Polynomial, Polynomial] | None]]  # inputs of the mechanism, with factors
 _ROUNDING = float(np.finfo(np.longdouble).eps)
+_MOST_VALUES = 30  # of a structure that is kept, which takes some 2 MB then
 _TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
 
 
@@ -173,7 +175,7 @@ def describe(
     """
     chosen = tuple(None if names is None else tuple(names) for names in (inputs, outputs))
     structure = structure_of(mechanism)
-    if structure is not None:
+    if structure is not None and len(structure.values) <= _MOST_VALUES:
         try:
             return _with_values(_describe_structure(structure, *chosen), structure)
         except InerterError:  # whose sentence is to name what the mechanism itself has
@@ -202,8 +204,19 @@ class _ParametricDescriptor:
     stacks: NDArray[np.longdouble]  # S, R, F, Y_eta, Y_x, Y_u (1 + parameters, entries)
     sizes: Matrix
 
+    @cached_property
+    def places(self) -> list[tuple[slice, tuple[int, ...]]]:
+        """Columns and shape of each stack."""
+        shapes = [size.shape[1:] for size in self.descriptor.sizes]
+        edges = [0, *accumulate(map(prod, shapes))]
+        return [(slice(*ends), shape) for ends, shape in zip(pairwise(edges), shapes, strict=True)]
 
-@lru_cache(maxsize=256)
+    def split_stacks(self, joined: Any) -> tuple[Any, ...]:
+        """Stacks from rows in which they are side by side."""
+        return tuple([joined[:, columns].reshape(len(joined), *shape) for columns, shape in self.places])
+
+
+@lru_cache(maxsize=128)
 def _describe_structure(structure: Structure, inputs: Names, outputs: Names) -> _ParametricDescriptor:
     mechanism, graph = structure.parametrise()
     d = _describe(mechanism, graph, inputs, outputs)
@@ -228,8 +241,8 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
     for i, value in enumerate(chosen, start=1):
         place, factor = (places[str(value.name)], 1.0) if isinstance(value, Free) else (0, value)
         weights[place, i] = factor
-    S, R, F, Y_eta, Y_x, Y_u = _split_stacks(weights @ layout.stacks, d.sizes)
-    sizes = _split_stacks(weights.astype(float) @ layout.sizes, d.sizes)
+    S, R, F, Y_eta, Y_x, Y_u = layout.split_stacks(weights @ layout.stacks)
+    sizes = layout.split_stacks(weights.astype(float) @ layout.sizes)
     return replace(
         d,
         S=S,
@@ -241,17 +254,6 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
         free=free,
         sizes=sizes,
         mechanism=structure.mechanism,
-    )
-
-
-def _split_stacks(joined: Any, like: Sequence[Matrix]) -> tuple[Any, ...]:
-    """Stacks that are side by side, with as many rows and columns as those in `like`."""
-    edges = [0, *accumulate(stack[0].size for stack in like)]
-    return tuple(
-        [
-            joined[:, begin:end].reshape(len(joined), *stack.shape[1:])
-            for (begin, end), stack in zip(pairwise(edges), like, strict=True)
-        ]
     )
 
 

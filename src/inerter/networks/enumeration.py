@@ -157,9 +157,9 @@ class _Trees:
     def of_size(self, size: int) -> Iterator[Tree]:
         if size == 1:
             return iter(self.symbols)
-        return chain.from_iterable(self._combined(operator, size) for operator in self.operators)
+        return chain.from_iterable(self._combinations(operator, size) for operator in self.operators)
 
-    def _combined(self, operator: str, size: int) -> Iterator[Tree]:
+    def _combinations(self, operator: str, size: int) -> Iterator[Tree]:
         """Trees of two or more elements with this outermost operator."""
         if operator == BRIDGE:
             return self._bridges(size)
@@ -190,11 +190,13 @@ class _Trees:
         """Trees of this size but those with one outermost operator."""
         if size == 1:
             return self.symbols
-        return [tree for operator in self.operators if operator != without for tree in self._kept(operator, size)]
+        return [
+            tree for operator in self.operators if operator != without for tree in self._known_trees(operator, size)
+        ]
 
-    def _kept(self, operator: str, size: int) -> list[Tree]:
+    def _known_trees(self, operator: str, size: int) -> list[Tree]:
         if (operator, size) not in self.known:
-            self.known[operator, size] = list(self._combined(operator, size))
+            self.known[operator, size] = list(self._combinations(operator, size))
         return self.known[operator, size]
 
 

@@ -100,7 +100,7 @@ def transformed(one: Topology, values: Sequence[float], other: Topology) -> tupl
     return found
 
 
-class _Valued(str):
+class _ElementWithValue(str):
     """An element with its value: equal to its symbol, so that trees with and without values are equal."""
 
     __slots__ = ("value",)
@@ -108,14 +108,14 @@ class _Valued(str):
 
 
 def _element(symbol: str, value: Decimal) -> str:
-    element = _Valued(symbol)
+    element = _ElementWithValue(symbol)
     element.value = value
     return element
 
 
 def _value(leaf: str) -> Decimal:
     """Value of an element, 1 where none is given."""
-    return leaf.value if isinstance(leaf, _Valued) else _ONE
+    return leaf.value if isinstance(leaf, _ElementWithValue) else _ONE
 
 
 def _insert_values(tree: Tree, values: Iterator[Decimal]) -> Tree:

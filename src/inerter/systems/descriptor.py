@@ -37,7 +37,7 @@ from inerter.systems.incidence import incidence_rows, of_law
 from inerter.systems.lever_arms import BranchRows
 from inerter.systems.linear import ExtendedMatrices, LinearSystem, Origin
 from inerter.systems.observe import StackedOutput, observe, observed_by_default
-from inerter.systems.outputs import check_inputs, force_of, input_names
+from inerter.systems.outputs import Output, check_inputs, force_of, input_names
 from inerter.systems.polynomials import Polynomial, TransferFunctions
 from inerter.systems.structure import Structure, structure_of
 from inerter.systems.transfer import transfer_functions
@@ -49,6 +49,15 @@ Sum = Sequence[tuple[str, tuple[Polynomial, Polynomial] | None]]  # inputs of th
 _ROUNDING = float(np.finfo(np.longdouble).eps)
 _MOST_VALUES = 30  # of a structure that is kept, which takes some 2 MB then
 _TERMS = 8  # roundings in an entry of A, B, C or D: those of its terms, their sums, their products and quotients
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A mechanism with its linear graph and outputs, whose values may be parameters."""
+
+    mechanism: Mechanism
+    graph: Graph
+    outputs: Mapping[str, Output]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +80,8 @@ class Descriptor:
     notes: tuple[str, ...]
     sizes: tuple[Matrix, ...]  # of S, R, F, Y_eta, Y_x, Y_u: with the sizes of all terms in place of the terms
     mechanism: Mechanism
+    model: Model
+    parameters: Mapping[str, float | Free] = field(default_factory=dict)  # values of the model by name
     filters: tuple[Filter | None, ...] = ()  # that the outputs pass through, if any do (see `with_filters`)
     sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
     precision_warning: str = ""  # why digits of the matrices are uncertain; empty where they are certain
@@ -153,7 +164,11 @@ def _functions(
 ) -> TransferFunctions:
     sums = [descriptor.sums.get(name, [(name, None)]) for name in inputs]
     moved = list(dict.fromkeys(name for terms in sums for name, _ in terms))
-    functions = transfer_functions(descriptor.mechanism, linear_graph(descriptor.mechanism), values, moved, outputs)
+    model, numbers = descriptor.model, dict(values)
+    for name, value in descriptor.parameters.items():
+        numbers[name] = values[str(value.name)] if isinstance(value, Free) else value
+    asked = [model.outputs[name] for name in outputs]
+    functions = transfer_functions(model.mechanism, model.graph, numbers, moved, asked)
     if descriptor.sums:
         functions = functions.with_inputs([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
     filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))
@@ -254,6 +269,7 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
         free=free,
         sizes=sizes,
         mechanism=structure.mechanism,
+        parameters=values,
     )
 
 
@@ -296,6 +312,7 @@ def _join_arrays(
         notes=frame.graph.notes,
         sizes=tuple(size.astype(float) for size in sizes),
         mechanism=frame.mechanism,
+        model=Model(frame.mechanism, frame.graph, frame.known),
         precision_warning=frame.precision_warning,
     )
 

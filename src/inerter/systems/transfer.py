@@ -20,7 +20,7 @@ from inerter.networks.elements import Element, Free, Tied
 from inerter.systems.graph import Graph
 from inerter.systems.incidence import Matrix, ports
 from inerter.systems.lever_arms import BranchRows
-from inerter.systems.outputs import Output, force_of, outputs
+from inerter.systems.outputs import Output, force_of
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolate_integers, scale_by
 from inerter.vehicle.mechanism import Mechanism
 
@@ -33,12 +33,11 @@ def transfer_functions(
     graph: Graph,
     values: Mapping[str, float],
     inputs: Sequence[str],
-    wanted: Sequence[str],
+    asked: Sequence[Output],
 ) -> TransferFunctions:
-    """Transfer functions from road velocities and forces `inputs` to the outputs `wanted`, at these free `values`."""
-    known = outputs(mechanism, graph)
-    asked = [known[name] for name in wanted]
-    mechanism = mechanism.with_masses(values)
+    """Transfer functions from road velocities and forces `inputs` to the outputs `asked`, at these free `values`."""
+    if mechanism.ground_moves:  # whose force has the masses as lever arms
+        mechanism = mechanism.with_masses(values)
     nodal = _Nodal(mechanism, graph, values, asked)
     rows = [_OutputRow.of(output, nodal) for output in asked]
     loads = [nodal.load(name) for name in inputs]
@@ -101,7 +100,7 @@ class _Nodal:
         levers = (x for row in rows for x in self._exact_row(*row))
         self.lever_unit = lcm(*{x.denominator for x in levers})
         numbers = [_coefficient(b.element, values) for b in graph.branches]
-        masses = [coordinate.element.coefficient for coordinate in mechanism.coordinates]
+        masses = [_coefficient(coordinate.element, values) for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [

@@ -13,6 +13,7 @@ import inerter as it
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import _describe, close, describe
 from inerter.systems.graph import linear_graph
+from inerter.systems.outputs import input_names
 from inerter.systems.structure import structure_of
 
 STACKS = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
@@ -87,6 +88,7 @@ DIFFERENT = [
     car(it.Spring(it.free(1e4, 1e6, "stiffness")) | C - B),
     car(K | C - B | it.Friction(10.0)),
     car(K | C - B | it.Friction(10.0, "f")),
+    car(K | it.Damper(it.free(100.0, 1e4)) - B | it.Friction(it.free(1.0, 10.0))),
     car(K | C - B - it.Gap(1e-3)),
     car(K | C - B, sprung_mass=it.free(100.0, 300.0)),
     car(K | C - B).on_moving_ground(),
@@ -102,6 +104,16 @@ DIFFERENT = [
 @pytest.mark.parametrize("mechanism", DIFFERENT)
 def test_descriptors_of_all_kinds_of_mechanisms(mechanism):
     assert_equal_descriptors(describe(mechanism), directly(mechanism))
+
+
+@pytest.mark.parametrize("mechanism", DIFFERENT)
+def test_exact_transfer_functions_of_all_kinds_of_mechanisms(mechanism):
+    """They follow from the graph of the structure, with free values of elements without effect left out."""
+    values = {name: 1.5 * free.lower for name, free in describe(mechanism).free.items()}
+    names = input_names(mechanism)
+    ours, theirs = (close(d, values).origin for d in (describe(mechanism, names), directly(mechanism, names)))
+    found, expected = (origin.functions(origin.inputs, origin.outputs) for origin in (ours, theirs))
+    assert found == expected
 
 
 def test_structures_differ_where_the_descriptor_does():

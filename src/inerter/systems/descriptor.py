@@ -269,7 +269,7 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
         free=free,
         sizes=sizes,
         mechanism=structure.mechanism,
-        parameters=values,
+        parameters=dict(zip(layout.parameters, chosen, strict=True)),
     )
 
 

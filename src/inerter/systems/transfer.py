@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
+from itertools import islice
 from math import gcd as common
 from math import lcm
 
@@ -25,6 +27,7 @@ from inerter.systems.polynomials import Polynomial, TransferFunctions, interpola
 from inerter.vehicle.mechanism import Mechanism
 
 Row = dict[int, int]
+Rows = tuple[Row, Row]  # over nodes and over roads
 Load = tuple[int | None, Row, str]  # the number of a road, or the force on each node, and the name of the input
 
 
@@ -39,7 +42,7 @@ def transfer_functions(
     if mechanism.ground_moves:  # whose force has the masses as lever arms
         mechanism = mechanism.with_masses(values)
     nodal = _Nodal(mechanism, graph, values, asked)
-    rows = [_OutputRow.of(output, nodal) for output in asked]
+    rows = [_OutputRow.of(output, whole, nodal) for output, whole in zip(asked, nodal.outputs, strict=True)]
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
     denominator, *numerators = (interpolate_integers(column) for column in zip(*samples, strict=True))
@@ -56,21 +59,34 @@ class _OutputRow:
     external: frozenset[str]  # forces that it is
 
     @staticmethod
-    def of(output: Output, nodal: _Nodal) -> _OutputRow:
-        carried = any(output.external)  # in the units of forces, and then all else too
-
-        def whole(nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
-            unit = 1 << nodal.value_bits if carried else 1
-            over_nodes, over_roads = ({i: unit * c for i, c in row.items()} for row in nodal.whole(nodes, roads))
-            return over_nodes, over_roads
-
-        (displacement, road), (velocity, road_velocity), (acceleration, _) = (whole(*pair) for pair in _pairs(output))
+    def of(output: Output, whole: Sequence[Rows], nodal: _Nodal) -> _OutputRow:
+        """The row of an output whose displacement, velocity and acceleration are these, in whole numbers."""
+        unit = 1 << nodal.value_bits if any(output.external) else 1  # in the units of forces, and then all else too
+        (displacement, road), (velocity, road_velocity), (acceleration, _) = (_scale_rows(rows, unit) for rows in whole)
         return _OutputRow(
             (displacement, velocity, acceleration),
             (road, road_velocity),
             {i: 1 for i, weight in enumerate(output.forces) if weight},
             frozenset(name for name, weight in zip(nodal.names, output.external, strict=False) if weight),
         )
+
+
+def _scale_rows(rows: Rows, unit: int) -> Rows:
+    over_nodes, over_roads = ({i: unit * c for i, c in row.items()} for row in rows)
+    return over_nodes, over_roads
+
+
+@lru_cache(maxsize=64)
+def _whole_rows(span: BranchRows, nodes: int, shape: tuple[int, int], data: bytes) -> tuple[int, list[Rows]]:
+    """Rows over nodes and roads in whole numbers, times a unit that comes first; not to be written to."""
+    exact = span.exact_rows(np.frombuffer(data).reshape(shape))
+    unit = lcm(*{x.denominator for row in exact for x in row})
+    whole = [{i: int(x * unit) for i, x in enumerate(row) if x} for row in exact]
+    split = [
+        ({i: x for i, x in row.items() if i < nodes}, {i - nodes: x for i, x in row.items() if i >= nodes})
+        for row in whole
+    ]
+    return unit, split
 
 
 def _pairs(output: Output) -> list[tuple[Matrix, Matrix]]:
@@ -91,34 +107,28 @@ class _Nodal:
         self.graph, self.size = graph, len(graph.nodes)
         self.roads = [road.name for road in mechanism.roads]
         self.names = [force.name for force in mechanism.forces]
-        self.span = BranchRows.of(graph, range(len(self.roads)))
         pushed = dict(zip(self.names, ports(mechanism, graph), strict=True))
         pushed = {force_of(branch.label): -branch.nodes for branch in graph.branches} | pushed
         rows = [(branch.nodes, branch.roads) for branch in graph.branches]
         rows += [pair for output in asked for pair in _pairs(output)]
         rows += [(force, np.zeros(0)) for force in pushed.values()]
-        levers = (x for row in rows for x in self._exact_row(*row))
-        self.lever_unit = lcm(*{x.denominator for x in levers})
+        joined = np.zeros((len(rows), self.size + len(self.roads)))
+        for row, (on_nodes, on_roads) in zip(joined, rows, strict=True):
+            row[: on_nodes.size], row[self.size : self.size + on_roads.size] = on_nodes, on_roads
+        span = BranchRows.of(graph, range(len(self.roads)))
+        self.lever_unit, whole = _whole_rows(span, self.size, joined.shape, joined.tobytes())
+        rest = iter(whole)
+        on_branches = list(islice(rest, len(graph.branches)))
+        self.outputs = [tuple(islice(rest, 3)) for _ in asked]
+        self.forces = dict(zip(pushed, (on_nodes for on_nodes, _ in rest), strict=True))
         numbers = [_coefficient(b.element, values) for b in graph.branches]
         masses = [_coefficient(coordinate.element, values) for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [
-            (_times(number, self.value_bits), b.element.linear.order, *self.whole(b.nodes, b.roads))
-            for b, number in zip(graph.branches, numbers, strict=True)
+            (_times(number, self.value_bits), b.element.linear.order, *row)
+            for b, number, row in zip(graph.branches, numbers, on_branches, strict=True)
         ]
-        self.forces = {name: self.whole(force, np.zeros(0))[0] for name, force in pushed.items()}
-
-    def whole(self, nodes: Matrix, roads: Matrix) -> tuple[Row, Row]:
-        """A row over nodes and roads in whole numbers."""
-        found = {i: int(x * self.lever_unit) for i, x in enumerate(self._exact_row(nodes, roads)) if x}
-        n = self.size
-        return {i: x for i, x in found.items() if i < n}, {i - n: x for i, x in found.items() if i >= n}
-
-    def _exact_row(self, nodes: Matrix, roads: Matrix) -> list[Fraction]:
-        row = np.zeros(self.size + len(self.roads))
-        row[: nodes.size], row[self.size : self.size + roads.size] = nodes, roads
-        return self.span.exact_rows(row[None])[0]
 
     def load(self, name: str) -> Load:
         """An input by name."""

@@ -100,6 +100,18 @@ def optimisations() -> None:
         print(f"one optimisation from scratch, {layout}: {shown}")
 
 
+def evaluations() -> None:
+    points = designs(200)
+    values = [dict(zip(points, row, strict=True)) for row in zip(*points.values(), strict=True)]
+    cars = [car(STRUTS["S3"]).with_values(each) for each in values]
+    times = []
+    for index in INDICES.values():
+        it.evaluate(cars[0], index, it.Norm())
+        times.append(seconds(lambda i=index: [it.evaluate(each, i, it.Norm()) for each in cars]) / len(cars))
+    shown = ", ".join(f"{name} {1e3 * t:.2f} ms" for name, t in zip(INDICES, times, strict=True))
+    print(f"one evaluation of a design of S3: {shown}")
+
+
 def sweep() -> None:
     source = study("figure11")
     count = len(source.layouts) * len(source.indices) * len(source.sweep.values)
@@ -113,6 +125,7 @@ if __name__ == "__main__":
     warnings.simplefilter("ignore")
     with threadpool_limits(1):
         norms()
+        evaluations()
         optimisations()
     if "--sweep" in sys.argv:
         sweep()

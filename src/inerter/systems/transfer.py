@@ -53,7 +53,7 @@ class _OutputRow:
 
     nodes: tuple[Row, Row, Row]
     roads: tuple[Row, Row]
-    forces: Row
+    forces: Row  # with their signs
     external: frozenset[str]  # forces that it is
 
     @staticmethod
@@ -69,7 +69,7 @@ class _OutputRow:
         return _OutputRow(
             (displacement, velocity, acceleration),
             (road, road_velocity),
-            {i: 1 for i, weight in enumerate(output.forces) if weight},
+            {i: int(sign) for i, sign in enumerate(output.forces) if sign},
             frozenset(name for name, weight in zip(nodal.names, output.external, strict=False) if weight),
         )
 
@@ -158,12 +158,12 @@ class _Nodal:
         total = sum(lever * powers[k] * x[i] for k, over in enumerate(row.nodes) for i, lever in over.items())
         if road is not None:
             total += determinant * sum(over.get(road, 0) * powers[k] for k, over in enumerate(row.roads))
-        for i in row.forces:
+        for i, sign in row.forces.items():
             number, order, nodes, roads = self.branches[i]
             elongation = sum(lever * x[node] for node, lever in nodes.items())
             if road is not None:
                 elongation += determinant * roads.get(road, 0)
-            total += number * powers[order] * elongation
+            total += sign * number * powers[order] * elongation
         return total
 
     def to_transfer_functions(

@@ -101,7 +101,7 @@ class _Nodal:
         levers = (x for row in rows for x in self._exact_row(*row))
         self.lever_unit = lcm(*{x.denominator for x in levers})
         numbers = [_coefficient(b.element, values) for b in graph.branches]
-        masses = [coordinate.element.coefficient for coordinate in mechanism.coordinates]
+        masses = [coordinate.coefficient for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [

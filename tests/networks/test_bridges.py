@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -14,6 +15,8 @@ from strategies import networks, paper_quarter_car, random_network
 
 import inerter as it
 from inerter import Bridge, Coordinate, Damper, Force, Friction, Gap, Inerter, Mechanism, Spring, Strut
+from inerter.app.answers import tree_of
+from inerter.app.parts import parse_network
 from inerter.errors import NetworkError
 from inerter.networks.elements import Network, Parallel, Series
 from inerter.networks.parser import format_expression, names, rename_in_expression
@@ -206,12 +209,25 @@ INNER = ({"a": 1.0, "b": -1.0, "e": -1.0}, {"c": 1.0, "d": -1.0, "e": 1.0})  # f
 @pytest.mark.parametrize("arm", ARMS)
 def test_forces_keep_their_signs_in_linear_analysis(arm, lost):
     """They balance at all nodes of the bridge as it is drawn; the force of a rigid arm follows at one of them."""
-    arms = {n: Spring(1e4 * (i + 1), f"k{n}") | Damper(100.0 * (i + 2), f"c{n}") for i, n in enumerate(ARMS)}
-    car = paper_quarter_car(Bridge(**{**arms, arm: lost})).mechanism()
-    names = [f"{kind}{n}_force" for n in ARMS if n != arm for kind in "kc"]
-    system = it.state_space(car, outputs=["strut_force", *names])
-    whole, *several = it.frequency_response(system, [7.0])[0, :, 0]
-    force = {n: several[2 * i] + several[2 * i + 1] for i, n in enumerate(n for n in ARMS if n != arm)}
+    arms = {
+        n: Parallel((Spring(1e4 * (i + 1), f"k{n}"), Damper(100.0 * (i + 2), f"c{n}")), name=f"arm_{n}")
+        for i, n in enumerate(ARMS)
+    }
+    bridge = replace(Bridge(**{**arms, arm: lost}), name="whole")
+    car = paper_quarter_car(bridge | Damper(300.0, "c")).mechanism()
+    rest = [n for n in ARMS if n != arm]
+    names = [
+        "whole_force",
+        "strut_force",
+        "c_force",
+        *(f"{kind}{n}_force" for kind in ("k", "c", "arm_") for n in rest),
+    ]
+    found = it.frequency_response(it.state_space(car, outputs=names), [7.0])[0, :, 0]
+    whole, strut, c, *several = found
+    k, d, groups = np.array(several).reshape(3, 4)
+    np.testing.assert_allclose(groups, k + d, rtol=1e-10)
+    assert whole + c == pytest.approx(strut, rel=1e-10)
+    force = dict(zip(rest, groups, strict=True))
     node = next(node for node in INNER if arm in node)
     force[arm] = 0.0 if lost is OPEN else -node[arm] * sum(force[n] * node[n] for n in node if n != arm)
     for one in INNER:
@@ -296,6 +312,15 @@ def test_an_expression_with_other_names_is_the_network_with_other_names(text):
     renamed = rename_in_expression(text, others)
     after = {others.get(name, name): part for name, part in PARTS.items()}
     assert it.network(renamed, **after) == it.network(text, **PARTS)
+
+
+def test_the_page_gets_the_tree_of_a_bridge_with_places():
+    found = parse_network("k | bridge(k, c - b, f, k, c)", PARTS)
+    spring, bridge = found["tree"]["parts"]
+    assert (spring["kind"], bridge["kind"], len(bridge["parts"])) == ("element", "bridge", 5)
+    assert (bridge["from"], bridge["to"], bridge["parts"][1]["kind"]) == (4, 29, "series")
+    assert found["names"] == ["k", "c", "b", "f"]
+    assert tree_of(it.network("bridge(k, c, b, f, k)", **PARTS))["kind"] == "bridge"
 
 
 @pytest.mark.parametrize(

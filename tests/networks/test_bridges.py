@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nodal import Nodal
 from quadrature import h2_by_quadrature
-from strategies import networks, paper_quarter_car, random_network
+from strategies import logarithmic, networks, paper_quarter_car, random_network
 
 import inerter as it
 from inerter import Bridge, Coordinate, Damper, Force, Friction, Gap, Inerter, Mechanism, Spring, Strut
@@ -181,6 +181,12 @@ def nodal_limit(network: Network) -> complex:
     return float(sum((y for y, one, other in edges if {one, other} == {0, 1}), Fraction(0)))
 
 
+@given(st.tuples(*[logarithmic(1e-60, 1e60)] * 5))
+def test_values_may_be_far_apart(values):
+    bridge = Bridge(*map(Damper, values))
+    assert bridge.admittance(2.0).real == pytest.approx(nodal_limit(bridge), rel=1e-14)
+
+
 @given(st.tuples(*[networks(2, 4)] * 5))
 def test_a_bridge_is_the_same_from_either_side_and_upside_down(arms):
     a, b, c, d, e = arms
@@ -220,7 +226,7 @@ def test_forces_keep_their_signs_in_linear_analysis(arm, lost):
         "whole_force",
         "strut_force",
         "c_force",
-        *(f"{kind}{n}_force" for kind in ("k", "c", "arm_") for n in rest),
+        *(f"{kind}{n}_force" for kind in ["k", "c", "arm_"] for n in rest),
     ]
     found = it.frequency_response(it.state_space(car, outputs=names), [7.0])[0, :, 0]
     whole, strut, c, *several = found

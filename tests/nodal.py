@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inerter import GROUND, Damper, Friction, Gap, Inerter, Mechanism, Spring
-from inerter.networks.elements import Network, Parallel, Series
+from inerter.networks.elements import Bridge, Network, Parallel, Series
 
 _LAW = {Spring: 0, Damper: 1, Inerter: 2}  # power of s in the dynamic stiffness
 
@@ -54,6 +54,14 @@ class Nodal:
             ends.append(lower)
             placed = [self._mount(p, a, b) for p, a, b in zip(network.parts, ends[:-1], ends[1:], strict=True)]
             return placed[0]
+        if isinstance(network, Bridge):
+            left, right = ({("node", self.size + i): 1.0} for i in range(2))
+            self.size += 2
+            carried = self._mount(network.a, upper, left) + self._mount(network.c, upper, right)
+            self._mount(network.b, left, lower)
+            self._mount(network.d, right, lower)
+            self._mount(network.e, left, right)
+            return carried
         assert not isinstance(network, Friction | Gap)
         self.elements.append((network, upper, lower))
         return [len(self.elements) - 1]

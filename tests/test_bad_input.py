@@ -122,7 +122,7 @@ WRONG = {
     ),
     # mechanisms
     "no coordinates": (lambda: mechanism(coordinates=(), struts=(), tyres=()), "at least one coordinate"),
-    "coordinate without mass": (lambda: mechanism(coordinates=(Coordinate("a", 0.0),)), "Mass of 'a'"),
+    "coordinate of negative mass": (lambda: mechanism(coordinates=(Coordinate("a", -1.0),)), "Mass of 'a'"),
     "angle without inertia": (lambda: mechanism(coordinates=(Coordinate("a", -1.0, angle=True),)), "Moment of inertia"),
     "two parts of one name": (lambda: mechanism(roads=(RoadInput("a"),)), "Duplicate name 'a' in the mechanism"),
     "a part with a bad name": (lambda: mechanism(coordinates=(Coordinate("a b", 1.0),)), "'a b'"),

@@ -16,7 +16,7 @@ from inerter.figures.networks import draw_network, draw_networks, element_label,
 from inerter.figures.style import style_context
 from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, TO_LABEL, blank_figure, symbol
 from inerter.networks.catalogue import LAYOUTS
-from inerter.networks.elements import ELEMENT_TYPES, Parallel, Series
+from inerter.networks.elements import ELEMENT_TYPES, Bridge, Parallel, Series
 from inerter.networks.parser import names, network
 
 KINDS = {"k": Spring(120e3), "c": Damper(3.2e3), "b": Inerter(328.72), "f": Friction(10.0), "g": Gap(1e-3)}
@@ -46,6 +46,7 @@ def networks(draw, kinds=ELEMENT_TYPES, depth=4):
                 lambda p: reduce(sub, p),
                 lambda p: Parallel(tuple(p)),
                 lambda p: Series(tuple(p)),
+                lambda p: Bridge(*(p * 5)[:5]),
             ]
         )
     )

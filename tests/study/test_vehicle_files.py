@@ -50,6 +50,66 @@ def test_a_full_car_is_the_one_of_python(load: Load) -> None:
     assert load("full-car").design("S1") == expected
 
 
+NODES = """title = "Bridge over nodes"
+[vehicle]
+model = "mechanism"
+[vehicle.coordinates]
+body = "181.75 kg"
+wheel = "25 kg"
+left = "0 kg"
+right = "0 kg"
+[vehicle.struts]
+a = { upper = { body = 1 }, lower = { left = 1 }, network = "k1" }
+b = { upper = { left = 1 }, lower = { wheel = 1 }, network = "c1" }
+c = { upper = { body = 1 }, lower = { right = 1 }, network = "b" }
+d = { upper = { right = 1 }, lower = { wheel = 1 }, network = "c2" }
+e = { upper = { left = 1 }, lower = { right = 1 }, network = "k2" }
+strut = { upper = { body = 1 }, lower = { wheel = 1 } }
+[vehicle.tyres]
+tyre = { port = { wheel = 1 }, road = "road", network = "kt" }
+[vehicle.roads]
+road = {}
+[vehicle.measures]
+comfort = { body_acceleration = 1 }
+"""
+REST = """[road]
+speed = "25 m/s"
+roughness = "5e-7 m^3/cycle"
+[elements]
+k = "100 kN/m"
+k1 = "10 kN/m"
+c1 = "2 kN s/m"
+b = "50 kg"
+c2 = "1 kN s/m"
+k2 = "20 kN/m"
+kt = "120 kN/m"
+[layouts]
+S = "LAYOUT"
+[study]
+indices = ["J1", "J3"]
+"""
+
+
+def test_a_bridge_in_a_file_and_coordinates_without_mass(tmp_path: Path) -> None:
+    quarter = """title = "Bridge"
+[vehicle]
+model = "quarter-car"
+sprung_mass = "181.75 kg"
+unsprung_mass = "25 kg"
+tyre_stiffness = "120 kN/m"
+"""
+    bridge = load_text(tmp_path, quarter + REST.replace("LAYOUT", "k | bridge(k1, c1, b, c2, k2)"))
+    nodes = load_text(tmp_path, NODES + REST.replace("LAYOUT", "k"))
+    for study in (bridge, nodes):
+        assert_survives(study, tmp_path)
+    parts = {"k1": it.Spring(1e4), "c1": it.Damper(2e3), "b": it.Inerter(50.0), "c2": it.Damper(1e3)}
+    strut = it.network("k | bridge(k1, c1, b, c2, k2)", k=it.Spring(1e5), k2=it.Spring(2e4), **parts)
+    assert bridge.design("S") == it.QuarterCar(181.75, 25.0, 120e3, strut)
+    for index in ("J1", "J3"):
+        values = [it.evaluate(one.design("S"), one.index(index), it.Norm()).value for one in (bridge, nodes)]
+        assert values[1] == pytest.approx(values[0], rel=1e-10)
+
+
 def test_bars_may_be_left_out(load: Load) -> None:
     bars = ', anti_roll_front = "k_a", anti_roll_rear = "k_a"'
     mechanism = load("full-car", (bars, "")).design("S1").mechanism()
@@ -260,7 +320,7 @@ BAD: dict[str, tuple[str, list[tuple[str, str]], str, list[str]]] = {
         ["coordinates"],
     ),
     "coordinate in N": ("train", [('"19 t"', '"19 kN"')], "vehicle.coordinates.body", ["mass", "moment of inertia"]),
-    "no mass": ("train", [('"19 t"', '"0 t"')], "vehicle.coordinates.body", ["not positive"]),
+    "negative mass": ("train", [('"19 t"', '"-19 t"')], "vehicle.coordinates.body", ["negative", "0 for a node"]),
     "mass as a number": ("train", [('"19 t"', "19000")], "vehicle.coordinates.body", ["mass"]),
     "coordinate's name": (
         "train",

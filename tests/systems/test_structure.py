@@ -97,6 +97,11 @@ DIFFERENT = [
     car(it.Spring(it.free(1e4, 1e6, "x")) | it.Spring(it.free(1e4, 1e6, "x")) - C),
     car(K | C - B | K),
     car(it.Bridge(K, C, B, C, K)),
+    it.Mechanism(
+        (it.Coordinate("body", 250.0), it.Coordinate("node", 0.0)),
+        (it.Strut("upper", C, {"body": 1.0}, {"node": 1.0}), it.Strut("lower", K, {"node": 1.0}, it.GROUND)),
+        forces=(it.Force("load", {"body": 1.0}),),
+    ),
     car(K | it.Bridge(K, C, B - it.Friction(5.0, "f") | C, C, K) - C),
 ]
 

@@ -29,6 +29,9 @@ function random(seed) {
 
 function randomTree(draw, depth = 4) {
   if (depth === 0 || draw() < 0.35) return element("kcbfg"[Math.floor(5 * draw())] + Math.floor(10 * draw()));
+  if (draw() < 0.2) {
+    return { kind: "bridge", parts: Array.from({ length: 5 }, () => randomTree(draw, Math.min(depth - 1, 1))) };
+  }
   const parts = Array.from({ length: 2 + Math.floor(3 * draw()) }, () => randomTree(draw, depth - 1));
   return join(draw() < 0.5 ? "series" : "parallel", parts);
 }
@@ -45,7 +48,9 @@ const sorted = (tree) =>
     .sort();
 const isCanonical = (tree) =>
   tree.kind === "element" ||
-  (tree.parts.length > 1 && tree.parts.every((part) => part.kind !== tree.kind && isCanonical(part)));
+  (tree.kind === "bridge" && tree.parts.length === 5 && tree.parts.every(isCanonical)) ||
+  (tree.kind !== "bridge" && tree.parts.length > 1 &&
+    tree.parts.every((part) => part.kind !== tree.kind && isCanonical(part)));
 
 function each(check, count = 500) {
   for (let seed = 0; seed < count; seed += 1) {
@@ -59,7 +64,16 @@ function admittance(tree) {
   if (tree.kind === "element") return 1 + tree.name.codePointAt(0) * 0.37 + Number(tree.name.slice(1) || 0) * 1.3;
   const parts = tree.parts.map(admittance);
   const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+  if (tree.kind === "bridge") return bridgeAdmittance(parts);
   return tree.kind === "parallel" ? sum(parts) : 1 / sum(parts.map((y) => 1 / y));
+}
+
+/** Kirchhoff's laws at the two inner nodes, for a velocity of one at the upper end. */
+function bridgeAdmittance([a, b, c, d, e]) {
+  const [left, right] = [a + b + e, c + d + e];
+  const l = (a * right + c * e) / (left * right - e * e);
+  const r = (c * left + a * e) / (left * right - e * e);
+  return b * l + d * r;
 }
 
 const close = (a, b) => assert.ok(Math.abs(a - b) <= 1e-12 * Math.abs(a), `${a} is not ${b}`);
@@ -81,6 +95,7 @@ test("a tree of the library has groups in groups of their kind where brackets di
 /** The same network with a pair of brackets around all but the last part of a group. */
 function nested(tree) {
   if (tree.kind === "element") return { ...tree, from: 0, to: 1 };
+  if (tree.kind === "bridge") return { kind: tree.kind, parts: tree.parts.map(nested), from: 0, to: 1 };
   const [last, ...others] = tree.parts.map(nested).reverse();
   const first = others.length === 1 ? others[0] : { kind: tree.kind, parts: others.reverse(), from: 0, to: 1 };
   return { kind: tree.kind, parts: [first, last], from: 0, to: 1 };
@@ -114,8 +129,18 @@ function admittanceWith(tree, path, y) {
   const [i, ...rest] = path;
   const parts = tree.parts.map((part, j) => (j === i ? admittanceWith(part, rest, y) : admittance(part)));
   const sum = (numbers) => numbers.reduce((a, b) => a + b, 0);
+  if (tree.kind === "bridge") return bridgeAdmittance(parts);
   return tree.kind === "parallel" ? sum(parts) : 1 / sum(parts.map((each) => 1 / each));
 }
+
+test("a bridge without an arm is what its admittance becomes", () => {
+  each((tree, draw) => {
+    const arms = Array.from({ length: 5 }, () => randomTree(draw, 2));
+    const i = Math.floor(5 * draw());
+    const values = arms.map((arm, j) => (j === i ? 0 : admittance(arm)));
+    close(admittance(removeAt({ kind: "bridge", parts: arms }, [i])), bridgeAdmittance(values));
+  });
+});
 
 test("what was joined and is taken away leaves the network as it was", () => {
   each((tree, draw) => {

@@ -6,7 +6,12 @@ import { read } from "./reading.js";
 
 const MANY = Array.from({ length: 40 }, (_, i) => `e${i}`).join(" | ");
 const NESTED = ["k | c - (ks | cs) - (b | f)", "(a | b) - (c | d - (e | f))"];
-const TEXTS = ["k", "k | c", "k - c", "k | c - b", ...NESTED, MANY];
+const BRIDGES = [
+  "bridge(a, b, c, d, e)",
+  "k | bridge(a, b - f - g, c | h, d, e)",
+  "bridge(a, b, c - d - e - f, g, h) - (i | bridge(j, bridge(a, b, c, d, e), k, l, m | n))",
+];
+const TEXTS = ["k", "k | c", "k - c", "k | c - b", ...NESTED, ...BRIDGES, MANY];
 const each = (check) => TEXTS.forEach((text) => check(drawing(read(text)), text));
 
 test("no two symbols touch, and all are inside the drawing", () => {

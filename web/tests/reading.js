@@ -1,11 +1,21 @@
 // What the library would say, for tests of the page that have no server.
 import { element, join } from "../src/network/algebra.js";
 
-/** The tree that a text describes: `-` binds tighter than `|`, brackets group. @param {string} text @returns {any} */
+/** The tree that a text describes: `-` binds tighter than `|`, brackets group, a bridge has five arms.
+ * @param {string} text @returns {any} */
 export function read(text) {
-  const tokens = text.match(/[A-Za-z][A-Za-z0-9_]*|[|()-]/g) ?? [];
+  const tokens = text.match(/[A-Za-z][A-Za-z0-9_]*|[|(),-]/g) ?? [];
   let at = 0;
   const atom = () => {
+    if (tokens[at] === "bridge" && tokens[at + 1] === "(") {
+      const parts = [];
+      for (at += 1; tokens[at] !== ")"; ) {
+        at += 1;
+        parts.push(parallel());
+      }
+      at += 1;
+      return { kind: "bridge", parts };
+    }
     if (tokens[at] !== "(") return element(tokens[at++]);
     at += 1;
     const inside = parallel();

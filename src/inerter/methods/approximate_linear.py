@@ -355,12 +355,13 @@ def _is_nonlinear(mechanism: Mechanism) -> bool:
 
 
 def _inertia_felt(mechanism: Mechanism, name: str) -> float:
-    """Inertia that resists a force where it acts [kg]."""
+    """Inertia that resists a force where it acts [kg]; the largest one for a force on a node without mass."""
     if mechanism.ground_moves and name == GROUND_ACCELERATION:
         return 1.0  # an acceleration is a force for each kg
-    inertia = {coordinate.name: coordinate.element.coefficient for coordinate in mechanism.coordinates}
+    inertia = {coordinate.name: coordinate.coefficient for coordinate in mechanism.masses.values()}
     (port,) = (force.port for force in mechanism.forces if force.name == name)
-    return 1.0 / sum(lever**2 / inertia[coordinate] for coordinate, lever in port.items() if lever)
+    mobilities = [lever**2 / inertia[name] for name, lever in port.items() if lever and name in inertia]
+    return 1.0 / sum(mobilities) if mobilities else max(inertia.values())
 
 
 def _check_whole(what: str, value: object, least: int, most: int) -> None:

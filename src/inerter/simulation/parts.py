@@ -127,7 +127,7 @@ def parts_of(mechanism: Mechanism, graph: Graph) -> Parts:
         for name, lever in force.port.items():
             ports[names.index(name), j] += lever
     masses = np.zeros(n)
-    masses[: len(names)] = [c.element.coefficient for c in mechanism.coordinates]
+    masses[: len(names)] = [c.coefficient for c in mechanism.coordinates]
     E, R = _stack(graph.branches, n, len(mechanism.roads))
     k, c, b = (
         np.array([branch.element.coefficient if branch.element.linear is law else 0.0 for branch in graph.branches])

@@ -97,7 +97,7 @@ class Frame:
     @cached_property
     def free(self) -> dict[str, Free]:
         """The free values by name."""
-        elements = [*(b.element for b in self.graph.branches), *(c.element for c in self.mechanism.coordinates)]
+        elements = [*(b.element for b in self.graph.branches), *(c.element for c in self.mechanism.masses.values())]
         return {str(e.value.name): e.value for e in elements if isinstance(e.value, Free)}
 
     @cached_property

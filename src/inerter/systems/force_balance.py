@@ -43,19 +43,17 @@ def _force_terms(frame: Frame, name: str, row: Matrix) -> Iterator[tuple[int, fl
     if name != GROUND_ACCELERATION or not frame.mechanism.ground_moves:
         yield 0, 1.0, row
         return
-    for coordinate, on in zip(frame.mechanism.coordinates, np.eye(row.size), strict=False):
+    nodes = np.eye(row.size)
+    for i, coordinate in frame.mechanism.masses.items():
         if not coordinate.angle:
             place, factor = frame.slice_of(coordinate.element)
-            yield place, -factor, on
+            yield place, -factor, nodes[i]
 
 
 def _parts(frame: Frame) -> Iterator[tuple[Element, Matrix, RowBlocks]]:
     """Masses and elements, each with its rows of the balance and the rows of the quantity its value multiplies."""
-    at = frame.slots
-    masses = [
-        Branch(coordinate.element, coordinate.name, row, np.zeros(0))
-        for coordinate, row in zip(frame.mechanism.coordinates, np.eye(len(frame.graph.nodes)), strict=False)
-    ]
+    at, nodes = frame.slots, np.eye(len(frame.graph.nodes))
+    masses = [Branch(c.element, c.name, nodes[i], np.zeros(0)) for i, c in frame.mechanism.masses.items()]
     for branch in (*masses, *frame.graph.branches):
         on = np.zeros(frame.unknowns)
         on[at.a1], on[at.u1], on[at.y], on[at.z] = frame.split.rate(branch.nodes)

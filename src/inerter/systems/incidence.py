@@ -29,14 +29,14 @@ def incidence_rows(branches: Sequence[Branch], graph: Graph) -> tuple[Matrix, Ma
 def inertias(mechanism: Mechanism, graph: Graph) -> tuple[Matrix, Matrix]:
     """Rows of what has inertia, coordinates first, then inerters, over nodes and over roads."""
     nodes, roads = incidence_rows(of_law(graph, LinearRole.MASS), graph)
-    masses = np.eye(len(graph.nodes))[: len(mechanism.coordinates)]
+    masses = np.eye(len(graph.nodes))[list(mechanism.masses)]
     return np.vstack([masses, nodes]), np.vstack([np.zeros((len(masses), roads.shape[1])), roads])
 
 
 def inertia_values(mechanism: Mechanism, graph: Graph) -> Matrix:
     """The values of `inertias`, none of which is free."""
     inerters = (branch.element.coefficient for branch in of_law(graph, LinearRole.MASS))
-    return np.array([*(coordinate.element.coefficient for coordinate in mechanism.coordinates), *inerters])
+    return np.array([*(coordinate.coefficient for coordinate in mechanism.masses.values()), *inerters])
 
 
 def ports(mechanism: Mechanism, graph: Graph) -> Matrix:

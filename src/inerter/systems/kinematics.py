@@ -89,7 +89,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
         ends = (mount.upper, mount.lower) if isinstance(mount, Strut) else (mount.port, {mount.road: None})
         mounts.append((type(mount), mount.name, _network_shape(mount.network), *(tuple(end.items()) for end in ends)))
     return (
-        tuple((c.name, c.angle) for c in mechanism.coordinates),
+        tuple((c.name, c.angle, c.is_massless) for c in mechanism.coordinates),
         tuple(mounts),
         tuple(road.name for road in mechanism.roads),
         tuple((force.name, tuple(force.port.items())) for force in mechanism.forces),

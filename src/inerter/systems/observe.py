@@ -76,7 +76,7 @@ def observe(frame: Frame, name: str) -> StackedOutput:
     for i in np.flatnonzero(output.forces):
         branch = frame.graph.branches[i]
         for stack, size, row in zip(rows, sizes, frame.across(branch), strict=True):
-            term = _times_value(frame, branch.element, row)
+            term = _times_value(frame, branch.element, output.forces[i] * row)
             stack += term
             size += np.abs(term)
     return StackedOutput(name, rows, sizes, None)

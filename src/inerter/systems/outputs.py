@@ -114,10 +114,13 @@ def _of_inputs(mechanism: Mechanism) -> list[Output]:
 
 
 def _motions(mechanism: Mechanism, coordinate: Coordinate | TrackedPoint) -> tuple[str, ...]:
-    """Motions of a coordinate available as outputs; on moving ground only the acceleration of a mass."""
-    if mechanism.ground_moves and not coordinate.angle:
-        return tuple(what for what in _MOTIONS if what not in _OVER_GROUND)
-    return tuple(_MOTIONS)
+    """Motions of a coordinate or point available as outputs: on moving ground only accelerations, and none of a node
+    without mass.
+    """
+    port = {coordinate.name: 1.0} if isinstance(coordinate, Coordinate) else coordinate.port
+    has_mass = not any(c.is_massless and port.get(c.name) for c in mechanism.coordinates)
+    over_ground = () if mechanism.ground_moves and not coordinate.angle else _OVER_GROUND
+    return (*over_ground, *(what for what in _MOTIONS if what not in _OVER_GROUND and has_mass))
 
 
 def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:

@@ -128,7 +128,7 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
         if label in elements:
             old, positive = elements[label].value, elements[label].value != 0.0
         elif label in inertias:
-            old, positive = inertias[label].inertia, True
+            old, positive = inertias[label].inertia, not inertias[label].is_massless
         else:
             listed = ", ".join([*elements, *inertias])
             raise DesignError(f"Unknown element or coordinate {label!r}; available: {listed}.")

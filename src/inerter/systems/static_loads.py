@@ -44,12 +44,12 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
             raise MechanismError(f"The static tyre loads are not known: the mass of {coordinate.name!r} is free.")
     moved, touched, weight = _free_ways(mechanism)
     upright = np.concatenate([weight > 0.0, np.ones(touched.shape[0])])
-    if not _is_spanned(np.concatenate([moved[: weight.size], touched]), upright):
+    if not _is_spanned(np.concatenate([moved, touched]), upright):
         raise MechanismError(
             "The static tyre loads are not known: a spring to the ground, or to a road without a tyre, "
             "carries a part of the weight."
         )
-    work = moved[: weight.size].T @ weight
+    work = moved.T @ weight
     load, *_ = np.linalg.lstsq(touched.T, work, rcond=_BALANCED)
     if np.abs(touched.T @ load - work).max(initial=0.0) > _BALANCED * weight.sum():
         raise MechanismError("The static tyre loads are not known: a part of the weight rests on no spring.")
@@ -60,7 +60,7 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
 
 
 def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
-    """Motions that strain no spring and no closed gap, as displacements of nodes and of contacts, and the weights."""
+    """Motions that strain no spring and no closed gap, as displacements of masses and of contacts, and the weights."""
     contacts = tuple(RoadInput(f"{tyre.name}_contact") for tyre in mechanism.tyres)
     tyres = tuple(replace(t, road=c.name) for t, c in zip(mechanism.tyres, contacts, strict=True))
     graph = full_graph(replace(mechanism, tyres=tyres, roads=(*mechanism.roads, *contacts)))
@@ -71,8 +71,8 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     ]
     rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
     ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)
-    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.element.coefficient for c in mechanism.coordinates])
-    return ways[: len(graph.nodes)], ways[len(graph.nodes) :], weight
+    weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.coefficient for c in mechanism.masses.values()])
+    return ways[list(mechanism.masses)], ways[len(graph.nodes) :], weight
 
 
 def _is_spanned(ways: Matrix, wanted: Matrix) -> bool:

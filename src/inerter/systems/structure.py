@@ -54,13 +54,14 @@ class Structure:
             self.mechanism,
             struts=tuple(replace(s, network=networks[s.name]) for s in self.mechanism.struts),
             tyres=tuple(replace(t, network=networks[t.name]) for t in self.mechanism.tyres),
-            coordinates=tuple(
-                c
-                if self.mechanism.ground_moves
-                else replace(c, inertia=_parameter(_parameter_name(next(numbers), c.inertia)))
-                for c in self.mechanism.coordinates
-            ),
         )
+        if not mechanism.ground_moves:
+            masses = {
+                number: replace(c, inertia=_parameter(_parameter_name(next(numbers), c.inertia)))
+                for number, c in mechanism.masses.items()
+            }
+            coordinates = dict(enumerate(mechanism.coordinates)) | masses
+            mechanism = replace(mechanism, coordinates=tuple(coordinates.values()))
         graph = linear_graph(mechanism)
         branches = tuple(replace(b, element=_with_parameter(b.element)) for b in graph.branches)
         return mechanism, replace(graph, branches=branches)
@@ -75,10 +76,10 @@ def structure_of(mechanism: Mechanism) -> Structure | None:
         still = tuple([(_key(s.network, []), s.name) for s in mechanism.still])
     except _DependsOnValuesError:
         return None
-    coordinates = tuple([(c.name, c.angle, _free_name(c.inertia)) for c in mechanism.coordinates])
+    coordinates = tuple([(c.name, c.angle, c.is_massless, _free_name(c.inertia)) for c in mechanism.coordinates])
     ground = tuple([c.inertia for c in mechanism.coordinates]) if mechanism.ground_moves else None
     if ground is None:  # else masses are lever arms of the force of the ground
-        values += [c.inertia for c in mechanism.coordinates]
+        values += [c.inertia for c in mechanism.masses.values()]
     forces = tuple([(force.name, _port(force.port)) for force in mechanism.forces])
     points = tuple([(point.name, _port(point.port), point.angle) for point in mechanism.points])
     key = (struts, tyres, still, coordinates, ground, mechanism.roads, forces, points)

@@ -24,7 +24,7 @@ from inerter.systems.incidence import Matrix, ports
 from inerter.systems.lever_arms import BranchRows
 from inerter.systems.outputs import Output, force_of
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolate_integers, scale_by
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Coordinate, Mechanism
 
 Row = dict[int, int]
 Rows = tuple[Row, Row]  # over nodes and over roads
@@ -55,7 +55,7 @@ class _OutputRow:
 
     nodes: tuple[Row, Row, Row]
     roads: tuple[Row, Row]
-    forces: Row
+    forces: Row  # with their signs
     external: frozenset[str]  # forces that it is
 
     @staticmethod
@@ -66,7 +66,7 @@ class _OutputRow:
         return _OutputRow(
             (displacement, velocity, acceleration),
             (road, road_velocity),
-            {i: 1 for i, weight in enumerate(output.forces) if weight},
+            {i: int(sign) for i, sign in enumerate(output.forces) if sign},
             frozenset(name for name, weight in zip(nodal.names, output.external, strict=False) if weight),
         )
 
@@ -122,7 +122,7 @@ class _Nodal:
         self.outputs = [tuple(islice(rest, 3)) for _ in asked]
         self.forces = dict(zip(pushed, (on_nodes for on_nodes, _ in rest), strict=True))
         numbers = [_coefficient(b.element, values) for b in graph.branches]
-        masses = [_coefficient(coordinate.element, values) for coordinate in mechanism.coordinates]
+        masses = [_mass(coordinate, values) for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [
@@ -167,12 +167,12 @@ class _Nodal:
         total = sum(lever * powers[k] * x[i] for k, over in enumerate(row.nodes) for i, lever in over.items())
         if road is not None:
             total += determinant * sum(over.get(road, 0) * powers[k] for k, over in enumerate(row.roads))
-        for i in row.forces:
+        for i, sign in row.forces.items():
             number, order, nodes, roads = self.branches[i]
             elongation = sum(lever * x[node] for node, lever in nodes.items())
             if road is not None:
                 elongation += determinant * roads.get(road, 0)
-            total += number * powers[order] * elongation
+            total += sign * number * powers[order] * elongation
         return total
 
     def to_transfer_functions(
@@ -227,6 +227,10 @@ def _coefficient(element: Element, values: Mapping[str, float]) -> Fraction:
     value = element.value
     assert not isinstance(value, Tied)
     return Fraction(values[str(value.name)] if isinstance(value, Free) else value) * Fraction(element.gain)
+
+
+def _mass(coordinate: Coordinate, values: Mapping[str, float]) -> Fraction:
+    return Fraction(0) if coordinate.is_massless else _coefficient(coordinate.element, values)
 
 
 def _bits(value: float | Fraction) -> int:

@@ -28,7 +28,8 @@ TRACKS = ("", "left", "right")
 class Coordinate:
     """A degree of freedom with its mass [kg], or its moment of inertia [kg m^2] if it is an angle [rad].
 
-    Either may be free.
+    Either may be free. 0 is a node without mass, at which networks meet: its displacement and velocity follow from the
+    balance of their forces, and its acceleration is no output.
     """
 
     name: str
@@ -37,8 +38,18 @@ class Coordinate:
 
     @property
     def element(self) -> Element:
-        """The inertia as an inerter to a point without acceleration."""
+        """The inertia as an inerter to a point without acceleration; there is none for a node without mass."""
         return Inerter(self.inertia, self.name)
+
+    @property
+    def is_massless(self) -> bool:
+        """Whether it is a node without mass."""
+        return self.inertia == 0.0
+
+    @property
+    def coefficient(self) -> float:
+        """Mass or moment of inertia; raises `DesignError` if it is free."""
+        return 0.0 if self.is_massless else self.element.coefficient
 
     @property
     def unit(self) -> str:
@@ -126,8 +137,8 @@ class Mechanism:
     `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and
     `_relative_velocity` are relative to the ground, and equal to the absolute ones unless the ground moves.
 
-    Raises `MechanismError` for unknown coordinates or roads, masses that are not positive, duplicate names, and
-    unconstrained coordinates; `DesignError` where one free name has two ranges.
+    Raises `MechanismError` for unknown coordinates or roads, negative masses, duplicate names, and unconstrained
+    coordinates; `DesignError` where one free name has two ranges.
     """
 
     coordinates: tuple[Coordinate, ...]
@@ -185,6 +196,11 @@ class Mechanism:
             return self
         tyres = tuple(replace(tyre, road=on[tyre.road]) for tyre in self.tyres)
         return replace(self, tyres=tyres, roads=tuple(road for road in self.roads if road.name in on.values()))
+
+    @property
+    def masses(self) -> dict[int, Coordinate]:
+        """Coordinates with inertia, by their numbers."""
+        return {i: c for i, c in enumerate(self.coordinates) if not c.is_massless}
 
     def mounts(self) -> Iterator[Strut | Tyre]:
         """The struts, then the tyres."""
@@ -309,7 +325,8 @@ def _check_numbers(mechanism: Mechanism) -> None:
         raise MechanismError("A mechanism requires at least one coordinate with a mass, or a strut on a road.")
     for coordinate in mechanism.coordinates:
         what = "Moment of inertia" if coordinate.angle else "Mass"
-        check_quantity(f"{what} of {coordinate.name!r}", coordinate.inertia, coordinate.unit)
+        if not coordinate.is_massless:
+            check_quantity(f"{what} of {coordinate.name!r}", coordinate.inertia, coordinate.unit)
     for road in mechanism.roads:
         if not is_number(road.distance) or road.distance < 0.0:
             raise MechanismError(

@@ -50,7 +50,7 @@ def masses(vehicle: Vehicle) -> dict[str, float | Free]:
     """Inertias of the coordinates of a `Mechanism`, also below stages, by name."""
     if isinstance(vehicle, Stage):
         return masses(vehicle.vehicle)
-    return {c.name: c.inertia for c in vehicle.coordinates} if isinstance(vehicle, Mechanism) else {}
+    return {c.name: c.inertia for c in vehicle.masses.values()} if isinstance(vehicle, Mechanism) else {}
 
 
 def _own_quantities(vehicle: Vehicle) -> dict[str, float | Free]:

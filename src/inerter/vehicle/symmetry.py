@@ -63,9 +63,7 @@ def _fold(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
 
     struts = [replace(s, upper=fold_port(s.upper), lower=fold_port(s.lower)) for s in mechanism.struts]
     still = tuple(strut for strut in struts if strut.upper == strut.lower)
-    coordinates = (
-        replace(c, inertia=2.0 * c.element.coefficient) if c.name in doubled else c for c in mechanism.coordinates
-    )
+    coordinates = (replace(c, inertia=2.0 * c.coefficient) if c.name in doubled else c for c in mechanism.coordinates)
     gone = (TrackedPoint(c.name, follows[c.name], c.angle) for c in mechanism.coordinates if c.name in follows)
     return replace(
         mechanism,

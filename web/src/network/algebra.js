@@ -1,11 +1,13 @@
-// The algebra of networks as they are written: `|` is parallel, `-` is series and binds tighter, brackets group.
+// The algebra of networks as they are written: `|` is parallel, `-` is series and binds tighter, brackets group, and
+// bridge(a, b, c, d, e) is a bridge.
 // Texts are written here, and read by the library alone.
 //
-// A tree is a frozen value: {kind: "element", name}, or {kind: "series" | "parallel", parts} with two parts or more,
-// none of them of its own kind. Each function that changes a tree gives another one.
+// A tree is a frozen value: {kind: "element", name}, {kind: "series" | "parallel", parts} with two parts or more,
+// none of them of its own kind, or {kind: "bridge", parts} with five. Each function that changes a tree gives another
+// one.
 
 /** @typedef {{kind: "element", name: string}} Leaf */
-/** @typedef {{kind: "series" | "parallel", parts: Tree[]}} Group */
+/** @typedef {{kind: "series" | "parallel" | "bridge", parts: Tree[]}} Group */
 /** @typedef {Leaf | Group} Tree */
 /** @typedef {number[]} Path  where a part is: the place among the parts of the whole, then among the parts of
  * that... */
@@ -14,9 +16,10 @@
 /** @param {string} name @returns {Leaf} */
 export const element = (name) => ({ kind: "element", name });
 
-/** Some trees joined, with what is of the same kind taken in. @param {Joint} kind @param {Tree[]} parts
+/** Some trees joined, with what is of the same kind taken in. @param {Group["kind"]} kind @param {Tree[]} parts
  * @returns {Tree} */
 export function join(kind, parts) {
+  if (kind === "bridge") return { kind, parts };
   const flat = parts.flatMap((part) => (part.kind === kind ? part.parts : [part]));
   return flat.length === 1 ? flat[0] : { kind, parts: flat };
 }
@@ -29,6 +32,7 @@ export const canonical = (tree) =>
  * @returns {string} */
 export function written(tree, inside = "") {
   if (tree.kind === "element") return tree.name;
+  if (tree.kind === "bridge") return `bridge(${tree.parts.map((arm) => written(arm)).join(", ")})`;
   const sign = tree.kind === "parallel" ? "|" : "-";
   const text = tree.parts.map((part) => written(part, sign)).join(` ${sign} `);
   const bare = inside === "" || (tree.kind === "series" && inside === "|");
@@ -70,7 +74,34 @@ export function removeAt(tree, path) {
   if (path.length === 0 || tree.kind === "element") return null;
   const [i, ...rest] = path;
   const left = removeAt(tree.parts[i], rest);
+  if (left === null && tree.kind === "bridge") return withoutArm(tree.parts, i);
   return join(tree.kind, left === null ? tree.parts.filter((_, j) => j !== i) : changedAt(tree.parts, i, left));
+}
+
+/** The series-parallel network that a bridge is without one arm. @param {Tree[]} arms @param {number} i
+ * @returns {Tree} */
+function withoutArm([a, b, c, d, e], i) {
+  /** @param {Tree[]} parts */
+  const series = (...parts) => join("series", parts);
+  /** @param {Tree[]} parts */
+  const parallel = (...parts) => join("parallel", parts);
+  return [
+    () => series(c, parallel(d, series(turned(e), b))),
+    () => series(parallel(c, series(a, e)), d),
+    () => series(a, parallel(b, series(e, d))),
+    () => series(parallel(a, series(c, turned(e))), b),
+    () => parallel(series(a, b), series(c, d)),
+  ][i]();
+}
+
+/** The tree upside down. @param {Tree} tree @returns {Tree} */
+function turned(tree) {
+  if (tree.kind === "element") return tree;
+  const parts = tree.parts.map(turned);
+  if (tree.kind === "parallel") return { kind: tree.kind, parts };
+  if (tree.kind === "series") return { kind: tree.kind, parts: parts.reverse() };
+  const [a, b, c, d] = parts;
+  return { kind: tree.kind, parts: [b, a, d, c, tree.parts[4]] };
 }
 
 /** The tree with `added` joined to the part at a place, after it (below it in series, right of it in parallel) or
@@ -106,13 +137,14 @@ const markIn = (tree) => leaves(tree).find(({ name }) => name === MARK)?.path ??
 /** Whether a place is inside another, or the same. @param {Path} path @param {Path} whole */
 const within = (path, whole) => whole.every((i, level) => path[level] === i);
 
-/** The tree with the part at a place changed for its neighbour before (-1) or after (+1) it. @param {Tree} tree
- * @param {Path} path @param {-1 | 1} step @returns {Tree} */
+/** The tree with the part at a place changed for its neighbour before (-1) or after (+1) it; the tree itself for an
+ * arm of a bridge. @param {Tree} tree @param {Path} path @param {-1 | 1} step @returns {Tree} */
 export function shiftAt(tree, path, step) {
   const above = path.slice(0, -1);
   const group = partAt(tree, above);
   const i = path[path.length - 1];
-  if (group === null || group.kind === "element" || group.parts[i + step] === undefined) return tree;
+  if (group === null || group.kind === "element" || group.kind === "bridge") return tree;
+  if (group.parts[i + step] === undefined) return tree;
   const parts = changedAt(changedAt(group.parts, i, group.parts[i + step]), i + step, group.parts[i]);
   return replaceAt(tree, above, { kind: group.kind, parts });
 }

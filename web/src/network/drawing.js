@@ -1,5 +1,6 @@
 // Where everything in the drawing of a network is: the upper end at the top, parallel parts side by side between bars,
-// series parts in a column, as in the figures of reports. Lengths in points, y downwards.
+// series parts in a column, and the arms of a bridge in three columns, as in the figures of reports. Lengths in points,
+// y downwards.
 
 /** @import { Tree, Path } from "./algebra.js" */
 /** @typedef {[number, number]} Point */
@@ -24,7 +25,7 @@ export const shortLabel = (name) => (name.length > LONGEST_LABEL ? `${name.slice
 export function drawing(tree, path = []) {
   if (tree.kind === "element") return symbol(tree.name, path);
   const parts = tree.parts.map((part, i) => drawing(part, [...path, i]));
-  const whole = tree.kind === "parallel" ? sideBySide(parts) : inAColumn(parts);
+  const whole = { parallel: sideBySide, series: inAColumn, bridge: inABridge }[tree.kind](parts);
   const box = { path, left: -whole.left, right: whole.right, top: 0, bottom: whole.height };
   return { ...whole, boxes: [box, ...whole.boxes] };
 }
@@ -45,20 +46,54 @@ function sideBySide(parts) {
   const middle = (xs[Math.floor((n - 1) / 2)] + xs[Math.floor(n / 2)]) / 2;
   const at = xs.map((x) => x - middle);
   const inside = Math.max(...parts.map((part) => part.height));
-  const [top, bottom] = [STUB, STUB + inside];
-  /** @type {Point[][]} */
-  const lines = [
-    [[0, 0], [0, top]],
-    [[0, bottom], [0, bottom + STUB]],
-    ...[top, bottom].map((y) => /** @type {Point[]} */ ([[at[0] - OVERHANG, y], [at[n - 1] + OVERHANG, y]])),
-  ];
-  const places = parts.map((part, i) => {
-    const lead = (inside - part.height) / 2;
-    if (lead > 0) lines.push([[at[i], top], [at[i], top + lead]], [[at[i], bottom - lead], [at[i], bottom]]);
-    return /** @type {Point} */ ([at[i], top + lead]);
-  });
+  const lines = bars(at, inside);
+  const places = parts.map((part, i) => between(part, at[i], 0, inside, lines));
   const size = { left: parts[0].left - at[0], right: parts[n - 1].right + at[n - 1], height: inside + 2 * STUB };
   return together(parts, places, size, lines);
+}
+
+/** Arms a above b, e, and c above d; e runs down from the left to the right node.
+ * @param {Drawing[]} arms @returns {Drawing} */
+function inABridge(arms) {
+  const [a, b, c, d, e] = arms;
+  const [before, after] = [inAColumn([a, b]), inAColumn([c, d])];
+  const at = [-(before.right + BETWEEN + e.left), 0, e.right + BETWEEN + after.left];
+  const left = Math.max(a.height, c.height - e.height); // depths of the nodes below the upper bar
+  const right = Math.max(left + e.height, c.height);
+  const inside = Math.max(left + b.height, right + d.height);
+  const lines = bars(at, inside);
+  lines.push([[at[0], STUB + left], [0, STUB + left]], [[0, STUB + right], [at[2], STUB + right]]);
+  const places = [
+    between(a, at[0], 0, left, lines),
+    between(b, at[0], left, inside, lines),
+    between(c, at[2], 0, right, lines),
+    between(d, at[2], right, inside, lines),
+    between(e, at[1], left, right, lines),
+  ];
+  const size = { left: before.left - at[0], right: after.right + at[2], height: inside + 2 * STUB };
+  return together(arms, places, size, lines);
+}
+
+/** Bars over and under columns, with the leads to the ends of the whole. @param {number[]} at @param {number} inside
+ * @returns {Point[][]} */
+function bars(at, inside) {
+  const [top, bottom] = [STUB, STUB + inside];
+  const [first, last] = [at[0] - OVERHANG, at[at.length - 1] + OVERHANG];
+  return [
+    [[0, 0], [0, top]],
+    [[0, bottom], [0, bottom + STUB]],
+    ...[top, bottom].map((y) => /** @type {Point[]} */ ([[first, y], [last, y]])),
+  ];
+}
+
+/** Upper end of a part in the middle between two depths below the upper bar, with its leads added to `lines`.
+ * @param {Drawing} part @param {number} x @param {number} upper @param {number} lower @param {Point[][]} lines
+ * @returns {Point} */
+function between(part, x, upper, lower, lines) {
+  const lead = (lower - upper - part.height) / 2;
+  const [top, bottom] = [STUB + upper, STUB + lower];
+  if (lead > 0) lines.push([[x, top], [x, top + lead]], [[x, bottom - lead], [x, bottom]]);
+  return [x, top + lead];
 }
 
 /** @param {Drawing[]} parts @returns {Drawing} */

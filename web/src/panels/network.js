@@ -126,7 +126,8 @@ function Trail({ store, tree, path }) {
 
 /** @param {Tree} part */
 const described = (part) => (part.kind === "element" ? `${part.name} is selected`
-  : `${part.parts.length} parts in ${part.kind} are selected: ${written(part)}`);
+  : `${part.kind === "bridge" ? "A bridge is" : `${part.parts.length} parts in ${part.kind} are`} selected: `
+    + written(part));
 
 /** @typedef {{store: Store, api: Api, how: Joint}} Editing */
 /** @typedef {{key: string, symbol: string, example: string, quantity: string, drawing: any[]}} ElementKind */
@@ -467,7 +468,8 @@ function Text({ store, text }) {
   const missing = tree === null ? [] : names(tree).filter((name) => !(name in elements));
   const kinds = kindsOf(state);
   return html`<div class="text">
-    <label for="network-text">As text <span class="quiet">| parallel, - series, brackets group</span></label>
+    <label for="network-text">As text
+      <span class="quiet">| parallel, - series, brackets group, bridge(a, b, c, d, e)</span></label>
     <div class="underlined">
       <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off"
         aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}

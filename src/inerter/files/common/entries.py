@@ -30,7 +30,7 @@ EXPRESSION_SCHEMA: dict[str, Any] = {
     "type": "string",
     "minLength": 1,
     "maxLength": _LONGEST_EXPRESSION,
-    "description": "Network: | means in parallel; - means in series and binds tighter.",
+    "description": "Network: | in parallel; - in series, binds tighter; bridge(a, b, c, d, e) with networks as arms.",
     "examples": ["k | c - b"],
 }
 _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")

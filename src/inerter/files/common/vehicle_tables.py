@@ -62,8 +62,8 @@ def inertia(entry: Any) -> float:
     except UnitError:
         wanted = 'a mass such as "250 kg", or of an angle a moment of inertia such as "200 kg m^2"'
         raise EntryError(got=quote_value(entry), expected=wanted) from None
-    if value <= 0.0:
-        raise EntryError(got=quote_value(entry), fault="not positive", expected=f"more than 0 {unit}")
+    if value < 0.0:
+        raise EntryError(got=quote_value(entry), fault="negative", expected=f"more than 0 {unit}, or 0 for a node")
     return value if unit == "kg" else Inertia(value)
 
 
@@ -95,11 +95,12 @@ class InertiaCodec(Codec):
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the text."""
-        return quantity_schema("kg", "kg m^2", least="positive")
+        return quantity_schema("kg", "kg m^2", least="not negative")
 
     def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """The mass or the moment of inertia."""
-        yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
+        """The mass or the moment of inertia; none of a node without mass."""
+        if value:
+            yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
 
     def put(self, value: float, keys: Sequence[str], number: float) -> float:
         """Mass or moment of inertia with another number, of the same type as `value`."""
@@ -240,7 +241,7 @@ class MechanismTable:
 
     coordinates: Mapping[str, float] = key(
         NamesCodec(InertiaCodec(), part_name, least=1),
-        "Degrees of freedom: the mass or moment of inertia of each.",
+        "Degrees of freedom: the mass or moment of inertia of each; 0 for a node at which networks meet.",
         'a section [vehicle.coordinates] with lines such as body = "250 kg"',
     )
     struts: Mapping[str, Any] = key(

@@ -6,10 +6,9 @@ digits leave room for all cancellation; a difference smaller than `tiny` times i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from fractions import Fraction
 from itertools import zip_longest
 
 from inerter.systems.polynomials import Polynomial, positive_roots, trim
@@ -39,20 +38,20 @@ class Immittance:
         return Immittance(top, bottom, self.is_impedance, self.tiny)
 
     def without_pole_at_infinity(self) -> tuple[Decimal, Immittance]:
-        """a and the rest of a s + rest."""
+        """Factor a and the rest of a s + rest."""
         a = self.top[-1] / self.bottom[-1]
         rest = self._difference(self.top, [ZERO, *(a * c for c in self.bottom)])
         return a, self.over(_trim(rest[:-1]), self.bottom)
 
     def without_pole_at_zero(self) -> tuple[Decimal, Immittance]:
-        """a and the rest of a / s + rest."""
+        """Factor a and the rest of a / s + rest."""
         bottom = self.bottom[1:]
         a = self.top[0] / bottom[0]
         rest = self._difference(self.top, [a * c for c in bottom])
         return a, self.over(_trim(rest[1:]), bottom)
 
     def without_pole_at(self, x: Decimal) -> tuple[Decimal, Immittance]:
-        """a and the rest of a s / (s^2 + x) + rest."""
+        """Factor a and the rest of a s / (s^2 + x) + rest."""
         bottom = _divide_by_quadratic(self.bottom, x)
         (n_even, n_odd), (d_even, d_odd) = _parts(self.top, x), _parts(bottom, x)
         a = (n_odd * d_even - n_even * d_odd) / (d_even**2 + x * d_odd**2)
@@ -112,20 +111,19 @@ class Immittance:
         return [_sum((a, -b), self.tiny) for a, b in zip_longest(p, q, fillvalue=ZERO)]
 
     def richards(self, slope: Decimal) -> tuple[Decimal, Immittance]:
-        """k and Richards' function R(s) = (k F(s) - s F(k)) / (k F(k) - s F(s)), where F(k) = `slope` k.
+        """Point k and Richards' function R(s) = (k F(s) - s F(k)) / (k F(k) - s F(s)), where F(k) = `slope` k.
 
         R is positive real and its degree is at most that of F (Richards 1947).
         """
         n, d = self.top, self.bottom
-        lengthened = zip_longest(n, [ZERO, *(slope * c for c in d)], fillvalue=ZERO)
-        k = _largest_positive_root([a - b for a, b in lengthened])
+        k = _only_positive_root([a - slope * b for a, b in zip_longest(n, [ZERO, *d], fillvalue=ZERO)])
         value = slope * k
         top = [k * a - value * b for a, b in zip_longest(n, [ZERO, *d], fillvalue=ZERO)]
         bottom = [k * value * a - b for a, b in zip_longest(d, [ZERO, *n], fillvalue=ZERO)]
-        divisor = k
+        top, bottom = _divide_by_root(top, k), _divide_by_root(bottom, k)
         if _is_tiny(top, -k, _FINE) and _is_tiny(bottom, -k, _FINE):
             top, bottom = _divide_by_root(top, -k), _divide_by_root(bottom, -k)
-        return k, self.over(_divide_by_root(top, divisor), _divide_by_root(bottom, divisor))
+        return k, self.over(top, bottom)
 
 
 def evaluate(p: Sequence[Decimal], x: Decimal) -> Decimal:
@@ -141,8 +139,10 @@ def roots(p: Numbers) -> list[Decimal]:
     if len(p) < 2:
         return []
     integers = _to_integers(p)
-    return [_refine(p, Decimal(low.numerator) / low.denominator, Decimal(high.numerator) / high.denominator)
-            for low, high in positive_roots(integers)]
+    return [
+        _refine(p, Decimal(low.numerator) / low.denominator, Decimal(high.numerator) / high.denominator)
+        for low, high in positive_roots(integers)
+    ]
 
 
 def _refine(p: Numbers, low: Decimal, high: Decimal) -> Decimal:
@@ -168,15 +168,16 @@ def _refine(p: Numbers, low: Decimal, high: Decimal) -> Decimal:
     return x
 
 
-def _largest_positive_root(p: Numbers) -> Decimal:
+def _only_positive_root(p: Numbers) -> Decimal:
+    """The positive root of n(s) - slope s d(s): n(s) / (s d(s)) falls where n/d is positive real."""
     found = roots(_trim(p))
-    if not found:
-        raise ArithmeticError("no positive root")
-    return found[-1]
+    if len(found) != 1:
+        raise ArithmeticError(f"{len(found)} positive roots instead of one")
+    return found[0]
 
 
 def _to_integers(p: Numbers) -> Polynomial:
-    """p times a power of ten, with integer coefficients."""
+    """Polynomial p times a power of ten, with integer coefficients."""
     shift = min(int(c.as_tuple().exponent) for c in p if c)
     return trim([int(c.scaleb(-shift)) if c else 0 for c in p])
 

@@ -84,29 +84,31 @@ class Ratio:
 
 @dataclass(frozen=True)
 class Violation:
-    """A point s [rad/s], on or right of the imaginary axis, with the value there, whose real part is negative."""
+    """A point s [rad/s], on or right of the imaginary axis, with the value there, whose real part is negative.
+
+    `needs_damping` if a damper in parallel makes the admittance positive real.
+    """
 
     s: complex
     admittance: complex
+    needs_damping: bool = False
 
     def to_error(self) -> NotPositiveRealError:
         """The error that refuses such an admittance."""
-        omega, real = abs(self.s.imag), self.admittance.real
-        hertz = format_quantity(omega / math.tau, "Hz")
+        omega = abs(self.s.imag)
+        frequency = f"{format_number(omega, 4)} rad/s ({format_number(omega / math.tau, 4)} Hz)"
+        damping = format_quantity(-self.admittance.real, "N s/m")
         if self.s.real == 0.0:
-            text = (
-                f"The admittance is not positive real: Re Y = {format_quantity(real, 'N s/m')} at "
-                f"{format_number(omega, 4)} rad/s ({hertz}), so a network with it would supply energy there. "
-                f"Add a damper of a little more than {format_quantity(-real, 'N s/m')} in parallel, or correct the "
-                f"coefficients."
-            )
+            problem = f"Re Y = -{damping} at {frequency}, so such a network would supply energy."
         else:
-            text = (
-                f"The admittance is not positive real: Y = {format_complex(self.admittance)} N s/m at "
-                f"s = {format_complex(self.s)} rad/s ({hertz}), right of the imaginary axis. "
-                f"A passive network has no pole or zero there, and only simple poles on the axis; correct the "
-                f"coefficients."
+            problem = (
+                f"Re Y = -{damping} at s = {format_complex(self.s)} rad/s, right of the imaginary axis at "
+                f"{frequency}. Poles and zeros must lie left of the axis, or be simple ones on it."
             )
+        remedy = (
+            f"Add a damper of slightly more than {damping} in parallel, or correct" if self.needs_damping else "Correct"
+        )
+        text = f"The admittance is not positive real: {problem} {remedy} the coefficients."
         return NotPositiveRealError(text, self.s, self.admittance)
 
 
@@ -119,10 +121,10 @@ def find_violation(ratio: Ratio) -> Violation | None:
     points = _points_of_negative_sign(real)
     if points:
         lowest, x = min((_real_admittance(real, square, x), x) for x in points)
-        return Violation(complex(0.0, math.sqrt(x)), complex(float(lowest)))
+        return Violation(1j * math.sqrt(x), complex(_to_float(lowest)), len(n) <= len(d) and _is_hurwitz(d))
     weight = _typical_size(n, d)
     total = add(scale_by(n, weight.denominator), scale_by(d, weight.numerator))
-    return None if _is_hurwitz(total) else Violation(_rightmost_root(total), complex(-float(weight)))
+    return None if _is_hurwitz(total) else Violation(_rightmost_root(total), complex(_to_float(-weight)))
 
 
 def real_part(n: Polynomial, d: Polynomial) -> Polynomial:
@@ -142,7 +144,10 @@ def _coefficients(given: Iterable[float], what: str) -> list[Fraction]:
         exact = isinstance(number, Rational) and not isinstance(number, bool)
         if not exact and not is_number(number):
             raise SynthesisError(f"{expected}, got the coefficient {number!r}. Give finite real numbers.")
-    return [Fraction(c) if isinstance(c, Rational) else Fraction(float(c)) for c in numbers[::-1]]
+    return [
+        Fraction(int(c.numerator), int(c.denominator)) if isinstance(c, Rational) else Fraction(float(c))
+        for c in numbers[::-1]
+    ]
 
 
 def _to_integers(p: list[Fraction]) -> tuple[Polynomial, Fraction]:
@@ -183,6 +188,13 @@ def _is_hurwitz(p: Polynomial) -> bool:
         row = [lower[0] * upper[i + 1] - upper[0] * padded[i] for i in range(len(upper) - 1)]
         upper, lower = lower, primitive(row)
     return True
+
+
+def _to_float(number: Fraction) -> float:
+    try:
+        return float(number)
+    except OverflowError:
+        return math.copysign(math.inf, number)
 
 
 def _typical_size(n: Polynomial, d: Polynomial) -> Fraction:

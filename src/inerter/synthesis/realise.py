@@ -100,7 +100,7 @@ def _range(*polynomials: Polynomial) -> tuple[float, float]:
 
 
 def _at(p: Polynomial, logarithms: Floats, angle: float) -> tuple[NDArray[np.complex128], Floats, Floats]:
-    """p at s = 2^l exp(j angle) and the sum of the sizes of its terms, both over 2^scale, and the scale."""
+    """Values of p at s = 2^l exp(j angle) and the sum of the sizes of its terms, both over 2^scale, and the scale."""
     powers = [i for i, c in enumerate(p) if c]
     sizes = np.array([math.log2(abs(p[i])) + i * logarithms for i in powers])
     scale = sizes.max(axis=0)

@@ -157,8 +157,9 @@ def test_units_do_not_matter(factor, speed):
 
 def ends_are_lowest(real: np.ndarray) -> bool | None:
     """Whether the smallest value stands at one of both ends; None if that is too close to say."""
-    ends, inside = min(real[0], real[-1]), min(real[20:-20])
-    return None if abs(ends - inside) < 1e-3 * ends else bool(ends < inside)
+    ends, middle = min(real[0], real[-1]), real[1:-1]
+    least = min(middle[(middle < real[:-2]) & (middle < real[2:])], default=np.inf) / ends
+    return None if abs(least - 1.0) < 1e-3 else bool(least > 1.0)
 
 
 def test_regular_biquadratics_need_two_reactive_elements():

@@ -11,10 +11,13 @@ from dataclasses import dataclass
 from decimal import Decimal
 from itertools import zip_longest
 
+import numpy as np
+
 from inerter.systems.polynomials import Polynomial, positive_roots, trim
 
 DIGITS = 100
 _FINE = Decimal("1e-70")  # relative size below which a difference is rounding
+_NEWTON_STEPS = 40
 _STEPS = 400  # of bisection at most; Newton's method needs far fewer
 Numbers = list[Decimal]  # coefficients, lowest power first, the last one not zero
 ZERO, ONE = Decimal(0), Decimal(1)
@@ -125,6 +128,17 @@ class Immittance:
             top, bottom = _divide_by_root(top, -k), _divide_by_root(bottom, -k)
         return k, self.over(top, bottom)
 
+    def partial_fractions(self) -> list[Immittance]:
+        """Strictly proper parts, one for each real pole and each pair of complex ones; empty if poles coincide."""
+        factors = _real_factors(self.bottom)
+        parts = []
+        for i, factor in enumerate(factors):
+            others = [self.bottom[-1]]
+            for other in factors[:i] + factors[i + 1 :]:
+                others = _multiply(others, other)
+            parts.append(self.over(_trim(_quotient_modulo(self.top, others, factor)), factor))
+        return parts
+
 
 def evaluate(p: Sequence[Decimal], x: Decimal) -> Decimal:
     """p(x) by Horner's scheme."""
@@ -166,6 +180,55 @@ def _refine(p: Numbers, low: Decimal, high: Decimal) -> Decimal:
             return following
         x = following
     return x
+
+
+def _real_factors(p: Numbers) -> list[Numbers]:
+    """Factors s + a and s^2 + b s + c of p, to nearly all digits; empty where roots are too close to find them."""
+    size = (abs(p[0] / p[-1])).ln() / (len(p) - 1)
+    terms = [c * (i * size).exp() for i, c in enumerate(p)]
+    largest = max(map(abs, terms))
+    factors = []
+    for root in np.roots([float(c / largest) for c in reversed(terms)]):
+        if root.imag >= 0.0:
+            guess = [-root.real] if root.imag == 0.0 else [abs(root) ** 2, -2.0 * root.real]
+            stretched = [Decimal(c) * ((len(guess) - i) * size).exp() for i, c in enumerate(guess)]
+            factor = _refine_factor(p, [*stretched, ONE])
+            if factor is None:
+                return []
+            factors.append(factor)
+    return factors
+
+
+def _refine_factor(p: Numbers, factor: Numbers) -> Numbers | None:
+    """A factor of p from a close one, by Newton's method in its coefficients (Bairstow 1920); None if that fails."""
+    for _ in range(_NEWTON_STEPS):
+        quotient, rest = _divide(p, factor)
+        change = _quotient_modulo(rest, _divide(quotient, factor)[1], factor)
+        factor = [*(a + b for a, b in zip_longest(factor[:-1], change, fillvalue=ZERO)), ONE]
+        if all(abs(b) <= _FINE * abs(a) for a, b in zip(factor, change, strict=False)):
+            return factor
+    return None
+
+
+def _divide(p: Numbers, q: Numbers) -> tuple[Numbers, Numbers]:
+    """Quotient and remainder of p over q, whose leading coefficient is one."""
+    rest, quotient = list(p), [ZERO] * max(len(p) - len(q) + 1, 0)
+    for i in range(len(quotient) - 1, -1, -1):
+        quotient[i] = rest[i + len(q) - 1]
+        for j, c in enumerate(q):
+            rest[i + j] -= quotient[i] * c
+    return quotient, rest[: len(q) - 1]
+
+
+def _quotient_modulo(p: Numbers, q: Numbers, factor: Numbers) -> Numbers:
+    """The polynomial x with x q = p modulo s + a or s^2 + b s + c."""
+    p, q = _divide(p, factor)[1], _divide(q, factor)[1]
+    if len(factor) == 2:
+        return [p[0] / q[0]]
+    (a, b), (e, f) = ((*each, ZERO, ZERO)[:2] for each in (p, q))
+    mean, size = factor[1], factor[0]
+    norm = e * e - mean * e * f + size * f * f  # q times its conjugate e - b f - f s
+    return [(a * (e - mean * f) + size * b * f) / norm, (b * e - a * f) / norm]
 
 
 def _only_positive_root(p: Numbers) -> Decimal:

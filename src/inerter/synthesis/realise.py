@@ -11,9 +11,10 @@ lower the degree by two, with six reactive elements and two functions that remai
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, DecimalException, localcontext
-from functools import reduce
+from functools import partial, reduce
 from itertools import pairwise
 from operator import or_, sub
 
@@ -136,24 +137,56 @@ def expand(f: Immittance) -> Network | None:
     touching = f.touching()
     if touching:
         return _expand_at(f, touching[0])
-    return min(_remove_constants(f), key=lambda network: len(list(network.elements())))
+    return _expand_smallest(f)
 
 
-def _remove_constants(f: Immittance) -> list[Network]:
-    """Expansions of f after the smallest real part of it, or of its inverse, is removed; regular ones if there are."""
-    regular, other = [], []
+def _expand_smallest(f: Immittance) -> Network:
+    """The smallest expansion of f, which has neither pole nor zero on the imaginary axis: a regular one if there is."""
+    regular: list[Callable[[], Network | None]] = []
+    other: list[Callable[[], Network | None]] = []
     for g in (f, f.inverse()):
         least, x = g.smallest_real_part()
         if least <= 0:
             raise ArithmeticError("not positive real")
         if x is None or not x:
-            regular.append((g, least, g.without_constant(least, at_zero=x is not None, at_infinity=x is None)))
+            regular.append(partial(_remove_at_end, g, least, x))
         else:
-            other.append((g, least, x, g.without_constant(least)))
-    found = [_join(g, _constant(g, least), expand(rest)) for g, least, rest in regular]
-    if not found:
-        found = [_join(g, _constant(g, least), _expand_at(rest, x)) for g, least, x, rest in other]
-    return [network for network in found if network is not None]
+            other += [partial(_remove_inside, g, least, x), partial(_split, g)]
+    found = []
+    for attempt in regular or other:
+        with suppress(ArithmeticError):
+            found.append(attempt())
+    networks = [network for network in found if network is not None]
+    if not networks:
+        raise ArithmeticError("no expansion succeeded")
+    return min(networks, key=lambda network: len(list(network.elements())))
+
+
+def _remove_at_end(f: Immittance, least: Decimal, x: Decimal | None) -> Network | None:
+    """The expansion of f after its real part at zero or, where x is None, infinity is removed."""
+    rest = f.without_constant(least, at_zero=x is not None, at_infinity=x is None)
+    return _join(f, _constant(f, least), expand(rest))
+
+
+def _remove_inside(f: Immittance, least: Decimal, x: Decimal) -> Network | None:
+    """The expansion of f after its smallest real part, at w^2 = x, is removed."""
+    return _join(f, _constant(f, least), _expand_at(f.without_constant(least), x))
+
+
+def _split(f: Immittance) -> Network | None:
+    """The expansion of f by its partial fractions, each with the constant it needs; None if f has not as much."""
+    parts = f.partial_fractions()
+    if len(parts) < 2:
+        return None
+    rest, raised = f.top[-1] / f.bottom[-1], []
+    for part in parts:
+        least, x = part.smallest_real_part()
+        rest += least
+        raised.append(part.without_constant(least, at_zero=x is not None and not x))
+    limit = f.tiny * f.top[-1] / f.bottom[-1]
+    if rest < -limit:
+        return None
+    return _join(f, _constant(f, rest) if rest > limit else None, *map(expand, raised))
 
 
 def _expand_at(f: Immittance, x: Decimal) -> Network | None:

@@ -56,30 +56,23 @@ def is_positive_real(numerator: Iterable[float], denominator: Iterable[float]) -
 
 @dataclass(frozen=True)
 class Ratio:
-    """top(s) / bottom(s) times `factor`, integer coefficients without common roots, lowest power first."""
+    """top(s) / bottom(s), integer coefficients, lowest power first, without common roots."""
 
     top: Polynomial
     bottom: Polynomial
-    factor: Fraction
 
     @staticmethod
     def of(numerator: Iterable[float], denominator: Iterable[float]) -> Ratio:
         """The ratio from coefficients with the highest power first; raises `SynthesisError` if they are invalid."""
-        top, bottom = _coefficients(numerator, "numerator"), _coefficients(denominator, "denominator")
-        if not any(bottom):
-            raise SynthesisError("The denominator of the admittance is zero. Give it at least one other coefficient.")
-        n, top_scale = _to_integers(top)
-        d, bottom_scale = _to_integers(bottom)
-        common = greatest_common_divisor(n, d) if n else d
-        return Ratio(quotient(n, common) if n else [], quotient(d, common), top_scale / bottom_scale)
-
-    def terms(self) -> tuple[list[Fraction], list[Fraction]]:
-        """Coefficients of numerator and denominator in fractions, lowest power first."""
-        return [self.factor * c for c in self.top], [Fraction(c) for c in self.bottom]
-
-    def integers(self) -> tuple[Polynomial, Polynomial]:
-        """Numerator and denominator with integer coefficients, `factor` included."""
-        return scale_by(self.top, self.factor.numerator), scale_by(self.bottom, self.factor.denominator)
+        n, n_factor = _to_integers(_coefficients(numerator, "numerator"))
+        d, d_factor = _to_integers(_coefficients(denominator, "denominator"))
+        if not d:
+            raise SynthesisError(
+                "The denominator of the admittance is zero. Give at least one coefficient that is not."
+            )
+        common, factor = greatest_common_divisor(d, n), n_factor / d_factor
+        top = scale_by(quotient(n, common), factor.numerator) if n else []
+        return Ratio(top, scale_by(quotient(d, common), factor.denominator))
 
 
 @dataclass(frozen=True)
@@ -114,7 +107,7 @@ class Violation:
 
 def find_violation(ratio: Ratio) -> Violation | None:
     """A point that shows that the admittance is not positive real; None if it is."""
-    n, d = ratio.integers()
+    n, d = ratio.top, ratio.bottom
     if not n:
         return None
     real, square = real_part(n, d), real_part(d, d)

@@ -5,7 +5,8 @@ real part is, from that of the two where it lies at zero or infinite frequency, 
 regular biquadratic needs two reactive elements and three dampers (Jiang and Smith 2011, "Regular positive-real
 functions and five-element network synthesis for electrical and mechanical networks", IEEE Trans. Autom. Control 56(6)).
 Where it lies between, Bott and Duffin (1949), "Impedance synthesis without use of transformers", J. Appl. Phys. 20(8),
-lower the degree by two, with six reactive elements and two functions that remain.
+lower the degree by two, with six reactive elements and two functions that remain. Partial fractions, each with the
+constant that makes it positive real, often need fewer where their sum allows them.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from contextlib import suppress
-from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, DecimalException, localcontext
+from decimal import MAX_EMAX, MIN_EMIN, Context, Decimal, localcontext
 from functools import partial, reduce
 from itertools import pairwise
 from operator import or_, sub
@@ -77,15 +78,14 @@ def relative_deviation(network: Network, ratio: Ratio) -> float:
 
     On the imaginary axis, where the admittance may vanish, it is relative to the sum of the terms of the polynomials.
     """
-    top, bottom = ratio.integers()
-    logarithms = np.linspace(*_range(top, bottom), _POINTS)
+    logarithms = np.linspace(*_range(ratio.top, ratio.bottom), _POINTS)
     worst = 0.0
     for angle in _ANGLES:
-        n, n_terms, n_scale = _at(top, logarithms, angle)
-        d, d_terms, d_scale = _at(bottom, logarithms, angle)
-        found = network.admittance(np.exp2(logarithms) * np.exp(1j * angle)) * np.exp2(d_scale - n_scale)
-        size = n_terms + abs(found) * d_terms if angle == _ANGLES[-1] else abs(n)
-        with np.errstate(invalid="ignore"):  # inf - inf is nan, and no agreement
+        n, n_terms, n_scale = _at(ratio.top, logarithms, angle)
+        d, d_terms, d_scale = _at(ratio.bottom, logarithms, angle)
+        with np.errstate(all="ignore"):  # what is beyond the range of numbers gives nan, and does not agree
+            found = network.admittance(np.exp2(logarithms) * np.exp(1j * angle)) * np.exp2(d_scale - n_scale)
+            size = n_terms + abs(found) * d_terms if angle == _ANGLES[-1] else abs(n)
             worst = max(worst, *np.nan_to_num(abs(found * d - n) / size, nan=np.inf))
     return worst
 
@@ -112,11 +112,10 @@ def _at(p: Polynomial, logarithms: Floats, angle: float) -> tuple[NDArray[np.com
 
 def _try_expansion(ratio: Ratio, tiny: Decimal) -> Network | None:
     """The expansion of an admittance; None where an expansion at this tolerance fails."""
-    top, bottom = ratio.integers()
     with localcontext(Context(prec=DIGITS, Emax=MAX_EMAX, Emin=MIN_EMIN)):
         try:
-            return expand(Immittance([Decimal(c) for c in top], [Decimal(c) for c in bottom], False, tiny))
-        except (ArithmeticError, DecimalException, NetworkError, RecursionError):
+            return expand(Immittance([Decimal(c) for c in ratio.top], [Decimal(c) for c in ratio.bottom], False, tiny))
+        except (ArithmeticError, NetworkError):
             return None
 
 
@@ -151,10 +150,10 @@ def _expand_smallest(f: Immittance) -> Network:
         if x is None or not x:
             regular.append(partial(_remove_at_end, g, least, x))
         else:
-            other += [partial(_remove_inside, g, least, x), partial(_split, g)]
+            other.append(partial(_remove_inside, g, least, x))
     found = []
-    for attempt in regular or other:
-        with suppress(ArithmeticError):
+    for attempt in [*(regular or other), partial(_split, f), partial(_split, f.inverse())]:
+        with suppress(ArithmeticError, NetworkError):
             found.append(attempt())
     networks = [network for network in found if network is not None]
     if not networks:
@@ -199,6 +198,7 @@ def _expand_at(f: Immittance, x: Decimal) -> Network | None:
 
 
 def _remove_pole(f: Immittance, x: Decimal) -> Network | None:
+    """The expansion of f after its poles at s^2 = -x, those of a spring and an inerter, are removed."""
     a, rest = f.without_pole_at(x)
     inverse = f.inverse()
     return _join(f, _join(inverse, _proportional(inverse, 1 / a), _integral(inverse, x / a)), expand(rest))

@@ -34,6 +34,7 @@ _TOLERANCES = (Decimal("1e-13"), Decimal("1e-50"))  # of coefficients rounded to
 _POINTS = 60  # frequencies at which a network is compared with the request
 _ANGLES = (0.0, 0.25 * np.pi, 0.45 * np.pi, 0.5 * np.pi)  # of s; the last one is the imaginary axis
 Floats = NDArray[np.float64]
+Attempt = Callable[[], Network | None]
 
 
 def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network:
@@ -141,8 +142,8 @@ def expand(f: Immittance) -> Network | None:
 
 def _expand_smallest(f: Immittance) -> Network:
     """The smallest expansion of f, which has neither pole nor zero on the imaginary axis: a regular one if there is."""
-    regular: list[Callable[[], Network | None]] = []
-    other: list[Callable[[], Network | None]] = []
+    regular: list[Attempt] = []
+    other: list[Attempt] = []
     for g in (f, f.inverse()):
         least, x = g.smallest_real_part()
         if least <= 0:
@@ -152,7 +153,8 @@ def _expand_smallest(f: Immittance) -> Network:
         else:
             other.append(partial(_remove_inside, g, least, x))
     found = []
-    for attempt in [*(regular or other), partial(_split, f), partial(_split, f.inverse())]:
+    attempts: list[Attempt] = [*(regular or other), partial(_split, f), partial(_split, f.inverse())]
+    for attempt in attempts:
         with suppress(ArithmeticError, NetworkError):
             found.append(attempt())
     networks = [network for network in found if network is not None]

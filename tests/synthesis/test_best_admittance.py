@@ -10,7 +10,7 @@ from strategies import random_network
 
 from inerter import Damper, Inerter, Norm, QuarterCar, RideComfort, Road, Spring, evaluate, is_positive_real, realise
 from inerter.errors import SynthesisError
-from inerter.synthesis.best_admittance import _Family, best_admittance
+from inerter.synthesis.best_admittance import _families, best_admittance
 
 S = 1j * np.geomspace(0.5, 200.0, 60)
 ROAD = RideComfort(Road(roughness=5e-7, speed=25.0))
@@ -28,12 +28,10 @@ def distance_to(network):
     return index
 
 
-@pytest.mark.parametrize("poles", [(False, False), (True, False), (False, True), (True, True)])
-@pytest.mark.parametrize("degree", range(5))
-def test_every_point_of_the_search_is_positive_real(degree, poles):
-    rng = np.random.default_rng(degree)
-    family = _Family(degree, *poles)
-    for _ in range(10):
+@pytest.mark.parametrize("family", [family for degree in range(6) for family in _families(degree)], ids=repr)
+def test_every_point_of_the_search_is_positive_real(family):
+    rng = np.random.default_rng(family.size)
+    for _ in range(5):
         n, d = family.polynomials(2.0 * rng.standard_normal(family.size), 1e3, 10.0, exact=True)
         network = realise(n, d)
         np.testing.assert_allclose(
@@ -55,7 +53,7 @@ def test_every_point_of_the_search_is_positive_real(degree, poles):
     ],
 )
 def test_an_admittance_of_the_degree_is_found(network, degree):
-    found = best_admittance(distance_to(network), degree, damping=1e3, omega=10.0, starts=12)
+    found = best_admittance(distance_to(network), degree, damping=1e3, omega=10.0, starts=14)
     assert found.value < 1e-7
     np.testing.assert_allclose(found.realise().admittance(S), network.admittance(S), rtol=3e-3)
 
@@ -97,7 +95,7 @@ def test_the_best_admittance_of_degree_one_is_that_of_the_literature():
             return np.nan
         return evaluate(QuarterCar(181.75, 25.0, 120e3, Spring(120e3) | network), ROAD, Norm()).value
 
-    found = best_admittance(ride_comfort, 1, damping=3e3, omega=20.0, starts=4, seed=1)
+    found = best_admittance(ride_comfort, 1, damping=3e3, omega=20.0, starts=5)
     assert found.value == pytest.approx(2.4281, abs=5e-5)
     values = {type(element): element.value for element in found.realise().elements()}
     assert values[Damper] == pytest.approx(7544.2, rel=1e-3)
@@ -108,8 +106,8 @@ def test_the_same_seed_gives_the_same_admittance():
     index = distance_to(Spring(5e3) - (Damper(800.0) | Inerter(30.0)))
     one, other = (best_admittance(index, 2, damping=1e3, omega=10.0, starts=4, seed=3) for _ in range(2))
     assert one == other
-    assert one.n_starts == 4
-    assert 1 <= one.n_converged <= 4
+    assert one.n_starts == 7  # one of each family at least
+    assert 1 <= one.n_converged <= 7
     assert is_positive_real(one.numerator, one.denominator)
 
 

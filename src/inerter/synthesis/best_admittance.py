@@ -8,7 +8,7 @@ of degree n has the form
 where J is skew. An orthogonal change of states makes J tridiagonal and B a multiple of the first unit vector, which
 leaves 2 n + 1 numbers (Anderson and Vongpanitlerd 1973, "Network Analysis and Synthesis"). All of them are free, so the
 search has no constraint, and functions with Re Y = 0 at some frequency lie inside its region. Poles at zero and at
-infinity, k / s and b s, are limits of such functions and are searched on their own.
+infinity, k / s and b s, are limits of such functions and are searched on their own; so are those of the impedance.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -36,6 +35,7 @@ _SAMPLES = 30  # random admittances for each start, the best of which it is
 _SPREAD = 2.0  # standard deviation of the search variables; the numbers of the formula are their hyperbolic sines
 _LARGEST = 30.0  # search variable
 _IDLE = 1e-11  # relative change of the index by a variable that is set to zero
+_EQUAL = 1e-10  # relative difference of values between which the simpler admittance is taken
 _AGREEMENT = 1e-6  # relative difference of values of converged starts
 
 
@@ -55,7 +55,7 @@ class BestAdmittance:
 
 
 def best_admittance(
-    index: Index, degree: int, *, damping: float, omega: float, seed: int = 0, starts: int = 24
+    index: Index, degree: int, *, damping: float, omega: float, seed: int = 0, starts: int = 42
 ) -> BestAdmittance:
     """Minimise an index over all positive-real admittances of at most a degree, from many random starts.
 
@@ -71,8 +71,7 @@ def best_admittance(
     check_positive(SynthesisError, "The typical damping", damping, "N s/m")
     check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
     rng = np.random.default_rng(seed)
-    families = [_Family(degree - sum(poles), *poles) for poles in product((False, True), repeat=2)]
-    families = [family for family in families if family.degree >= 0]
+    families = _families(degree)
     found: list[tuple[float, Floats, _Family]] = []
     for i in range(max(starts, len(families))):
         family = families[i % len(families)]
@@ -83,12 +82,14 @@ def best_admittance(
 
         with np.errstate(over="ignore", invalid="ignore"):
             found.append((*_minimise(objective, family.size, rng), family))
-    least, x, family = min(found, key=lambda each: each[0])
+    least = min(value for value, _, _ in found)
     if not np.isfinite(least):
         raise SynthesisError(
             f"The index exists for none of {len(found) * _SAMPLES} admittances of degree {degree} around {damping:g} "
             f"N s/m and {omega:g} rad/s. Give other typical values, or a higher degree."
         )
+    equal = [each for each in found if each[0] <= least + _EQUAL * abs(least)]
+    least, x, family = min(equal, key=lambda each: each[2].size)  # which saves elements
     numerator, denominator = family.polynomials(x, damping, omega, exact=True)
     converged = sum(value <= least + _AGREEMENT * abs(least) for value, _, _ in found)
     return BestAdmittance(least, tuple(numerator.tolist()), tuple(denominator.tolist()), len(found), converged)
@@ -96,11 +97,12 @@ def best_admittance(
 
 @dataclass(frozen=True)
 class _Family:
-    """Proper positive-real functions of a degree, plus a pole at zero and one at infinity, or neither."""
+    """Admittances, or impedances, that are proper and of a degree, plus a pole at zero, at infinity, both or none."""
 
     degree: int
-    at_zero: bool
-    at_infinity: bool
+    at_zero: bool = False
+    at_infinity: bool = False
+    is_impedance: bool = False
 
     @property
     def size(self) -> int:
@@ -121,7 +123,20 @@ class _Family:
             top = np.polyadd(top, np.polymul([more.pop(), 0.0], bottom))
         if self.at_zero:
             top, bottom = np.polyadd(np.polymul(top, [1.0, 0.0]), more.pop() * bottom), np.polymul(bottom, [1.0, 0.0])
+        if self.is_impedance:
+            top, bottom = bottom, top
         return damping * _stretch(top, omega), _stretch(bottom, omega)
+
+
+def _families(degree: int) -> list[_Family]:
+    """All families of a degree; without poles, the impedances are the inverses of the admittances."""
+    poles = [(at_zero, at_infinity) for at_zero in (False, True) for at_infinity in (False, True)]
+    return [
+        _Family(degree - sum(each), *each, is_impedance)
+        for each in poles
+        for is_impedance in ((False, True) if any(each) else (False,))
+        if sum(each) <= degree
+    ]
 
 
 def _to_polynomials(A: Floats, B: Floats, C: Floats, D: float) -> tuple[Floats, Floats]:

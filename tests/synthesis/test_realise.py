@@ -100,7 +100,7 @@ def of_joined_biquadratics(rng: np.random.Generator) -> tuple[Polynomial, Polyno
     return total
 
 
-FAMILIES = {of_a_network: 330, of_a_passive_state_space: 120, of_joined_biquadratics: 50}
+FAMILIES = {of_a_network: 380, of_a_passive_state_space: 80, of_joined_biquadratics: 40}
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -13,9 +13,10 @@ infinity, k / s and b s, are limits of such functions and are searched on their 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,10 +30,11 @@ from inerter.validation import check_positive, is_number
 
 Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
 Index = Callable[[Floats, Floats], float]  # of numerator and denominator, highest power of s first
-Objective = Callable[[Floats], float]
+Objective = Callable[["_Family", Floats], float]
 
 _SAMPLES = 30  # random admittances for each start, the best of which it is
 _SPREAD = 2.0  # standard deviation of the search variables; the numbers of the formula are their hyperbolic sines
+_WEAK = 0.5  # standard deviation of search variables that are added to a minimum
 _LARGEST = 30.0  # search variable
 _IDLE = 1e-11  # relative change of the index by a variable that is set to zero
 _EQUAL = 1e-10  # relative difference of values between which the simpler admittance is taken
@@ -46,8 +48,8 @@ class BestAdmittance:
     value: float
     numerator: tuple[float, ...]
     denominator: tuple[float, ...]
-    n_starts: int
-    n_converged: int  # starts that ended at this value
+    n_starts: int  # at the highest degree
+    n_converged: int  # of these, starts that ended at this value
 
     def realise(self) -> Network:
         """A network with this admittance; raises `SynthesisError` if none was found."""
@@ -57,10 +59,11 @@ class BestAdmittance:
 def best_admittance(
     index: Index, degree: int, *, damping: float, omega: float, seed: int = 0, starts: int = 42
 ) -> BestAdmittance:
-    """Minimise an index over all positive-real admittances of at most a degree, from many random starts.
+    """Minimise an index over all positive-real admittances of at most a degree, from many starts.
 
     `index(numerator, denominator)` is the index to minimise, nan or infinite where it does not exist. The starts have
-    sizes around `damping` [N s/m] and corner frequencies around `omega` [rad/s], over some two decades.
+    sizes around `damping` [N s/m] and corner frequencies around `omega` [rad/s], over some two decades; every other one
+    is a minimum of the degree below with a further state.
 
     Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
     """
@@ -70,29 +73,29 @@ def best_admittance(
         raise SynthesisError(f"The number of starts must be a positive integer, got {starts!r}.")
     check_positive(SynthesisError, "The typical damping", damping, "N s/m")
     check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
+
+    def value_of(family: _Family, x: Floats) -> float:
+        value = index(*family.polynomials(x, damping, omega))
+        return float(value) if is_number(value) else np.inf
+
     rng = np.random.default_rng(seed)
-    families = _families(degree)
-    found: list[tuple[float, Floats, _Family]] = []
-    for i in range(max(starts, len(families))):
-        family = families[i % len(families)]
-
-        def objective(x: Floats, family: _Family = family) -> float:
-            value = index(*family.polynomials(x, damping, omega))
-            return float(value) if is_number(value) else np.inf
-
-        with np.errstate(over="ignore", invalid="ignore"):
-            found.append((*_minimise(objective, family.size, rng), family))
-    least = min(value for value, _, _ in found)
+    found: list[_Minimum] = []
+    latest: list[_Minimum] = []
+    with np.errstate(over="ignore", invalid="ignore"):
+        for order in range(degree + 1):
+            latest = _search(value_of, order, starts, rng, latest)
+            found += latest
+    least = min(each.value for each in found)
     if not np.isfinite(least):
         raise SynthesisError(
-            f"The index exists for none of {len(found) * _SAMPLES} admittances of degree {degree} around {damping:g} "
-            f"N s/m and {omega:g} rad/s. Give other typical values, or a higher degree."
+            f"The index exists for none of {len(found) * _SAMPLES} admittances up to degree {degree} around "
+            f"{damping:g} N s/m and {omega:g} rad/s. Give other typical values, or a higher degree."
         )
-    equal = [each for each in found if each[0] <= least + _EQUAL * abs(least)]
-    least, x, family = min(equal, key=lambda each: each[2].size)  # which saves elements
-    numerator, denominator = family.polynomials(x, damping, omega, exact=True)
-    converged = sum(value <= least + _AGREEMENT * abs(least) for value, _, _ in found)
-    return BestAdmittance(least, tuple(numerator.tolist()), tuple(denominator.tolist()), len(found), converged)
+    equal = [each for each in found if each.value <= least + _EQUAL * abs(least)]
+    best = min(equal, key=lambda each: each.family.size)  # which saves elements
+    numerator, denominator = best.family.polynomials(best.x, damping, omega, exact=True)
+    converged = sum(each.value <= least + _AGREEMENT * abs(least) for each in latest)
+    return BestAdmittance(best.value, tuple(numerator.tolist()), tuple(denominator.tolist()), len(latest), converged)
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,12 @@ class _Family:
     def size(self) -> int:
         """Number of search variables."""
         return 2 * self.degree + 1 + self.at_zero + self.at_infinity
+
+    def extend(self, x: Floats, rng: np.random.Generator) -> Floats:
+        """Search variables with a further state, which is weakly coupled to the others, from those of a degree less."""
+        n = self.degree - 1
+        coupling, damping = _WEAK * rng.standard_normal((2, 1))
+        return np.concatenate([x[:n], coupling, x[n : 2 * n], damping, x[2 * n :]])
 
     def polynomials(self, x: Floats, damping: float, omega: float, exact: bool = False) -> tuple[Floats, Floats]:
         """Numerator and denominator from search variables; rounded at the end only if `exact`."""
@@ -159,29 +168,47 @@ def _stretch(p: Floats, omega: float) -> Floats:
     return p.astype(float) / omega ** np.arange(len(p) - 1.0, -1.0, -1.0)
 
 
-def _minimise(objective: Objective, size: int, rng: np.random.Generator) -> tuple[float, Floats]:
-    """The lowest value and its variables: the best of random samples, improved by BFGS."""
-    samples = _SPREAD * rng.standard_normal((_SAMPLES, size))
-    values = [objective(x) for x in samples]
-    best = int(np.argmin(values))
-    least, x = values[best], samples[best]
-    if not np.isfinite(least) or least == 0.0:
-        return least, x
+@dataclass(frozen=True)
+class _Minimum:
+    """A local minimum: the value, its search variables and their family."""
 
-    def scaled(x: Floats) -> float:
-        return objective(x) / abs(least)
-
-    result = minimize(scaled, x, method="BFGS", options={"gtol": 1e-9, "maxiter": 500})
-    found = objective(result.x)
-    return _without_idle(objective, found, result.x) if found < least else (least, x)
+    value: float
+    x: Floats
+    family: _Family
 
 
-def _without_idle(objective: Objective, least: float, x: Floats) -> tuple[float, Floats]:
-    """The same minimum with variables that do not matter set to zero, which saves elements of the network."""
-    limit = least + _IDLE * abs(least)
-    for i in range(len(x)):
-        changed = np.where(np.arange(len(x)) == i, 0.0, x)
-        value = objective(changed)
-        if value <= limit:
-            least, x = value, changed
-    return least, x
+def _search(
+    objective: Objective, degree: int, starts: int, rng: np.random.Generator, lower: Sequence[_Minimum]
+) -> list[_Minimum]:
+    """Local minima of a degree, from random samples and in turn from the minima of the degree below."""
+    families, found = _families(degree), []
+    for i in range(max(starts, len(families))):
+        turn, family = i // len(families), families[i % len(families)]
+        known = [each for each in lower if replace(each.family, degree=each.family.degree + 1) == family]
+        if turn % 2 and known:
+            known.sort(key=lambda each: each.value)
+            x = family.extend(known[turn // 2 % len(known)].x, rng)
+        else:
+            x = min(_SPREAD * rng.standard_normal((_SAMPLES, family.size)), key=partial(objective, family))
+        found.append(_minimise(partial(objective, family), family, x))
+    return found
+
+
+def _minimise(objective: Callable[[Floats], float], family: _Family, x: Floats) -> _Minimum:
+    """The local minimum below a start; variables that do not matter there are zero, which saves elements."""
+    least = objective(x)
+    if np.isfinite(least) and least != 0.0:
+        size = abs(least)
+
+        def scaled(x: Floats) -> float:
+            return objective(x) / size
+
+        result = minimize(scaled, x, method="BFGS", options={"gtol": 1e-9, "maxiter": 500})
+        if objective(result.x) < least:
+            least, x = objective(result.x), result.x
+        for i in range(len(x)):
+            changed = np.where(np.arange(len(x)) == i, 0.0, x)
+            value = objective(changed)
+            if value <= least + _IDLE * abs(least):
+                least, x = value, changed
+    return _Minimum(least, x, family)

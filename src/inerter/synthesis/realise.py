@@ -31,6 +31,7 @@ from inerter.systems.polynomials import Polynomial
 
 ACCURACY = 1e-9  # relative deviation of the admittance of a network that is accepted
 _TOLERANCES = (Decimal("1e-13"), Decimal("1e-50"))  # of coefficients rounded to double precision, and of exact ones
+_MOST = 10  # degree up to which all ways are expanded; their number doubles with each degree
 _POINTS = 60  # frequencies at which a network is compared with the request
 _ANGLES = (0.0, 0.25 * np.pi, 0.45 * np.pi, 0.5 * np.pi)  # of s; the last one is the imaginary axis
 Floats = NDArray[np.float64]
@@ -40,10 +41,10 @@ Attempt = Callable[[], Network | None]
 def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network:
     """A network of springs, dampers and inerters, all positive, with the admittance numerator / denominator.
 
-    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Of the expansions that are
-    tried, the one with the fewest elements is returned; a smaller network may exist. Its admittance was compared with
-    the request and agrees to 1e-9. So an admittance whose coefficients are rounded is realised although it is not
-    positive real by as little.
+    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Its expansions are compared
+    (up to degree 10 all that are known here), and the one with the fewest elements is returned; a smaller network may
+    exist. The admittance of the network agrees with the request to 1e-9. So a request that is not positive real only
+    because its coefficients are rounded is realised too.
 
     Raises `NotPositiveRealError` with a frequency at which the admittance is not passive, `SynthesisError` for other
     invalid requests, or if no network of that accuracy was found.
@@ -152,12 +153,14 @@ def _expand_smallest(f: Immittance) -> Network:
             regular.append(partial(_remove_at_end, g, least, x))
         else:
             other.append(partial(_remove_inside, g, least, x))
-    found = []
-    attempts: list[Attempt] = [*(regular or other), partial(_split, f), partial(_split, f.inverse())]
+    attempts: list[Attempt] = [*regular, partial(_split, f), partial(_split, f.inverse()), *([] if regular else other)]
+    networks: list[Network] = []
     for attempt in attempts:
         with suppress(ArithmeticError, NetworkError):
-            found.append(attempt())
-    networks = [network for network in found if network is not None]
+            network = attempt()
+            networks += [] if network is None else [network]
+        if networks and len(f.bottom) - 1 > _MOST:
+            break
     if not networks:
         raise ArithmeticError("no expansion succeeded")
     return min(networks, key=lambda network: len(list(network.elements())))

@@ -41,10 +41,10 @@ Attempt = Callable[[], Network | None]
 def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network:
     """A network of springs, dampers and inerters, all positive, with the admittance numerator / denominator.
 
-    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Its expansions are compared
-    (up to degree 10 all that are known here), and the one with the fewest elements is returned; a smaller network may
-    exist. The admittance of the network agrees with the request to 1e-9. So a request that is not positive real only
-    because its coefficients are rounded is realised too.
+    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Of several expansions (above
+    degree 10, of one) the network with the fewest elements is returned; a smaller one may exist. Its admittance agrees
+    with the request to 1e-9. So a request that is not positive real only because its coefficients are rounded is
+    realised too.
 
     Raises `NotPositiveRealError` with a frequency at which the admittance is not passive, `SynthesisError` for other
     invalid requests, or if no network of that accuracy was found.

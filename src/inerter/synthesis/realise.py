@@ -41,8 +41,8 @@ Attempt = Callable[[], Network | None]
 def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network:
     """A network of springs, dampers and inerters, all positive, with the admittance numerator / denominator.
 
-    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Of several expansions (above
-    degree 10, of one) the network with the fewest elements is returned; a smaller one may exist. Its admittance agrees
+    The admittance is force over velocity [N s/m], its coefficients highest power of s first. Of several expansions (one
+    above degree 10) the network with the fewest elements is returned; a smaller one may exist. Its admittance agrees
     with the request to 1e-9. So a request that is not positive real only because its coefficients are rounded is
     realised too.
 

@@ -134,6 +134,8 @@ from inerter.simulation.peaks import LiftOff as LiftOff
 from inerter.simulation.peaks import Peak as Peak
 from inerter.simulation.simulate import simulate as simulate
 from inerter.simulation.trajectory import Trajectory as Trajectory
+from inerter.synthesis.positive_real import is_positive_real as is_positive_real
+from inerter.synthesis.realise import realise as realise
 from inerter.systems.assemble import state_space as state_space
 from inerter.systems.filters import Filter as Filter
 from inerter.systems.input_paths import InputPath as InputPath

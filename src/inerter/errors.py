@@ -24,6 +24,25 @@ class NetworkError(InerterError, ValueError):
     """Invalid element, expression or network."""
 
 
+class SynthesisError(InerterError, ValueError):
+    """Admittance with invalid coefficients, or one for which no network was found."""
+
+
+class NotPositiveRealError(SynthesisError):
+    """Admittance that no passive network has: its real part is negative at `s` [rad/s], where Re s >= 0.
+
+    `admittance` is its value at `s` [N s/m].
+    """
+
+    def __init__(self, text: str, s: complex, admittance: complex) -> None:
+        super().__init__(text, s, admittance)
+        self.s = s
+        self.admittance = admittance
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class MechanismError(InerterError, ValueError):
     """Invalid vehicle or mechanism."""
 

@@ -1,0 +1,1 @@
+"""Passive synthesis: networks of springs, dampers and inerters with a given admittance."""

@@ -1,0 +1,214 @@
+"""The positive-real admittance of a given degree with the lowest index: a bound on all networks of that degree.
+
+By the positive-real lemma, with the storage function of lowest rank as coordinates, every proper positive-real function
+of degree n has the form
+
+    Y(s) = W^2 / 2 + (B + W L)' (s I - J + L L' / 2)^-1 B,    2 Re Y(j w) = |W + L' (j w I - J + L L' / 2)^-1 B|^2,
+
+where J is skew. An orthogonal change of states makes J tridiagonal and B a multiple of the first unit vector, which
+leaves 2 n + 1 numbers (Anderson and Vongpanitlerd 1973, "Network Analysis and Synthesis"). All of them are free, so the
+search has no constraint, and functions with Re Y = 0 at some frequency lie inside its region. Poles at zero and at
+infinity, k / s and b s, are limits of such functions and are searched on their own; so are those of the impedance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from inerter.errors import SynthesisError
+from inerter.networks.elements import Network
+from inerter.synthesis.realise import realise
+from inerter.validation import check_positive, is_number
+
+Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
+Index = Callable[[Floats, Floats], float]  # of numerator and denominator, highest power of s first
+Objective = Callable[["_Family", Floats], float]
+
+_SAMPLES = 30  # random admittances for each start, the best of which it is
+_SPREAD = 2.0  # standard deviation of the search variables; the numbers of the formula are their hyperbolic sines
+_WEAK = 0.5  # standard deviation of search variables that are added to a minimum
+_LARGEST = 30.0  # search variable
+_IDLE = 1e-11  # relative change of the index by a variable that is set to zero
+_EQUAL = 1e-10  # relative difference of values between which the simpler admittance is taken
+_AGREEMENT = 1e-6  # relative difference of values of converged starts
+
+
+@dataclass(frozen=True)
+class BestAdmittance:
+    """Admittance numerator / denominator, highest power of s first, with the lowest `value` of all starts."""
+
+    value: float
+    numerator: tuple[float, ...]
+    denominator: tuple[float, ...]
+    n_starts: int  # at the highest degree
+    n_converged: int  # of these, starts that ended at this value
+
+    def realise(self) -> Network:
+        """A network with this admittance; raises `SynthesisError` if none was found."""
+        return realise(self.numerator, self.denominator)
+
+
+def best_admittance(
+    index: Index, degree: int, *, damping: float, omega: float, seed: int = 0, starts: int = 42
+) -> BestAdmittance:
+    """Minimise an index over all positive-real admittances of at most a degree, from many starts.
+
+    `index(numerator, denominator)` is the index to minimise, nan or infinite where it does not exist. The starts have
+    sizes around `damping` [N s/m] and corner frequencies around `omega` [rad/s], over some two decades; every other one
+    is a minimum of the degree below with a further state.
+
+    Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
+    """
+    if not isinstance(degree, int) or isinstance(degree, bool) or degree < 0:
+        raise SynthesisError(f"The degree of an admittance must be a non-negative integer, got {degree!r}.")
+    if not isinstance(starts, int) or isinstance(starts, bool) or starts < 1:
+        raise SynthesisError(f"The number of starts must be a positive integer, got {starts!r}.")
+    check_positive(SynthesisError, "The typical damping", damping, "N s/m")
+    check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
+
+    def value_of(family: _Family, x: Floats) -> float:
+        value = index(*family.polynomials(x, damping, omega))
+        return float(value) if is_number(value) else np.inf
+
+    rng = np.random.default_rng(seed)
+    found: list[_Minimum] = []
+    latest: list[_Minimum] = []
+    with np.errstate(over="ignore", invalid="ignore"):
+        for order in range(degree + 1):
+            latest = _search(value_of, order, starts, rng, latest)
+            found += latest
+    least = min(each.value for each in found)
+    if not np.isfinite(least):
+        raise SynthesisError(
+            f"The index exists for none of {len(found) * _SAMPLES} admittances up to degree {degree} around "
+            f"{damping:g} N s/m and {omega:g} rad/s. Give other typical values, or a higher degree."
+        )
+    equal = [each for each in found if each.value <= least + _EQUAL * abs(least)]
+    best = min(equal, key=lambda each: each.family.size)  # which saves elements
+    numerator, denominator = best.family.polynomials(best.x, damping, omega, exact=True)
+    converged = sum(each.value <= least + _AGREEMENT * abs(least) for each in latest)
+    return BestAdmittance(best.value, tuple(numerator.tolist()), tuple(denominator.tolist()), len(latest), converged)
+
+
+@dataclass(frozen=True)
+class _Family:
+    """Admittances, or impedances, that are proper and of a degree, plus a pole at zero, at infinity, both or none."""
+
+    degree: int
+    at_zero: bool = False
+    at_infinity: bool = False
+    is_impedance: bool = False
+
+    @property
+    def size(self) -> int:
+        """Number of search variables."""
+        return 2 * self.degree + 1 + self.at_zero + self.at_infinity
+
+    def extend(self, x: Floats, rng: np.random.Generator) -> Floats:
+        """Search variables with a further state, which is weakly coupled to the others, from those of a degree less."""
+        n = self.degree - 1
+        coupling, damping = _WEAK * rng.standard_normal((2, 1))
+        return np.concatenate([x[:n], coupling, x[n : 2 * n], damping, x[2 * n :]])
+
+    def polynomials(self, x: Floats, damping: float, omega: float, exact: bool = False) -> tuple[Floats, Floats]:
+        """Numerator and denominator from search variables; rounded at the end only if `exact`."""
+        n, numbers = self.degree, np.sinh(np.clip(x, -_LARGEST, _LARGEST))
+        if exact:  # cancellation would cost more than the rounding of the result, and positive-realness with it
+            numbers = np.array([Fraction(number) for number in numbers.tolist()])
+        J, B, L, W = np.zeros((n, n), numbers.dtype), np.zeros(n, numbers.dtype), numbers[n : 2 * n], numbers[2 * n]
+        J[range(n - 1), range(1, n)] = numbers[1:n]
+        B[:1] = numbers[:1]
+        top, bottom = _to_polynomials(J - J.T - np.outer(L, L) / 2, B, B + W * L, W**2 / 2)
+        more = list(numbers[2 * n + 1 :] ** 2)
+        if self.at_infinity:
+            top = np.polyadd(top, np.polymul([more.pop(), 0.0], bottom))
+        if self.at_zero:
+            top, bottom = np.polyadd(np.polymul(top, [1.0, 0.0]), more.pop() * bottom), np.polymul(bottom, [1.0, 0.0])
+        if self.is_impedance:
+            top, bottom = bottom, top
+        return damping * _stretch(top, omega), _stretch(bottom, omega)
+
+
+def _families(degree: int) -> list[_Family]:
+    """All families of a degree; without poles, the impedances are the inverses of the admittances."""
+    poles = [(at_zero, at_infinity) for at_zero in (False, True) for at_infinity in (False, True)]
+    return [
+        _Family(degree - sum(each), *each, is_impedance)
+        for each in poles
+        for is_impedance in ((False, True) if any(each) else (False,))
+        if sum(each) <= degree
+    ]
+
+
+def _to_polynomials(A: Floats, B: Floats, C: Floats, D: float) -> tuple[Floats, Floats]:
+    """Numerator and denominator of D + C' (s I - A)^-1 B by the method of Leverrier and Faddeev."""
+    n = len(A)
+    top: list[Any] = [D]
+    bottom: list[Any] = [D**0]
+    adjugate: Floats = np.eye(n, dtype=int)
+    identity = adjugate
+    for k in range(1, n + 1):
+        turned = A @ adjugate
+        bottom.append(-turned.trace() / k)
+        top.append(C @ adjugate @ B + D * bottom[-1])
+        adjugate = turned + bottom[-1] * identity
+    return np.array(top), np.array(bottom)
+
+
+def _stretch(p: Floats, omega: float) -> Floats:
+    """Polynomial p(s / omega)."""
+    return p.astype(float) / omega ** np.arange(len(p) - 1.0, -1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class _Minimum:
+    """A local minimum: the value, its search variables and their family."""
+
+    value: float
+    x: Floats
+    family: _Family
+
+
+def _search(
+    objective: Objective, degree: int, starts: int, rng: np.random.Generator, lower: Sequence[_Minimum]
+) -> list[_Minimum]:
+    """Local minima of a degree, from random samples and in turn from the minima of the degree below."""
+    families, found = _families(degree), []
+    for i in range(max(starts, len(families))):
+        turn, family = i // len(families), families[i % len(families)]
+        known = [each for each in lower if replace(each.family, degree=each.family.degree + 1) == family]
+        if turn % 2 and known:
+            known.sort(key=lambda each: each.value)
+            x = family.extend(known[turn // 2 % len(known)].x, rng)
+        else:
+            x = min(_SPREAD * rng.standard_normal((_SAMPLES, family.size)), key=partial(objective, family))
+        found.append(_minimise(partial(objective, family), family, x))
+    return found
+
+
+def _minimise(objective: Callable[[Floats], float], family: _Family, x: Floats) -> _Minimum:
+    """The local minimum below a start; variables that do not matter there are zero, which saves elements."""
+    least = objective(x)
+    if np.isfinite(least) and least != 0.0:
+        size = abs(least)
+
+        def scaled(x: Floats) -> float:
+            return objective(x) / size
+
+        result = minimize(scaled, x, method="BFGS", options={"gtol": 1e-9, "maxiter": 500})
+        if objective(result.x) < least:
+            least, x = objective(result.x), result.x
+        for i in range(len(x)):
+            changed = np.where(np.arange(len(x)) == i, 0.0, x)
+            value = objective(changed)
+            if value <= least + _IDLE * abs(least):
+                least, x = value, changed
+    return _Minimum(least, x, family)

@@ -11,6 +11,7 @@ from inerter.formatting import format_range
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Network, Parallel, Series, Tied
 from inerter.networks.elements.algebra import Complex, Fraction, reduce_bridge
 from inerter.networks.elements.roles import LinearRole
+from inerter.networks.free_network import FreeNetwork, check_chosen
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
@@ -20,6 +21,8 @@ def map_elements(network: Network, change: Callable[[Element], Network]) -> Netw
             return network.with_parts([map_elements(part, change) for part in network.parts])
         case Element():
             return change(network)
+        case FreeNetwork():
+            return network
     raise TypeError(f"not a network: {network!r}")
 
 
@@ -28,7 +31,10 @@ def expand_elements(network: Network, view: Callable[[Element], Network]) -> Net
 
     A single part without a name takes the label of the replaced element. For several parts, the network takes the
     label, and the parts take it as a prefix. Unchanged elements are the same objects.
+
+    Raises `DesignError` for a network that is not chosen yet.
     """
+    check_chosen(network)
 
     def change(element: Element) -> Network:
         seen = view(element)

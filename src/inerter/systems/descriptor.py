@@ -131,7 +131,7 @@ def close(
         delays=np.zeros(0) if delays is None else delays,
         sources=sources,
         notes=d.notes,
-        origin=Origin(partial(_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
+        origin=Origin(partial(exact_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
     )
 
 
@@ -159,16 +159,22 @@ def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix
     return solved, np.abs(step) + _TERMS * _ROUNDING * (np.abs(inverse) @ terms)
 
 
-def _functions(
-    descriptor: Descriptor, values: Mapping[str, float], inputs: Sequence[str], outputs: Sequence[str]
+def exact_functions(
+    descriptor: Descriptor,
+    values: Mapping[str, float],
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    *,
+    reduced: bool = True,
 ) -> TransferFunctions:
+    """Transfer functions without rounding, filters included; see `transfer_functions`."""
     sums = [descriptor.sums.get(name, [(name, None)]) for name in inputs]
     moved = list(dict.fromkeys(name for terms in sums for name, _ in terms))
     model, numbers = descriptor.model, dict(values)
     for name, value in descriptor.parameters.items():
         numbers[name] = values[str(value.name)] if isinstance(value, Free) else value
     asked = [model.outputs[name] for name in outputs]
-    functions = transfer_functions(model.mechanism, model.graph, numbers, moved, asked)
+    functions = transfer_functions(model.mechanism, model.graph, numbers, moved, asked, reduced=reduced)
     if descriptor.sums:
         functions = functions.with_inputs([[(moved.index(name), factor) for name, factor in terms] for terms in sums])
     filters = dict(zip(descriptor.outputs, descriptor.filters, strict=False))

@@ -37,8 +37,14 @@ def transfer_functions(
     values: Mapping[str, float],
     inputs: Sequence[str],
     asked: Sequence[Output],
+    *,
+    reduced: bool = True,
 ) -> TransferFunctions:
-    """Transfer functions from road velocities and forces `inputs` to the outputs `asked`, at these free `values`."""
+    """Transfer functions from road velocities and forces `inputs` to the outputs `asked`, at these free `values`.
+
+    Unless `reduced`, common factors are left: then numerators and denominator are polynomials of degree one in the
+    value of each element, for whole values of it.
+    """
     if mechanism.ground_moves:  # whose force has the masses as lever arms
         mechanism = mechanism.with_masses(values)
     nodal = _Nodal(mechanism, graph, values, asked)
@@ -46,7 +52,7 @@ def transfer_functions(
     loads = [nodal.load(name) for name in inputs]
     samples = [nodal.sample(s, loads, rows) for s in range(1, 2 * len(graph.nodes) + 3)]
     denominator, *numerators = (interpolate_integers(column) for column in zip(*samples, strict=True))
-    return nodal.to_transfer_functions(denominator, numerators, loads, rows)
+    return nodal.to_transfer_functions(denominator, numerators, loads, rows, reduced)
 
 
 @dataclass(frozen=True)
@@ -176,9 +182,14 @@ class _Nodal:
         return total
 
     def to_transfer_functions(
-        self, denominator: Polynomial, numerators: list[Polynomial], loads: list[Load], rows: list[_OutputRow]
+        self,
+        denominator: Polynomial,
+        numerators: list[Polynomial],
+        loads: list[Load],
+        rows: list[_OutputRow],
+        reduced: bool,
     ) -> TransferFunctions:
-        """Transfer functions with common factors cancelled, and with 1/s for inputs that are road velocities."""
+        """Transfer functions with 1/s for inputs that are road velocities; `reduced`: without common factors."""
         force = self.lever_unit << self.value_bits
         factors = [
             (1 if row.forces or row.external else 1 << self.value_bits) * (1 if road is not None else force)
@@ -192,15 +203,13 @@ class _Nodal:
             for n, (road, *_) in zip(whole, loads * len(rows), strict=True)
         ]
         bottom = scale_by([0, *denominator] if velocities else denominator, force)
-        while bottom[0] == 0 and all(n[0] == 0 for n in whole if n):
-            bottom, whole = bottom[1:], [n[1:] for n in whole]
-        content = common(*bottom, *(c for n in whole for c in n))
         count = len(loads)
-        reduced = [[c // content for c in n] for n in whole]
-        return TransferFunctions(
-            [c // content for c in bottom],
-            tuple(tuple(reduced[i * count : (i + 1) * count]) for i in range(len(rows))),
-        )
+        if reduced:
+            while bottom[0] == 0 and all(n[0] == 0 for n in whole if n):
+                bottom, whole = bottom[1:], [n[1:] for n in whole]
+            content = common(*bottom, *(c for n in whole for c in n))
+            bottom, whole = [c // content for c in bottom], [[c // content for c in n] for n in whole]
+        return TransferFunctions(bottom, tuple(tuple(whole[i * count : (i + 1) * count]) for i in range(len(rows))))
 
 
 def solve_fraction_free(P: list[list[int]], F: list[list[int]]) -> tuple[int, list[list[int]]]:

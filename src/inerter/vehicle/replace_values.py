@@ -128,17 +128,19 @@ def elements_by_label(vehicle: Vehicle, label: str) -> list[Element]:
 
 def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
     """The same vehicle with changed elements in its mounted networks."""
+    return with_networks(vehicle, lambda network: map_elements(network, change))
+
+
+def with_networks(vehicle: Vehicle, change: Callable[[Network], Network]) -> Vehicle:
+    """The same vehicle with changed mounted networks."""
     if isinstance(vehicle, Stage):
-        network = map_elements(vehicle.network, change)
-        return _with_vehicle(vehicle, with_elements(vehicle.vehicle, change), network=network)
+        return _with_vehicle(vehicle, with_networks(vehicle.vehicle, change), network=change(vehicle.network))
     if isinstance(vehicle, VehicleModel):
-        mounted_elements: dict[str, Any] = {
-            name: map_elements(network, change) for name, network in vehicle.networks().items()
-        }
-        return dataclasses.replace(vehicle, **mounted_elements)
+        mounted: dict[str, Any] = {name: change(network) for name, network in vehicle.networks().items()}
+        return dataclasses.replace(vehicle, **mounted)
     mechanism = vehicle.mechanism()
     return dataclasses.replace(
         mechanism,
-        struts=tuple(dataclasses.replace(s, network=map_elements(s.network, change)) for s in mechanism.struts),
-        tyres=tuple(dataclasses.replace(t, network=map_elements(t.network, change)) for t in mechanism.tyres),
+        struts=tuple(dataclasses.replace(s, network=change(s.network)) for s in mechanism.struts),
+        tyres=tuple(dataclasses.replace(t, network=change(t.network)) for t in mechanism.tyres),
     )

@@ -1,0 +1,268 @@
+"""Indices of r.m.s. values of a mechanism with one network in it, over the network's element values, compiled.
+
+With the network's admittance s^v N/D, every transfer function of the mechanism is (D A + N B) / (D P + N Q) times
+powers of s, where the polynomials A, B, P, Q are those of the mechanism without the network. P and Q have no negative
+coefficients, so the denominator is a sum of positive numbers. See `systems.network_port`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from inerter.kernels.arrays import Floats, IntTable, Matrices, Matrix
+from inerter.kernels.astrom_jury import Recursion, backward, fine_forward, forward
+from inerter.kernels.decorators import kernel, part
+from inerter.kernels.double_double import add_product
+from inerter.kernels.network_polynomials import (
+    BOTTOM,
+    TOP,
+    Polynomials,
+    Program,
+    admittance,
+    admittance_adjoint,
+    fine_admittance,
+)
+
+Array = Any
+_ACCURATE = 1e-9  # relative error of a squared norm up to which it counts as known
+_EPS, _FINE_EPS = 1.2e-16, 1e-30
+POWER_D, POWER_N, DROPPED, DEGREE, TOP_DEGREE = range(5)  # columns of `Port.forms`
+POLES, POLES_RIGID, ZEROS, ZEROS_RIGID = range(4)  # P, Q, A, B
+
+
+class Port(NamedTuple):
+    """Transfer functions of a mechanism from its inputs to outputs, over the admittance of one network."""
+
+    coefficients: Matrices  # (functions, 4, size): P, Q, A, B from the constant upwards
+    low: Matrices  # what is to be added in twice the precision
+    degrees: IntTable  # (functions, 4), -1 for zero
+    forms: IntTable  # (functions, 5): powers of s of D and N, common power that is dropped, degrees of the fraction
+    weights: Floats  # (functions,) of each squared norm in the square of its group
+    groups: Floats  # (functions,) number of the group: roots of sums of squares, which add up
+
+
+class NormSpace(NamedTuple):
+    """Room for an index and its gradient."""
+
+    network: Polynomials
+    fraction: Recursion
+    squares: Floats  # (functions,)
+    sums: Floats  # (groups,)
+    errors: Floats  # (groups,)
+    top_shares: Matrix  # (functions, size): adjoints of N and D for a unit adjoint of each squared norm
+    bottom_shares: Matrix
+
+
+@part()
+def norm_space(program: Program, port: Port) -> NormSpace:
+    """Room for `index_in`."""
+    parts = program.parts.shape[0]
+    size = 2
+    for k in range(parts):
+        size = max(size, program.parts[k, TOP] + 1, program.parts[k, BOTTOM] + 1)
+    size += 1
+    network = Polynomials(
+        np.zeros((parts, size)),
+        np.zeros((parts, size)),
+        np.zeros((parts, size)),
+        np.zeros((parts, size)),
+        np.zeros((parts, size)),
+        np.zeros((parts, size)),
+        np.zeros((4, size)),
+    )
+    functions = port.weights.size
+    n = 2
+    for k in range(functions):
+        n = max(n, port.forms[k, DEGREE] + 1, port.forms[k, TOP_DEGREE] + 2)
+    full = n + 1
+    fraction = Recursion(
+        np.zeros(full),
+        np.zeros(full),
+        np.zeros(full),
+        np.zeros(full),
+        np.zeros((full, full)),
+        np.zeros((full, full)),
+        np.zeros(full),
+        np.zeros(full),
+        np.zeros(full),
+        np.zeros(full),
+    )
+    groups = 1
+    for k in range(functions):
+        groups = max(groups, int(port.groups[k]) + 1)
+    return NormSpace(
+        network,
+        fraction,
+        np.zeros(functions),
+        np.zeros(groups),
+        np.zeros(groups),
+        np.zeros((functions, size)),
+        np.zeros((functions, size)),
+    )
+
+
+@part(borrowing=True)
+def _add_products(
+    result: Array, low: Array, fine: bool, first: int, p: Array, p_low: Array, degree: int, q: Array, q_low: Array, of: int
+) -> None:
+    """Add s^first p q to `result`, whose highest power comes first and is that of its last index; see `_fraction`."""
+    for i in range(degree + 1):
+        for j in range(of + 1):
+            k = first - i - j
+            if fine:
+                high, rest = add_product(result[k], low[k], p[i], q[j])
+                rest += p[i] * q_low[j] + p_low[i] * q[j]
+                result[k] = high + rest
+                low[k] = rest - (result[k] - high)
+            else:
+                result[k] += p[i] * q[j]
+
+
+@part(borrowing=True)
+def _fraction(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> None:
+    """Fill the coefficients of the fraction of function k, the highest power first."""
+    network, fraction = space.network, space.fraction
+    last = program.parts.shape[0] - 1
+    N, D = network.top[last], network.bottom[last]
+    N_low, D_low = network.top_low[last], network.bottom_low[last]
+    top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
+    n = port.forms[k, DEGREE]
+    power_D, power_N, dropped = port.forms[k, POWER_D], port.forms[k, POWER_N], port.forms[k, DROPPED]
+    for i in range(n + 2):
+        if i < fraction.a.size:
+            fraction.a[i], fraction.b[i], fraction.a_low[i], fraction.b_low[i] = 0.0, 0.0, 0.0, 0.0
+    own, own_low = port.coefficients[k], port.low[k]
+    for which in range(4):
+        degree = port.degrees[k, which]
+        if degree >= 0:
+            poles = which < 2
+            result, low = (fraction.a, fraction.a_low) if poles else (fraction.b, fraction.b_low)
+            first = n + dropped if poles else n - 1 + dropped
+            if which % 2 == 0:
+                first -= power_D
+                _add_products(result, low, fine, first, own[which], own_low[which], degree, D, D_low, bottom)
+            else:
+                first -= power_N
+                _add_products(result, low, fine, first, own[which], own_low[which], degree, N, N_low, top)
+
+
+@part(borrowing=True)
+def _shares(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> float:
+    """Fill the adjoints of N and D for function k, and give the error of its squared norm by roundings of a and b."""
+    network, fraction = space.network, space.fraction
+    last = program.parts.shape[0] - 1
+    N, D = network.top[last], network.bottom[last]
+    top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
+    N_, D_ = space.top_shares[k], space.bottom_shares[k]
+    for i in range(top + 1):
+        N_[i] = 0.0
+    for i in range(bottom + 1):
+        D_[i] = 0.0
+    n = port.forms[k, DEGREE]
+    power_D, power_N, dropped = port.forms[k, POWER_D], port.forms[k, POWER_N], port.forms[k, DROPPED]
+    roundings = 2.0 * program.parts.shape[0] + bottom + top + 4.0
+    eps = roundings * (_FINE_EPS if fine else _EPS)
+    error = 0.0
+    for which in range(4):
+        degree = port.degrees[k, which]
+        poles = which < 2
+        adjoint = fraction.a_adjoint if poles else fraction.b_adjoint
+        first = n + dropped if poles else n - 1 + dropped
+        own = port.coefficients[k, which]
+        for i in range(degree + 1):
+            if own[i] == 0.0:
+                continue
+            if which % 2 == 0:
+                for j in range(bottom + 1):
+                    share = adjoint[first - power_D - i - j] * own[i]
+                    D_[j] += share
+                    error += eps * abs(share * D[j])
+            else:
+                for j in range(top + 1):
+                    share = adjoint[first - power_N - i - j] * own[i]
+                    N_[j] += share
+                    error += eps * abs(share * N[j])
+    return error
+
+
+@part(borrowing=True)
+def _squares(program: Program, port: Port, space: NormSpace, fine: bool) -> float:
+    """Fill the squared norms, the shares of their gradients and the groups' sums; the largest relative error.
+
+    Infinite where a function is not stable, or seems so by rounding.
+    """
+    functions = port.weights.size
+    for g in range(space.sums.size):
+        space.sums[g], space.errors[g] = 0.0, 0.0
+    for k in range(functions):
+        _fraction(k, program, port, space, fine)
+        n = port.forms[k, DEGREE]
+        square = fine_forward(n, space.fraction) if fine else forward(n, space.fraction)
+        if not square >= 0.0:
+            return np.inf
+        error = backward(n, space.fraction, fine) + _shares(k, program, port, space, fine)
+        space.squares[k] = square
+        g = int(port.groups[k])
+        space.sums[g] += port.weights[k] * square
+        space.errors[g] += port.weights[k] * error
+    worst = 0.0
+    for g in range(space.sums.size):
+        if space.sums[g] > 0.0:
+            worst = max(worst, space.errors[g] / space.sums[g])
+    return worst if worst >= 0.0 else np.inf
+
+
+@part(borrowing=True)
+def index_in(values: Array, program: Program, port: Port, space: NormSpace, gradient: Array) -> Any:
+    """The index for element values (leaves,), its gradient over them if there is room for it, and its relative error.
+
+    The error is a bound at first order, infinite where the index is not known (the mechanism is not stable, or twice
+    the precision does not suffice).
+    """
+    admittance(values, program, space.network)
+    error, fine = _squares(program, port, space, False), False
+    if not error <= _ACCURATE:
+        fine = True
+        fine_admittance(values, program, space.network)
+        error = _squares(program, port, space, True)
+    if not error <= _ACCURATE:
+        return np.inf, np.inf
+    value = 0.0
+    for g in range(space.sums.size):
+        value += np.sqrt(space.sums[g])
+    if gradient.size > 0:
+        last = program.parts.shape[0] - 1
+        N_, D_ = space.network.top_adjoint[last], space.network.bottom_adjoint[last]
+        top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
+        for i in range(top + 1):
+            N_[i] = 0.0
+        for i in range(bottom + 1):
+            D_[i] = 0.0
+        for k in range(port.weights.size):
+            root = np.sqrt(space.sums[int(port.groups[k])])
+            share = 0.5 * port.weights[k] / root if root > 0.0 else 0.0
+            for i in range(top + 1):
+                N_[i] += share * space.top_shares[k, i]
+            for i in range(bottom + 1):
+                D_[i] += share * space.bottom_shares[k, i]
+        for i in range(gradient.size):
+            gradient[i] = 0.0
+        admittance_adjoint(program, space.network, gradient)
+    return value, 0.5 * error
+
+
+@kernel("indices of a network", typed=True)
+def indices(points: Matrix, program: Program, port: Port, gradients: Matrix, errors: Floats) -> Floats:
+    """Index at each row of element values (designs, leaves), infinite where unknown, and its relative errors.
+
+    `gradients` is filled if it has as many rows.
+    """
+    space = norm_space(program, port)
+    none = np.zeros(0)
+    result = np.zeros(points.shape[0])
+    for i in range(points.shape[0]):
+        gradient = gradients[i] if gradients.shape[0] > 0 else none
+        result[i], errors[i] = index_in(points[i], program, port, space, gradient)
+    return result

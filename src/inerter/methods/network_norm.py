@@ -1,0 +1,186 @@
+"""Indices of a vehicle with one network in question, compiled for any network in its place.
+
+A mechanism enters as polynomials (`systems.network_port`) that are found once, a network as a list of operations on
+polynomials (`kernels.network_polynomials`), so that nothing is built or compiled for each network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.indices.definition import Combination, IndexDefinition
+from inerter.kernels.network_norms import Port
+from inerter.kernels.network_polynomials import (
+    ARMS,
+    BRIDGE,
+    FORESTS,
+    LEAF,
+    PARALLEL,
+    SERIES,
+    TREES,
+    Program,
+)
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.networks.elements import Bridge, Element, Network, Parallel
+from inerter.networks.elements.algebra import CombinedNetwork
+from inerter.systems.network_port import PortFunction, port_functions
+from inerter.vehicle.mechanism import Mechanism
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkProgram:
+    """A network as a `Program`, with the power of s and the degrees of its admittance s^power n(s) / d(s)."""
+
+    program: Program
+    power: int
+    top: int
+    bottom: int
+
+
+def network_program(network: Network) -> NetworkProgram:
+    """The program of a network of springs, dampers and inerters, whose values come in the order of its elements."""
+    rows: list[tuple[int, ...]] = []
+    powers: list[int] = []
+    bridges: list[list[int]] = []
+    leaves = 0
+
+    def add(row: tuple[int, ...], power: int) -> int:
+        rows.append(row)
+        powers.append(power)
+        return len(rows) - 1
+
+    def join(operation: int, one: int, other: int) -> int:
+        low = min(powers[one], powers[other])
+        shifts = powers[one] - low, powers[other] - low
+        (top, bottom), (more, below) = rows[one][-2:], rows[other][-2:]
+        mixed = max(shifts[0] + top + below, shifts[1] + more + bottom)
+        if operation == PARALLEL:
+            return add((operation, one, other, *shifts, mixed, bottom + below), low)
+        return add((operation, one, other, *shifts, top + more, mixed), max(powers[one], powers[other]))
+
+    def bridge(arms: list[int]) -> int:
+        sums: list[list[int]] = []
+        degrees = []
+        lowest = []
+        for products in (TREES.tolist(), FORESTS.tolist()):
+            own = [sum(powers[arms[i]] for i in product) for product in products]
+            shifts = [power - min(own) for power in own]
+            sizes = [sum(rows[arm][-2 if i in product else -1] for i, arm in enumerate(arms)) for product in products]
+            degrees.append(max(s + d for s, d in zip(shifts, sizes, strict=True)))
+            sums.append(shifts)
+            lowest.append(min(own))
+        bridges.append([*arms, *sums[0], *sums[1]])
+        return add((BRIDGE, len(bridges) - 1, 0, 0, 0, *degrees), lowest[0] - lowest[1])
+
+    def visit(part: Network) -> int:
+        nonlocal leaves
+        if isinstance(part, Element):
+            leaves += 1
+            return add((LEAF, leaves - 1, 0, 0, 0, 0, 0), part.linear.order - 1)
+        assert isinstance(part, CombinedNetwork)
+        parts = [visit(each) for each in part.parts]
+        if isinstance(part, Bridge):
+            return bridge(parts)
+        operation = PARALLEL if isinstance(part, Parallel) else SERIES
+        found = parts[0]
+        for other in parts[1:]:
+            found = join(operation, found, other)
+        return found
+
+    last = visit(network)
+    table = np.array(rows, np.int64).reshape(-1, 7)
+    more = np.array(bridges, np.int64).reshape(-1, ARMS + 16)
+    return NetworkProgram(Program(table, more), powers[last], rows[last][-2], rows[last][-1])
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkIndex:
+    """An index of r.m.s. values of a vehicle over the admittance of one network in it."""
+
+    definition: IndexDefinition
+    functions: tuple[PortFunction, ...]
+    weights: Array  # of each squared norm
+    groups: Array  # roots of sums of squares that add up to the index
+
+    def port(self, program: NetworkProgram) -> Port | None:
+        """Data of compiled code for one network; None if the index is infinite for all its values."""
+        kept, forms = [], []
+        for k, function in enumerate(self.functions):
+            form = _form(function, program)
+            if form is None:
+                return None
+            if form:
+                kept.append(k)
+                forms.append(form)
+        arrays = [self.functions[k].rounded() for k in kept]
+        size = max((high.shape[1] for high, _ in arrays), default=1)
+        coefficients, low = np.zeros((2, len(kept), 4, size))
+        for k, (high, rest) in enumerate(arrays):
+            coefficients[k, :, : high.shape[1]], low[k, :, : high.shape[1]] = high, rest
+        degrees = [[len(p) - 1 for p in self.functions[k].polynomials] for k in kept]
+        return Port(
+            coefficients,
+            low,
+            np.array(degrees, np.int64).reshape(-1, 4),
+            np.array(forms, np.int64).reshape(-1, 5),
+            self.weights[kept],
+            self.groups[kept],
+        )
+
+
+def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | None:
+    """A row of `Port.forms`; empty for a function that is zero, None for one whose norm is infinite."""
+    power_D, power_N = max(0, -program.power), max(0, program.power)
+    terms = ((power_D, program.bottom), (power_N, program.top)) * 2
+    lowest, highest = [], []
+    for p, (power, degree) in zip(function.polynomials, terms, strict=True):
+        zeros = next((i for i, c in enumerate(p) if c), None)
+        lowest.append(None if zeros is None else zeros + power)
+        highest.append(len(p) - 1 + power + degree if p else -1)
+    bottom = min(x for x in lowest[:2] if x is not None)
+    top = min((x for x in lowest[2:] if x is not None), default=None)
+    if top is None:
+        return ()
+    dropped = min(bottom, top)
+    degree, top_degree = max(highest[:2]) - dropped, max(highest[2:]) - dropped
+    if bottom > top or top_degree >= degree:
+        return None
+    return power_D, power_N, dropped, degree, top_degree
+
+
+def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str) -> NetworkIndex | None:
+    """The index over the admittance of the network at `place`, which is a damper of that free value in `mechanism`.
+
+    None where compiled code cannot give it: for a peak gain, several delays, or a spectrum that is no fraction.
+    """
+    problem = linear_problem(mechanism, definition, CONVENTIONS["exact"])
+    if definition.is_peak or problem.excesses or np.ptp(problem.delays) > 0.0 or set(problem.descriptor.free) != {place}:
+        return None
+    outputs, inputs = problem.descriptor.outputs, problem.descriptor.inputs
+    functions = port_functions(problem.descriptor, place, inputs, outputs)
+    squares = problem.weights**2
+    together = definition.combination is Combination.ROOT_OF_SQUARES
+    merged = _merge_inputs(functions, problem.sources)
+    if merged is None:
+        return None
+    rows: list[tuple[PortFunction, float, int]] = [
+        (function, float(squares[k]), 0 if together else k) for k, row in enumerate(merged) for function in row
+    ]
+    return NetworkIndex(
+        definition,
+        tuple(function for function, *_ in rows),
+        np.array([weight for _, weight, _ in rows]),
+        np.array([float(group) for *_, group in rows]),
+    )
+
+
+def _merge_inputs(functions: Sequence[Sequence[PortFunction]], sources: Sequence[str]) -> Any:
+    """Functions of each output by source; None where several inputs share a source."""
+    return functions if len(set(sources)) == len(sources) else None

@@ -180,6 +180,8 @@ def _bounds(what: str, kind: type[Element], given: object) -> Bounds:
         return None
     if isinstance(given, Free):
         given = (given.lower, given.upper)
+    lower: float
+    upper: float
     try:
         lower, upper = given  # type: ignore[misc]
     except (TypeError, ValueError):

@@ -55,8 +55,8 @@ def real_eigenvectors_by_complex(transposed: Array, real: Array, imaginary: Arra
 def real_eigenvectors(typing: Any, transposed: Any, real: Any, imaginary: Any, rows: Any) -> Any:
     """Compile the eigenproblem of a real matrix, given `transposed` and overwritten; 0 if it was solved.
 
-    Eigenvalues are real[k] + j imaginary[k]. A real one has its eigenvector in rows[k]; a conjugate pair stands at k and
-    k + 1, first that with a positive imaginary part, whose eigenvector is rows[k] + j rows[k + 1].
+    Eigenvalues are real[k] + j imaginary[k]. A real one has its eigenvector in rows[k]; a conjugate pair stands at k
+    and k + 1, first that with a positive imaginary part, whose eigenvector is rows[k] + j rows[k + 1].
     """
     from llvmlite import ir  # noqa: PLC0415 - heavy
     from numba import types  # noqa: PLC0415

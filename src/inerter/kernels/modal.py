@@ -8,8 +8,8 @@ output c x + sum_j D_j w(t - tau_j) is
     n_j = sum_i theta_ij(A) b_i,    theta_ij(s) = int_0^inf phi(t - tau_j + tau_i) exp(s t) dt.
 
 In modes, A = V diag(lambda) V^-1, each of these is a closed form. The remainder of the modes, E = V^-1 (A V - V
-diag(lambda)) with A before rounding, is computed in double-double. It corrects the mean squares at first order, and these
-are known where that is small. Elsewhere `inerter.kernels.h2` has them, with states for filters.
+diag(lambda)) with A before rounding, is computed in double-double. It corrects the mean squares at first order, and
+these are known where that is small. Elsewhere `inerter.kernels.h2` has them, with states for filters.
 """
 
 from __future__ import annotations
@@ -73,6 +73,8 @@ class Room(NamedTuple):
     covariance: Known  # (n, n) V^-1 P V^-T
     ahead: Array  # (pairs, n) theta_ij for inputs i < j, after the row of all i = j
     behind: Array  # (pairs, n) theta_ji
+    ahead_change: Array  # (pairs, n, n) divided differences of these
+    behind_change: Array
     error: Array  # (pairs, n) bounds of the rounding errors of both
     exponent: Array  # (pairs, poles) exp(m_f (tau_j - tau_i))
     scale: Array  # (2, n) units of the states and their inverses
@@ -106,6 +108,8 @@ def modal_room(n: int, m: int, o: int, poles: int) -> Any:
         known(n, n),
         theta[0],
         theta[1],
+        np.zeros((pairs, n, n), np.complex128),
+        np.zeros((pairs, n, n), np.complex128),
         np.zeros((pairs, n)),
         np.zeros((pairs, poles), np.complex128),
         np.zeros((2, n)),
@@ -378,53 +382,58 @@ def theta_slopes(noise: Array, group: int, time: float, s: complex) -> tuple[com
 
 
 @part()
-def theta_difference(
-    noise: Array, group: int, time: float, pole: Array, theta: Array, k: int, j: int
-) -> tuple[complex, complex]:
-    """Divided differences of theta for a delay and for its negative, whose values at all poles are `theta`."""
-    ahead, behind = theta
-    apart = pole[k] - pole[j]
-    distance = one_norm(apart)
-    if k != j and distance * time > _CLOSE or distance > _CLOSE * one_norm(pole[k]):
-        inverse = reciprocal(apart)
-        return (ahead[k] - ahead[j]) * inverse, (behind[k] - behind[j]) * inverse
-    middle = theta_slopes(noise, group, time, pole[k] - 0.5 * apart)
-    if k == j:
-        return middle
-    one, other = theta_slopes(noise, group, time, pole[k]), theta_slopes(noise, group, time, pole[j])
-    return (one[0] + 4.0 * middle[0] + other[0]) / 6.0, (one[1] + 4.0 * middle[1] + other[1]) / 6.0
+def fill_differences(noise: Array, group: int, room: Array) -> None:
+    """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`."""
+    delays, pole = noise[0], room.modes.pole
+    for k in range(pole.size):
+        for q in range(k + 1):
+            row, apart = 0, pole[k] - pole[q]
+            for i in range(delays.size):
+                for j in range(i, delays.size):
+                    if j == i and i > 0:
+                        continue
+                    time = delays[j] - delays[i]
+                    if one_norm(apart) * (1.0 + one_norm(pole[k]) * time) > _CLOSE * one_norm(pole[k]):
+                        inverse = reciprocal(apart)
+                        ahead = (room.ahead[row, k] - room.ahead[row, q]) * inverse
+                        behind = (room.behind[row, k] - room.behind[row, q]) * inverse
+                    else:  # the mean of the derivative, by Simpson's rule
+                        ahead, behind = theta_slopes(noise, group, time, pole[k] - 0.5 * apart)
+                        if k != q:
+                            one = theta_slopes(noise, group, time, pole[k])
+                            other = theta_slopes(noise, group, time, pole[q])
+                            ahead = (one[0] + 4.0 * ahead + other[0]) / 6.0
+                            behind = (one[1] + 4.0 * behind + other[1]) / 6.0
+                    room.ahead_change[row, k, q], room.ahead_change[row, q, k] = ahead, ahead
+                    room.behind_change[row, k, q], room.behind_change[row, q, k] = behind, behind
+                    row += 1
 
 
 @part()
-def change_past(noise: Array, group: int, room: Array) -> None:
+def correct_past(delays: Array, room: Array) -> None:
     """Fill the corrections of `room.past`, from those of the inputs and from the remainder of the modes."""
-    delays, modes, inputs, past = noise[0], room.modes, room.inputs, room.past
-    n, m, remainder = modes.pole.size, delays.size, modes.remainder
-    for k in range(n):
+    modes, inputs, past = room.modes, room.inputs, room.past
+    m = delays.size
+    for k in range(modes.pole.size):
         if modes.pair[k] == 2:
             for j in range(m):
                 past.correction[j, k] = np.conj(past.correction[j, k - 1])
             continue
         for j in range(m):
             past.correction[j, k] = room.ahead[0, k] * inputs.correction[j, k]
-        for q in range(n):
-            slope = (
-                remainder[k, q]
-                * theta_difference(noise, group, 0.0, modes.pole, (room.ahead[0], room.behind[0]), k, q)[0]
-            )
-            for j in range(m):
-                past.correction[j, k] += slope * inputs.value[j, q]
+            for q in range(modes.pole.size):
+                change = modes.remainder[k, q] * room.ahead_change[0, k, q]
+                past.correction[j, k] += change * inputs.value[j, q]
         row = 0
         for i in range(m):
             for j in range(i + 1, m):
                 row += 1
                 past.correction[j, k] += room.ahead[row, k] * inputs.correction[i, k]
                 past.correction[i, k] += room.behind[row, k] * inputs.correction[j, k]
-                theta = room.ahead[row], room.behind[row]
-                for q in range(n):
-                    ahead, behind = theta_difference(noise, group, delays[j] - delays[i], modes.pole, theta, k, q)
-                    past.correction[j, k] += remainder[k, q] * ahead * inputs.value[i, q]
-                    past.correction[i, k] += remainder[k, q] * behind * inputs.value[j, q]
+                for q in range(modes.pole.size):
+                    remainder = modes.remainder[k, q]
+                    past.correction[j, k] += remainder * room.ahead_change[row, k, q] * inputs.value[i, q]
+                    past.correction[i, k] += remainder * room.behind_change[row, k, q] * inputs.value[j, q]
 
 
 @part()
@@ -444,7 +453,7 @@ def find_covariance(noise: Array, group: int, room: Array) -> None:
                 past.value[i, k] += room.behind[row, k] * inputs.value[j, k]
                 past.error[j, k] += room.error[row, k] * one_norm(inputs.value[i, k])
                 past.error[i, k] += room.error[row, k] * one_norm(inputs.value[j, k])
-    change_past(noise, group, room)
+    correct_past(noise[0], room)
     for k in range(n):
         for q in range(k + 1):
             value, error = 0j, 0.0
@@ -489,7 +498,7 @@ def real_covariance(room: Array) -> None:
 
 @part()
 def autocorrelation(noise: Array, group: int, time: float) -> tuple[float, float]:
-    """phi at a time, and a bound of its rounding errors, of a group without a delta function."""
+    """Autocorrelation at a time, and a bound of its rounding errors, of a group without a delta function."""
     _, _, starts, rates, residues, errors, _ = noise
     value, size = 0.0, 0.0
     for f in range(starts[group], starts[group + 1]):
@@ -592,7 +601,7 @@ def add_slopes(noise: Array, group: int, room: Array, D: Array, shares: Array, s
                 if groups[o] == group and D[o, i] != 0.0:
                     phi = autocorrelation(noise, group, delays[i] - delays[j])[0]
                     slopes.direct[o, j] += 2.0 * shares[o] * D[o, i] * phi
-    add_theta_slopes(noise, group, room, back, slopes.inputs, G)
+    add_theta_slopes(delays, room, back, slopes.inputs, G)
     mix_rows(G, modes.pair, TO_MODES_TRANSPOSED)
     mix_columns(G, modes.pair, TO_REAL)
     mix_rows(Q, modes.pair, TO_MODES_TRANSPOSED)
@@ -608,14 +617,14 @@ def add_slopes(noise: Array, group: int, room: Array, D: Array, shares: Array, s
 
 
 @part()
-def add_theta_slopes(noise: Array, group: int, room: Array, back: Array, over_inputs: Array, G: Array) -> None:
+def add_theta_slopes(delays: Array, room: Array, back: Array, over_inputs: Array, G: Array) -> None:
     """Fill G, over A in modes, and add to `over_inputs` what follows from the gradient `back` over all n_j."""
-    delays, inputs, modes = noise[0], room.inputs, room.modes
+    inputs, modes = room.inputs, room.modes
     n, m = modes.pole.size, delays.size
     for k in range(n):
-        row = 0
         for j in range(m):
             over_inputs[j, k] += room.ahead[0, k] * back[j, k]
+        row = 0
         for i in range(m):
             for j in range(i + 1, m):
                 row += 1
@@ -629,14 +638,12 @@ def add_theta_slopes(noise: Array, group: int, room: Array, back: Array, over_in
             value = 0j
             for j in range(m):
                 value += back[j, k] * inputs.value[j, q]
-            value *= theta_difference(noise, group, 0.0, modes.pole, (room.ahead[0], room.behind[0]), k, q)[0]
-            row = 0
+            value, row = value * room.ahead_change[0, k, q], 0
             for i in range(m):
                 for j in range(i + 1, m):
                     row += 1
-                    theta = room.ahead[row], room.behind[row]
-                    ahead, behind = theta_difference(noise, group, delays[j] - delays[i], modes.pole, theta, k, q)
-                    value += back[j, k] * ahead * inputs.value[i, q] + back[i, k] * behind * inputs.value[j, q]
+                    value += back[j, k] * room.ahead_change[row, k, q] * inputs.value[i, q]
+                    value += back[i, k] * room.behind_change[row, k, q] * inputs.value[j, q]
             G[k, q] = value
 
 
@@ -675,12 +682,13 @@ def gradient_of(p: Array, descriptor: Array, closing: Array, room: Array, slopes
 def norms_by_modes(points: Array, descriptor: Array, extended: Array, noise: Array, weights: Array) -> Any:
     """Norms, gradients and error estimates as `inerter.kernels.h2.norms` has them, by modes.
 
-    `noise` = (delays (inputs,) [s] in rising order, group (outputs,) of outputs with the same filter, first pole of each
-    group and their number, poles m_f [1/s], r_f, relative errors of r_f / (m_f + s), d (groups,)). Where the modes do not
-    suffice, the error estimate is infinite, and norms and gradient are nan.
+    `noise` = (delays (inputs,) [s] in rising order, group (outputs,) of outputs with the same filter, first pole of
+    each group and their number, poles m_f [1/s], residues r_f, relative errors of r_f / (m_f + s), d (groups,)). Where
+    the modes do not suffice, the error estimate is infinite, and norms and gradient are nan. Behind a filter with d,
+    D counts as zero: else the norm would be infinite.
     """
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    delays, groups, starts, rates, _, _, direct = noise
+    _, groups, _, rates, _, _, direct = noise
     closing, room = extended_space(descriptor), modal_room(n, m, o, rates.size)
     slopes = Slopes(
         np.zeros((n, n)), np.zeros((m, n), np.complex128), np.zeros((o, n), np.complex128), np.zeros((o, m))
@@ -696,12 +704,17 @@ def norms_by_modes(points: Array, descriptor: Array, extended: Array, noise: Arr
         (A, B, C, D, _, _, _), (remainder_A, remainder_B, remainder_C, remainder_D) = closing[0], closing[1]
         if not find_modes(A, remainder_A, room):
             continue
+        for k in range(o):
+            if direct[groups[k]] != 0.0:
+                for j in range(m):
+                    D[k, j], remainder_D[k, j] = 0.0, 0.0
         find_inputs(B, remainder_B, room)
         find_outputs(C, remainder_C, room)
         slopes.system[:, :], slopes.inputs[:, :], slopes.outputs[:, :], slopes.direct[:, :] = 0.0, 0j, 0j, 0.0
         terms, rounding, is_known = 0.0, 0.0, True
         for group in range(direct.size):
             fill_theta(noise, group, room)
+            fill_differences(noise, group, room)
             find_covariance(noise, group, room)
             for k in range(o):
                 if groups[k] == group:

@@ -20,8 +20,10 @@ from inerter.indices.excitation import road_of
 from inerter.kernels import excess as excess_kernels
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
+from inerter.kernels import modal as modal_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
+from inerter.methods.modal_norm import modal_arguments, stacks_of
 from inerter.networks.elements import middle
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
@@ -39,6 +41,7 @@ _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values wi
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
 _UNCERTAIN = 1e-10  # error estimate from which on the error bound of a norm behind a filter may be exceeded
+_MANY_STATES = 9  # with those of filters, from which on modes are faster than covariances
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -48,21 +51,24 @@ class CompiledNorm:
 
     problem: LinearProblem
 
-    @cached_property
+    @property
     def descriptor(self) -> tuple[Any, ...]:
         """The descriptor's arrays in the order in which compiled code takes them."""
-        names = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
-        return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
+        return self._stacks[0]
 
-    @cached_property
+    @property
     def extended_descriptor(self) -> tuple[Array, Array]:
         """S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors: no entries where these are zero."""
-        d = self.problem.descriptor
-        stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
-        stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
-        rounded = np.ascontiguousarray(stack, dtype=float)
-        lost = np.ascontiguousarray(stack - rounded, dtype=float)
-        return rounded, lost if lost.any() else np.zeros((0, 0))
+        return self._stacks[1]
+
+    @cached_property
+    def _stacks(self) -> tuple[tuple[Any, ...], tuple[Array, Array]]:
+        return stacks_of(self.problem.descriptor)
+
+    @cached_property
+    def _modal_arguments(self) -> tuple[Any, ...] | None:
+        """Arguments of the norms by modes; None where these cannot serve or take longer."""
+        return modal_arguments(self.problem) if len(self.problem.descriptor.states) >= _MANY_STATES else None
 
     @cached_property
     def arrivals(self) -> tuple[Array, tuple[Any, Any, float], tuple[NDArray[np.int64], Array]]:
@@ -214,8 +220,7 @@ class CompiledNorm:
         Over several sources, squares are added up for the outputs that each one excites.
         """
         if not self.single_source_definitions and np.all(self.reachable_outputs) and self._excess is None:
-            norms, gradients, errors = h2_kernels.norms(points, *self.arguments, weights)
-            return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
+            return self._kernel_norms(points, weights)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
         for seen, one in self.per_source_definitions:
@@ -234,6 +239,22 @@ class CompiledNorm:
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
         return total, gradients, errors
 
+    def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Norms, gradients and error estimates over one source, for its filter: by modes, else by covariances."""
+        if self._modal_arguments is None:
+            norms, gradients, errors = map(np.asarray, h2_kernels.norms(points, *self.arguments, weights))
+            return norms, gradients, errors
+        norms, gradients, errors = map(
+            np.asarray, modal_kernels.norms_by_modes(points, *self._modal_arguments, weights)
+        )
+        rest = np.flatnonzero(np.isinf(errors))
+        if rest.size:
+            found = h2_kernels.norms(points[rest], *self.arguments, weights)
+            norms[rest], errors[rest] = found[0], found[2]
+            if weights.size:
+                gradients[rest] = found[1]
+        return norms, gradients, errors
+
     @cached_property
     def _excess(self) -> Excess | None:
         """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
@@ -241,7 +262,7 @@ class CompiledNorm:
 
     def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
         """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,)."""
-        found, _, errors = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
+        found, _, errors = self._kernel_norms(points, np.empty(0))
         if self._excess is None:
             return found, found, errors
         own = (self.descriptor, self.arrivals, self._excess.table)
@@ -252,9 +273,9 @@ class CompiledNorm:
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
-            return np.asarray(h2_kernels.norms(point[None], *self.arguments, weights)[1][0])
+            return self._kernel_norms(point[None], weights)[1][0]
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
-        slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
+        slopes = self._kernel_norms(point[None], shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
     def _sure(self, points: Array, norms: Array, errors: Array) -> NDArray[np.bool_]:

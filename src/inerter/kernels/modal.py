@@ -361,9 +361,9 @@ def fill_exponents(noise: Array, room: Array) -> None:
                 room.exponent[row, f] = np.exp(rates[f] * (delays[j] - delays[i]))
 
 
-@part()
-def theta_slopes(noise: Array, group: int, time: float, s: complex) -> tuple[complex, complex]:
-    """Derivatives over s of theta for a delay and for its negative."""
+@part(borrowing=True)
+def theta_slopes(noise: Array, group: int, time: float, decay: Array, s: complex) -> tuple[complex, complex]:
+    """Derivatives over s of theta for a delay and for its negative, given all exp(m_f time) in `decay`."""
     _, _, starts, rates, residues, _, direct = noise
     ahead, behind, power = 0j, 0j, np.exp(s * time)
     if time > 0.0:
@@ -374,39 +374,55 @@ def theta_slopes(noise: Array, group: int, time: float, s: complex) -> tuple[com
         if time == 0.0:
             ahead += term
             continue
-        decay = np.exp(rates[f] * time)
-        between = decay * time * time * exponential_quotients((s - rates[f]) * time)[1]
+        apart = s - rates[f]
+        if one_norm(apart) * time > _SERIES:
+            over = reciprocal(apart)
+            between = (time * power - (power - decay[f]) * over) * over
+        else:
+            between = decay[f] * time * time * exponential_quotients(apart * time)[1]
         ahead += residues[f] * (between - time * power * inverse) + power * term
-        behind += decay * term
+        behind += decay[f] * term
     return ahead, ahead if time == 0.0 else behind
 
 
 @part()
 def fill_differences(noise: Array, group: int, room: Array) -> None:
     """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`."""
-    delays, pole = noise[0], room.modes.pole
-    for k in range(pole.size):
-        for q in range(k + 1):
-            row, apart = 0, pole[k] - pole[q]
-            for i in range(delays.size):
-                for j in range(i, delays.size):
-                    if j == i and i > 0:
-                        continue
-                    time = delays[j] - delays[i]
+    delays, pole, pair = noise[0], room.modes.pole, room.modes.pair
+    row = 0
+    for i in range(delays.size):
+        for j in range(i, delays.size):
+            if j == i and i > 0:
+                continue
+            time, decay = delays[j] - delays[i], room.exponent[row]
+            ahead, behind = room.ahead[row], room.behind[row]
+            ahead_change, behind_change = room.ahead_change[row], room.behind_change[row]
+            for k in range(pole.size):
+                if pair[k] == 2:
+                    for q in range(k + 1):
+                        other = partner(pair, q)
+                        ahead_change[k, q] = np.conj(ahead_change[k - 1, other])
+                        behind_change[k, q] = np.conj(behind_change[k - 1, other])
+                        ahead_change[q, k], behind_change[q, k] = ahead_change[k, q], behind_change[k, q]
+                    continue
+                for q in range(k + (2 if pair[k] == 1 else 1)):
+                    apart = pole[k] - pole[q]
                     if one_norm(apart) * (1.0 + one_norm(pole[k]) * time) > _CLOSE * one_norm(pole[k]):
                         inverse = reciprocal(apart)
-                        ahead = (room.ahead[row, k] - room.ahead[row, q]) * inverse
-                        behind = (room.behind[row, k] - room.behind[row, q]) * inverse
+                        ahead_change[k, q] = (ahead[k] - ahead[q]) * inverse
+                        behind_change[k, q] = (behind[k] - behind[q]) * inverse
                     else:  # the mean of the derivative, by Simpson's rule
-                        ahead, behind = theta_slopes(noise, group, time, pole[k] - 0.5 * apart)
+                        mean = theta_slopes(noise, group, time, decay, pole[k] - 0.5 * apart)
                         if k != q:
-                            one = theta_slopes(noise, group, time, pole[k])
-                            other = theta_slopes(noise, group, time, pole[q])
-                            ahead = (one[0] + 4.0 * ahead + other[0]) / 6.0
-                            behind = (one[1] + 4.0 * behind + other[1]) / 6.0
-                    room.ahead_change[row, k, q], room.ahead_change[row, q, k] = ahead, ahead
-                    room.behind_change[row, k, q], room.behind_change[row, q, k] = behind, behind
-                    row += 1
+                            one = theta_slopes(noise, group, time, decay, pole[k])
+                            other_end = theta_slopes(noise, group, time, decay, pole[q])
+                            mean = (
+                                (one[0] + 4.0 * mean[0] + other_end[0]) / 6.0,
+                                (one[1] + 4.0 * mean[1] + other_end[1]) / 6.0,
+                            )
+                        ahead_change[k, q], behind_change[k, q] = mean
+                    ahead_change[q, k], behind_change[q, k] = ahead_change[k, q], behind_change[k, q]
+            row += 1
 
 
 @part()

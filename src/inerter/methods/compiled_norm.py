@@ -240,13 +240,8 @@ class CompiledNorm:
         return total, gradients, errors
 
     def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients and error estimates over one source, for its filter: by modes, else by covariances."""
-        if self._modal_arguments is None:
-            norms, gradients, errors = map(np.asarray, h2_kernels.norms(points, *self.arguments, weights))
-            return norms, gradients, errors
-        norms, gradients, errors = map(
-            np.asarray, modal_kernels.norms_by_modes(points, *self._modal_arguments, weights)
-        )
+        """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter."""
+        norms, gradients, errors = self._by_modes(points, weights)
         rest = np.flatnonzero(np.isinf(errors))
         if rest.size:
             found = h2_kernels.norms(points[rest], *self.arguments, weights)
@@ -255,27 +250,47 @@ class CompiledNorm:
                 gradients[rest] = found[1]
         return norms, gradients, errors
 
+    def _by_modes(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Norms, gradients and error estimates over one source by modes, which are infinite where modes cannot serve."""
+        if self._modal_arguments is None:
+            missing = np.full((points.shape[0], self.problem.weights.size), np.nan)
+            slopes = np.full((points.shape[0] if weights.size else 0, points.shape[1]), np.nan)
+            return missing, slopes, np.full(points.shape[0], np.inf)
+        norms, gradients, errors = modal_kernels.norms_by_modes(points, *self._modal_arguments, weights)
+        return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
+
     @cached_property
     def _excess(self) -> Excess | None:
         """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
     def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,)."""
-        found, _, errors = self._kernel_norms(points, np.empty(0))
+        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,).
+
+        The first two are one where the filter is exact or modes do without it.
+        """
         if self._excess is None:
-            return found, found, errors
-        own = (self.descriptor, self.arrivals, self._excess.table)
-        squares = found**2 + excess_kernels.corrections(points, *own, np.empty(0))[0]
-        norms = np.sqrt(np.maximum(squares, 0.0))
-        return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, errors)
+            norms, _, errors = self._kernel_norms(points, np.empty(0))
+            return norms, norms, errors
+        norms, _, errors = self._by_modes(points, np.empty(0))
+        behind, rest = norms.copy(), np.flatnonzero(np.isinf(errors))
+        if rest.size:
+            found, _, unsure = map(np.asarray, h2_kernels.norms(points[rest], *self.arguments, np.empty(0)))
+            own = (self.descriptor, self.arrivals, self._excess.table)
+            squares = found**2 + excess_kernels.corrections(points[rest], *own, np.empty(0))[0]
+            norms[rest], behind[rest] = np.sqrt(np.maximum(squares, 0.0)), found
+            errors[rest] = np.where(np.any(np.isnan(norms[rest]), axis=1), np.inf, unsure)
+        return norms, behind, errors
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
             return self._kernel_norms(point[None], weights)[1][0]
+        _, gradients, errors = self._by_modes(point[None], weights)
+        if np.isfinite(errors[0]):
+            return gradients[0]
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
-        slopes = self._kernel_norms(point[None], shares * found)[1][0]
+        slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
     def _sure(self, points: Array, norms: Array, errors: Array) -> NDArray[np.bool_]:

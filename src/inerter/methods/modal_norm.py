@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from inerter.methods.linear import LinearProblem
-from inerter.systems.autocorrelation import autocorrelation
+from inerter.signals.coherence import Excess, isotropic_exponentials
+from inerter.systems.autocorrelation import Autocorrelation, autocorrelation, pole_errors
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import apply_excitation, columns_of, inputs_of
@@ -36,16 +37,18 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, ...] | None:
     That is so for approximants of delays, for inputs with different filters, for filters without partial fractions,
     and where a state drifts.
     """
-    shapes = {path.filter for path in problem.paths}
-    if problem.pade_order is not None or len(set(problem.sources)) != 1 or len(shapes) != 1:
+    kinds = {(path.filter, path.excess, path.displacement) for path in problem.paths}
+    if problem.pade_order is not None or len(set(problem.sources)) != 1 or len(kinds) != 1:
         return None
-    (shape,) = shapes
+    ((shape, excess, displacement),) = kinds
+    if excess is not None and displacement != (excess.sign < 0.0):
+        return None
     found = _without_states(problem, shape)
     if found is None:
         return None
     descriptor, delays = found
     groups = list(dict.fromkeys(problem.definition.filters))
-    noises = [autocorrelation(shape, own) for own in groups]
+    noises = [_noise(shape, excess, own) for own in groups]
     known = [noise for noise in noises if noise is not None]
     if len(known) < len(noises):
         return None
@@ -60,6 +63,18 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, ...] | None:
         np.array([one.direct for one in known]),
     )
     return *stacks_of(descriptor), noise
+
+
+def _noise(shape: Filter | None, excess: Excess | None, own: Filter | None) -> Autocorrelation | None:
+    """Autocorrelation of a source of the true density, behind the filter of an output."""
+    if excess is None:
+        return autocorrelation(shape, own)
+    rates, residues, direct = isotropic_exponentials(excess.sign)
+    poles = rates / excess.time
+    residues = residues / excess.time if excess.sign > 0.0 else residues * excess.time
+    source = Autocorrelation(poles, residues, pole_errors(poles), direct)
+    behind = autocorrelation(own)
+    return None if behind is None else source if own is None else source.behind(behind)
 
 
 def _without_states(problem: LinearProblem, shape: Filter | None) -> tuple[Descriptor, Any] | None:

@@ -29,9 +29,36 @@ class Autocorrelation:
     errors: NDArray[np.float64]  # relative error of residues[f] / (poles[f] + s) for any s in the left half plane
     direct: float
 
+    def spectrum(self, s: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        """Bilateral Laplace transform: the density at s = j omega."""
+        return np.asarray(self.direct + self._terms(s).sum(axis=-1))
+
+    def _terms(self, s: NDArray[np.complex128]) -> NDArray[np.complex128]:
+        return np.asarray(-2.0 * self.residues * self.poles / (self.poles**2 - np.asarray(s)[..., None] ** 2))
+
+    def behind(self, other: Autocorrelation) -> Autocorrelation:
+        """Autocorrelation with the product of both densities, which have no pole in common."""
+        poles = np.concatenate([self.poles, other.poles])
+        residues = np.concatenate(
+            [self.residues * other.spectrum(self.poles), other.residues * self.spectrum(other.poles)]
+        )
+        sizes = np.concatenate(
+            [
+                np.abs(self.residues) * (other.direct + np.abs(other._terms(self.poles)).sum(axis=-1)),
+                np.abs(other.residues) * (self.direct + np.abs(self._terms(other.poles)).sum(axis=-1)),
+            ]
+        )
+        lost = poles.size * _EPS * sizes / np.maximum(np.abs(residues), 1e-300)
+        return Autocorrelation(poles, residues, pole_errors(poles) + lost, self.direct * other.direct)
+
     def __call__(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
         """R(t) without its delta function."""
         return np.asarray((self.residues * np.exp(np.abs(times)[..., None] * self.poles)).sum(axis=-1).real)
+
+
+def pole_errors(poles: NDArray[np.complex128]) -> NDArray[np.float64]:
+    """Relative rounding errors of r / (m + s) for these poles m and any s in the left half plane."""
+    return np.asarray(_EPS * (8.0 + 2.0 * np.abs(poles) / np.abs(poles.real)))
 
 
 @lru_cache(maxsize=64)
@@ -62,8 +89,7 @@ def autocorrelation(*filters: Filter | None) -> Autocorrelation | None:
     poles = np.array(found, dtype=complex)
     if poles.size != order or np.unique(poles).size != order or not np.all(poles.real < 0.0):
         return None
-    errors = _EPS * (8.0 + 2.0 * np.abs(poles) / np.abs(poles.real))
-    result = Autocorrelation(poles, np.array(residues, dtype=complex), errors, direct)
+    result = Autocorrelation(poles, np.array(residues, dtype=complex), pole_errors(poles), direct)
     return result if _agrees(result, top, bottom) else None
 
 
@@ -120,7 +146,8 @@ def _agrees(found: Autocorrelation, top: Polynomial, bottom: Polynomial) -> bool
     for omega in np.abs(found.poles):
         at = Fraction(0), Fraction(float(omega))
         ratio = abs(_complex(_divide(_value(top, at), _value(bottom, at)))) ** 2
-        terms = -2.0 * found.residues * found.poles / (found.poles**2 + omega**2)
-        if not abs(found.direct + terms.sum().real - ratio) <= _SAME * (found.direct + np.abs(terms).sum()):
+        here = np.array(1j * omega)
+        size = found.direct + np.abs(found._terms(here)).sum()
+        if not abs(found.spectrum(here).real - ratio) <= _SAME * size:
             return False
     return True

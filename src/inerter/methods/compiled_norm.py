@@ -251,7 +251,7 @@ class CompiledNorm:
         return norms, gradients, errors
 
     def _by_modes(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients and error estimates over one source by modes, which are infinite where modes cannot serve."""
+        """Norms, gradients and error estimates over one source by modes; estimates are infinite where modes fail."""
         if self._modal_arguments is None:
             missing = np.full((points.shape[0], self.problem.weights.size), np.nan)
             slopes = np.full((points.shape[0] if weights.size else 0, points.shape[1]), np.nan)

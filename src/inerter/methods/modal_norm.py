@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from inerter.methods.linear import LinearProblem
-from inerter.signals.coherence import Excess, isotropic_exponentials
+from inerter.signals.coherence import Coherence, Excess, isotropic_exponentials
 from inerter.systems.autocorrelation import Autocorrelation, autocorrelation, pole_errors
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filters import Filter
@@ -35,13 +35,13 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, ...] | None:
     """Descriptor without states of filters, the same extended, and the noise; None if modes cannot serve.
 
     That is so for approximants of delays, for inputs with different filters, for filters without partial fractions,
-    and where a state drifts.
+    where a state drifts, and where tracks with an isotropic coherence have no half model, or a filter more.
     """
     kinds = {(path.filter, path.excess, path.displacement) for path in problem.paths}
     if problem.pade_order is not None or len(set(problem.sources)) != 1 or len(kinds) != 1:
         return None
     ((shape, excess, displacement),) = kinds
-    if excess is not None and displacement != (excess.sign < 0.0):
+    if excess is not None and shape != _isotropic_filter(excess, displacement):
         return None
     found = _without_states(problem, shape)
     if found is None:
@@ -63,6 +63,16 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, ...] | None:
         np.array([one.direct for one in known]),
     )
     return *stacks_of(descriptor), noise
+
+
+def _isotropic_filter(excess: Excess, displacement: bool) -> Filter | None:
+    """Filter that alone stands for the density of a source; None for a motion that has no autocorrelation."""
+    if displacement != (excess.sign < 0.0):
+        return None
+    coherence = Coherence.isotropic(excess.time)  # at a speed of one
+    ratio = coherence.in_anti_phase(1.0) if displacement else coherence.in_phase(1.0)
+    assert ratio is not None
+    return Filter(ratio[0][:-1] if displacement else ratio[0], ratio[1])
 
 
 def _noise(shape: Filter | None, excess: Excess | None, own: Filter | None) -> Autocorrelation | None:

@@ -66,7 +66,7 @@ class CompiledNorm:
         return stacks_of(self.problem.descriptor)
 
     @cached_property
-    def _modal_arguments(self) -> tuple[Any, ...] | None:
+    def _modal_arguments(self) -> tuple[Any, Any, Any] | None:
         """Arguments of the norms by modes; None where these cannot serve or take longer."""
         return modal_arguments(self.problem) if len(self.problem.descriptor.states) >= _MANY_STATES else None
 
@@ -256,7 +256,8 @@ class CompiledNorm:
             missing = np.full((points.shape[0], self.problem.weights.size), np.nan)
             slopes = np.full((points.shape[0] if weights.size else 0, points.shape[1]), np.nan)
             return missing, slopes, np.full(points.shape[0], np.inf)
-        norms, gradients, errors = modal_kernels.norms_by_modes(points, *self._modal_arguments, weights)
+        descriptor, extended, noise = self._modal_arguments
+        norms, gradients, errors = modal_kernels.norms_by_modes(points, descriptor, extended, noise, weights)
         return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
 
     @cached_property
@@ -285,10 +286,10 @@ class CompiledNorm:
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
-            return self._kernel_norms(point[None], weights)[1][0]
+            return np.asarray(self._kernel_norms(point[None], weights)[1][0])
         _, gradients, errors = self._by_modes(point[None], weights)
         if np.isfinite(errors[0]):
-            return gradients[0]
+            return np.asarray(gradients[0])
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
         slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])

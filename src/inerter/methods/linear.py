@@ -235,8 +235,8 @@ def linear_problem(mechanism: Mechanism, definition: IndexDefinition, convention
     paths = definition.input_paths(driven)
     descriptor = describe(driven, inputs_of(paths), [output.output for output in definition.outputs])
     columns = tuple(columns_of(paths))
-    driven = apply_excitation(descriptor, paths)
-    return LinearProblem(asked, driven, columns, conventions.pade_order, tuple(paths), excesses_of(paths))
+    excited = apply_excitation(descriptor, paths)
+    return LinearProblem(asked, excited, columns, conventions.pade_order, tuple(paths), excesses_of(paths))
 
 
 def check_peak_gain(definition: IndexDefinition) -> None:

@@ -31,7 +31,7 @@ def stacks_of(descriptor: Descriptor) -> tuple[tuple[Any, ...], tuple[Any, Any]]
     return arrays, (rounded, lost if lost.any() else np.zeros((0, 0)))
 
 
-def modal_arguments(problem: LinearProblem) -> tuple[Any, ...] | None:
+def modal_arguments(problem: LinearProblem) -> tuple[Any, Any, Any] | None:
     """Descriptor without states of filters, the same extended, and the noise; None if modes cannot serve.
 
     That is so for approximants of delays, for inputs with different filters, for filters without partial fractions,

@@ -163,10 +163,10 @@ def isotropic_exponentials(sign: float) -> tuple[Any, Any, float]:
     It is direct delta(t) + sum r exp(m |t|): for `sign` 1 of the velocity of the mean of the tracks, with the density
     (1 + gamma) / 2; for -1 of the displacement of half of their difference, (1 - gamma) / (2 x^2) at x = 2 pi n track.
     Least squares of the relative error at fixed rates: those of decaying oscillations bring the decay of gamma beyond
-    x = 5, real ones the logarithm of long waves. The density is off by less than 1e-7 of itself at x from 1e-6 on.
+    x = 5, real ones the logarithm of long waves. The density is off by less than 2e-8 of itself at x from 1e-6 on.
     """
-    low = np.exp(np.arange(math.log(1e-8), math.log(0.05), 0.5))
-    middle = np.exp(np.arange(math.log(low[-1]) + 0.3, math.log(4.0), 0.3))
+    low = np.exp(np.arange(math.log(1e-8), math.log(0.02), 0.5))
+    middle = np.exp(np.arange(math.log(low[-1]) + 0.25, math.log(5.0), 0.25))
     rates = np.array([*low, *middle, *_OSCILLATING], dtype=complex)
     x = np.exp(np.linspace(math.log(1e-9), math.log(1e4), 3000))
     difference, direct = _difference(x), max(sign, 0.0)

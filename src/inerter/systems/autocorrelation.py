@@ -108,7 +108,7 @@ def _root(polynomial: Polynomial, slope: Polynomial, start: complex) -> Number |
     at = Fraction(start.real), Fraction(start.imag)
     for _ in range(_AT_MOST):
         over = _value(slope, at)
-        if over == (0, 0):
+        if not any(over):
             return None
         step = _complex(_divide(_value(polynomial, at), over))
         before = complex(at[0], at[1])

@@ -376,12 +376,17 @@ class CompiledNorm:
 
 
 def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
-    """The compiled code that values of the question and their gradients call."""
+    """The compiled code that values of the question and their gradients call, whatever the vehicle."""
     if definition.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
     coherence = getattr(road_of(definition.drive), "coherence", None)
     corrected = coherence is not None and coherence.is_isotropic
-    return (h2_kernels.norms, excess_kernels.corrections) if corrected else (h2_kernels.norms,)
+    found: list[Any] = [h2_kernels.norms]
+    if corrected:
+        found.append(excess_kernels.corrections)
+    if coherence is not None or any(one is not None for one in definition.filters):
+        found.append(modal_kernels.norms_by_modes)
+    return tuple(found)
 
 
 def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:

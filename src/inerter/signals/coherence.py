@@ -165,7 +165,7 @@ def isotropic_exponentials(sign: float) -> tuple[Any, Any, float]:
     Least squares of the relative error at fixed rates: those of decaying oscillations bring the decay of gamma beyond
     x = 5, real ones the logarithm of long waves. The density is off by less than 2e-8 of itself at x from 1e-6 on.
     """
-    low = np.exp(np.arange(math.log(1e-8), math.log(0.02), 0.5))
+    low = np.exp(np.arange(math.log(1e-4 if sign > 0.0 else 1e-8), math.log(0.02), 0.5))
     middle = np.exp(np.arange(math.log(low[-1]) + 0.25, math.log(5.0), 0.25))
     rates = np.array([*low, *middle, *_OSCILLATING], dtype=complex)
     x = np.exp(np.linspace(math.log(1e-9), math.log(1e4), 3000))

@@ -171,7 +171,8 @@ def campaign() -> None:
         exact = max(float(np.abs(norms[i] / objective._exact_norms(points[i]) - 1.0).max()) for i in sample)
         print(
             f"{name}: {known.mean():.1%} of 500 by modes, {before.mean():.1%} with states, "
-            f"{np.mean(known | before):.1%} by either; largest difference {worst:.0e}; of {len(sample)} against exact arithmetic {exact:.0e}"
+            f"{np.mean(known | before):.1%} by either; "
+            f"largest difference {worst:.0e}; of {len(sample)} against exact arithmetic {exact:.0e}"
         )
 
 

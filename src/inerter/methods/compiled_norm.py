@@ -36,7 +36,7 @@ from inerter.vehicle.mechanism import Mechanism
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
-_ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked at; what it and values may be off by
+_ASTRIDE, _SAME = (1e-4, 1e-5), 1e-7  # relative distances at which a gradient is looked at; what it may be off by
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
@@ -348,12 +348,18 @@ class CompiledNorm:
         return float(self._combine(self._exact_norms(point)))
 
     def _gradient_agrees(self, point: Array, value: float, gradient: Array) -> bool:
-        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound."""
+        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound.
+
+        The shorter step is for resonances so sharp that the difference by the longer one is off.
+        """
         direction = np.cos(1.0 + np.arange(point.size))
-        ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
-        slope = (ahead - behind) / (2.0 * _ASTRIDE)
-        return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
+        for step in _ASTRIDE:
+            ends = point * np.exp(step * np.outer([1.0, -1.0], direction))
+            ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
+            slope = (ahead - behind) / (2.0 * step)
+            if abs(slope - (gradient * point) @ direction) <= _SAME * value:
+                return True
+        return False
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""

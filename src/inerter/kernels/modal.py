@@ -73,7 +73,9 @@ class Room(NamedTuple):
     covariance: Known  # (n, n) V^-1 P V^-T
     ahead: Array  # (pairs, n) theta_ij for inputs i < j, after the row of all i = j
     behind: Array  # (pairs, n) theta_ji
-    ahead_change: Array  # (pairs, n, n) divided differences of these
+    ahead_slope: Array  # (pairs, n) derivatives of these
+    behind_slope: Array
+    ahead_change: Array  # (pairs, n, n) divided differences of theta
     behind_change: Array
     error: Array  # (pairs, n) bounds of the rounding errors of both
     exponent: Array  # (pairs, poles) exp(m_f (tau_j - tau_i))
@@ -99,7 +101,7 @@ def modal_room(n: int, m: int, o: int, poles: int) -> Any:
     modes = Modes(
         np.zeros(n, np.complex128), np.zeros(n, np.int64), real[0], real[1], square[0], real[2], square[1]
     )  # fmt: skip
-    theta = np.zeros((2, pairs, n), np.complex128)
+    theta = np.zeros((4, pairs, n), np.complex128)
     return Room(
         modes,
         known(m, n),
@@ -108,6 +110,8 @@ def modal_room(n: int, m: int, o: int, poles: int) -> Any:
         known(n, n),
         theta[0],
         theta[1],
+        theta[2],
+        theta[3],
         np.zeros((pairs, n, n), np.complex128),
         np.zeros((pairs, n, n), np.complex128),
         np.zeros((pairs, n)),
@@ -308,45 +312,68 @@ def exponential_quotients(z: complex) -> tuple[complex, complex]:
 
 
 @part(borrowing=True)
-def fill_theta(noise: Array, group: int, room: Array) -> None:
-    """Fill `room.ahead`, `room.behind` and `room.error` for a group of outputs."""
-    delays, _, starts, rates, residues, errors, direct = noise
-    pole, pair, d = room.modes.pole, room.modes.pair, direct[group]
-    m, first, last = delays.size, starts[group], starts[group + 1]
-    for k in range(pole.size):
-        if pair[k] == 2:
-            for row in range(room.error.shape[0]):
-                room.ahead[row, k] = np.conj(room.ahead[row, k - 1])
-                room.behind[row, k] = np.conj(room.behind[row, k - 1])
-                room.error[row, k] = room.error[row, k - 1]
-            continue
-        value, error = complex(0.5 * d, 0.0), 0.0
-        for f in range(first, last):
-            term = residues[f] * reciprocal(rates[f] + pole[k])
-            value -= term
+def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) -> Any:
+    """Theta for a delay and for its negative, their derivatives over s, and a bound of the rounding errors of both.
+
+    `decay` has all exp(m_f time).
+    """
+    _, _, starts, rates, residues, errors, direct = noise
+    power, turns = np.exp(s * time), 1.0 + one_norm(s) * time  # rounding of s * time turns the phase
+    ahead, behind, ahead_slope, behind_slope, error = 0j, 0j, 0j, 0j, 0.0
+    for f in range(starts[group], starts[group + 1]):
+        inverse = reciprocal(rates[f] + s)
+        term = residues[f] * inverse
+        steep = term * inverse
+        if time == 0.0:
+            behind -= term
+            behind_slope += steep
             error += errors[f] * one_norm(term)
-        room.ahead[0, k], room.behind[0, k] = value, value
-        room.error[0, k] = error + _FACTORS * one_norm(value)
-        row = 0
-        for i in range(m):
-            for j in range(i + 1, m):
-                row += 1
-                time = delays[j] - delays[i]
-                power, turns = np.exp(pole[k] * time), 1.0 + one_norm(pole[k]) * time  # rounding turns the phase
-                ahead, behind, error = d * power, 0j, turns * _FACTORS * d * one_norm(power)
-                for f in range(first, last):
-                    term, z = residues[f] * reciprocal(rates[f] + pole[k]), (pole[k] - rates[f]) * time
-                    if one_norm(z) > _SERIES:
-                        between = (power - room.exponent[row, f]) * time * reciprocal(z)
-                    else:
-                        between = room.exponent[row, f] * time * exponential_quotients(z)[0]
-                    ahead += residues[f] * between - power * term
-                    behind -= room.exponent[row, f] * term
-                    error += errors[f] * turns * (one_norm(residues[f]) * one_norm(between) + one_norm(term))
-                if time == 0.0:
-                    ahead, behind, error = value, value, room.error[0, k]
-                room.ahead[row, k], room.behind[row, k] = ahead, behind
-                room.error[row, k] = error + _FACTORS * (one_norm(ahead) + one_norm(behind))
+            continue
+        apart = s - rates[f]
+        if one_norm(apart) * time > _SERIES:
+            over = reciprocal(apart)
+            between = (power - decay[f]) * over
+            rising = (time * power - between) * over
+        else:
+            between, rising = exponential_quotients(apart * time)
+            between, rising = decay[f] * time * between, decay[f] * time * time * rising
+        ahead += residues[f] * between - power * term
+        ahead_slope += residues[f] * rising + power * (steep - time * term)
+        behind -= decay[f] * term
+        behind_slope += decay[f] * steep
+        error += errors[f] * turns * (one_norm(residues[f]) * one_norm(between) + one_norm(term))
+    if time == 0.0:
+        behind += 0.5 * direct[group]
+        ahead, ahead_slope = behind, behind_slope
+    else:
+        ahead += direct[group] * power
+        ahead_slope += direct[group] * time * power
+        error += turns * _FACTORS * direct[group] * one_norm(power)
+    return ahead, behind, ahead_slope, behind_slope, error + _FACTORS * (one_norm(ahead) + one_norm(behind))
+
+
+@part(borrowing=True)
+def fill_theta(noise: Array, group: int, room: Array) -> None:
+    """Fill `room.ahead`, `room.behind`, their slopes and `room.error` for a group of outputs."""
+    delays, pole, pair = noise[0], room.modes.pole, room.modes.pair
+    row = 0
+    for i in range(delays.size):
+        for j in range(i, delays.size):
+            if j == i and i > 0:
+                continue
+            for k in range(pole.size):
+                if pair[k] == 2:
+                    room.ahead[row, k] = np.conj(room.ahead[row, k - 1])
+                    room.behind[row, k] = np.conj(room.behind[row, k - 1])
+                    room.ahead_slope[row, k] = np.conj(room.ahead_slope[row, k - 1])
+                    room.behind_slope[row, k] = np.conj(room.behind_slope[row, k - 1])
+                    room.error[row, k] = room.error[row, k - 1]
+                else:
+                    found = theta_at(noise, group, delays[j] - delays[i], room.exponent[row], pole[k])
+                    room.ahead[row, k], room.behind[row, k] = found[0], found[1]
+                    room.ahead_slope[row, k], room.behind_slope[row, k] = found[2], found[3]
+                    room.error[row, k] = found[4]
+            row += 1
 
 
 @part(borrowing=True)
@@ -361,30 +388,6 @@ def fill_exponents(noise: Array, room: Array) -> None:
                 room.exponent[row, f] = np.exp(rates[f] * (delays[j] - delays[i]))
 
 
-@part(borrowing=True)
-def theta_slopes(noise: Array, group: int, time: float, decay: Array, s: complex) -> tuple[complex, complex]:
-    """Derivatives over s of theta for a delay and for its negative, given all exp(m_f time) in `decay`."""
-    _, _, starts, rates, residues, _, direct = noise
-    ahead, behind, power = 0j, 0j, np.exp(s * time)
-    if time > 0.0:
-        ahead += direct[group] * time * power
-    for f in range(starts[group], starts[group + 1]):
-        inverse = reciprocal(rates[f] + s)
-        term = residues[f] * inverse * inverse
-        if time == 0.0:
-            ahead += term
-            continue
-        apart = s - rates[f]
-        if one_norm(apart) * time > _SERIES:
-            over = reciprocal(apart)
-            between = (time * power - (power - decay[f]) * over) * over
-        else:
-            between = decay[f] * time * time * exponential_quotients(apart * time)[1]
-        ahead += residues[f] * (between - time * power * inverse) + power * term
-        behind += decay[f] * term
-    return ahead, ahead if time == 0.0 else behind
-
-
 @part()
 def fill_differences(noise: Array, group: int, room: Array) -> None:
     """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`."""
@@ -396,6 +399,7 @@ def fill_differences(noise: Array, group: int, room: Array) -> None:
                 continue
             time, decay = delays[j] - delays[i], room.exponent[row]
             ahead, behind = room.ahead[row], room.behind[row]
+            ahead_slope, behind_slope = room.ahead_slope[row], room.behind_slope[row]
             ahead_change, behind_change = room.ahead_change[row], room.behind_change[row]
             for k in range(pole.size):
                 if pair[k] == 2:
@@ -411,16 +415,12 @@ def fill_differences(noise: Array, group: int, room: Array) -> None:
                         inverse = reciprocal(apart)
                         ahead_change[k, q] = (ahead[k] - ahead[q]) * inverse
                         behind_change[k, q] = (behind[k] - behind[q]) * inverse
+                    elif k == q:
+                        ahead_change[k, q], behind_change[k, q] = ahead_slope[k], behind_slope[k]
                     else:  # the mean of the derivative, by Simpson's rule
-                        mean = theta_slopes(noise, group, time, decay, pole[k] - 0.5 * apart)
-                        if k != q:
-                            one = theta_slopes(noise, group, time, decay, pole[k])
-                            other_end = theta_slopes(noise, group, time, decay, pole[q])
-                            mean = (
-                                (one[0] + 4.0 * mean[0] + other_end[0]) / 6.0,
-                                (one[1] + 4.0 * mean[1] + other_end[1]) / 6.0,
-                            )
-                        ahead_change[k, q], behind_change[k, q] = mean
+                        middle = theta_at(noise, group, time, decay, pole[k] - 0.5 * apart)
+                        ahead_change[k, q] = (ahead_slope[k] + 4.0 * middle[2] + ahead_slope[q]) / 6.0
+                        behind_change[k, q] = (behind_slope[k] + 4.0 * middle[3] + behind_slope[q]) / 6.0
                     ahead_change[q, k], behind_change[q, k] = ahead_change[k, q], behind_change[k, q]
             row += 1
 

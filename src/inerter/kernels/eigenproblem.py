@@ -12,7 +12,7 @@ import numpy as np
 from inerter.kernels.decorators import instruction, part
 
 Array = Any
-_REAL = 1e-14  # relative size of an imaginary part that is rounding
+_REAL = 1e-12  # relative size of an imaginary part that is rounding
 _FAILED = 1
 
 

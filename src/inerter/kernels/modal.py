@@ -43,6 +43,18 @@ TO_MODES_TRANSPOSED = (0.5 + 0j, 0.5 + 0j, -0.5j, 0.5j)
 NOISE = "Tuple((float64[::1], int64[::1], int64[::1], complex128[::1], complex128[::1], float64[::1], float64[::1]))"
 
 
+class Noise(NamedTuple):
+    """Autocorrelation d delta(t) + sum_f r_f exp(m_f |t|) of the excitation for each group of outputs."""
+
+    delays: Array  # (inputs,) [s] in rising order
+    groups: Array  # (outputs,) number of the group: outputs with the same filter
+    starts: Array  # (groups + 1,) first pole of each group, and their number
+    poles: Array  # m_f [1/s]
+    residues: Array  # r_f
+    errors: Array  # relative rounding errors of r_f / (m_f + s)
+    direct: Array  # (groups,) d
+
+
 class Modes(NamedTuple):
     """Modes of a design."""
 
@@ -55,7 +67,7 @@ class Modes(NamedTuple):
     quotient: Array  # (n, n) -1 / (lambda_k + lambda_l)
 
 
-class Known(NamedTuple):
+class CorrectedValues(NamedTuple):
     """Values in modes, their corrections, and bounds of their rounding errors."""
 
     value: Array
@@ -67,10 +79,10 @@ class Room(NamedTuple):
     """Work space for one design."""
 
     modes: Modes
-    inputs: Known  # (inputs, n) V^-1 b_j
-    outputs: Known  # (outputs, n) c V
-    past: Known  # (inputs, n) V^-1 n_j
-    covariance: Known  # (n, n) V^-1 P V^-T
+    inputs: CorrectedValues  # (inputs, n) V^-1 b_j
+    outputs: CorrectedValues  # (outputs, n) c V
+    past: CorrectedValues  # (inputs, n) V^-1 n_j
+    covariance: CorrectedValues  # (n, n) V^-1 P V^-T
     ahead: Array  # (pairs, n) theta_ij for inputs i < j, after the row of all i = j
     behind: Array  # (pairs, n) theta_ji
     ahead_slope: Array  # (pairs, n) derivatives of these
@@ -83,31 +95,32 @@ class Room(NamedTuple):
     eigen: Array  # (2, n) parts of the eigenvalues
     pivots: Array
     real: Array  # (4, n, n)
-    complex: Array  # (3, n, n)
+    complex: Array  # (2, n, n)
+    back: Array  # (inputs, n) gradient over n_j in modes
     row: Array  # (2, max(n, inputs))
 
 
 @part()
-def known(rows: int, columns: int) -> Any:
-    """Room for `Known`."""
+def values_space(rows: int, columns: int) -> Any:
+    """Room for `CorrectedValues`."""
     values = np.zeros((2, rows, columns), np.complex128)
-    return Known(values[0], values[1], np.zeros((rows, columns)))
+    return CorrectedValues(values[0], values[1], np.zeros((rows, columns)))
 
 
 @part()
 def modal_room(n: int, m: int, o: int, poles: int) -> Any:
     """Room for a design of n states, m inputs and o outputs."""
-    square, real, pairs = np.zeros((6, n, n), np.complex128), np.zeros((7, n, n)), 1 + m * (m - 1) // 2
+    square, real, pairs = np.zeros((4, n, n), np.complex128), np.zeros((7, n, n)), 1 + m * (m - 1) // 2
     modes = Modes(
         np.zeros(n, np.complex128), np.zeros(n, np.int64), real[0], real[1], square[0], real[2], square[1]
     )  # fmt: skip
     theta = np.zeros((4, pairs, n), np.complex128)
     return Room(
         modes,
-        known(m, n),
-        known(o, n),
-        known(m, n),
-        known(n, n),
+        values_space(m, n),
+        values_space(o, n),
+        values_space(m, n),
+        values_space(n, n),
         theta[0],
         theta[1],
         theta[2],
@@ -121,13 +134,14 @@ def modal_room(n: int, m: int, o: int, poles: int) -> Any:
         np.zeros(n, np.int64),
         real[3:],
         square[2:],
+        np.zeros((m, n), np.complex128),
         np.zeros((2, max(n, m))),
     )
 
 
 @part(borrowing=True)
 def mix_rows(M: Array, pair: Array, by: Array) -> None:
-    """Multiply the rows of each conjugate pair by a matrix, given as (a, b, c, d): r becomes a r + b s, s c r + d s."""
+    """Multiply the rows of each conjugate pair by a matrix, given as (a, b, c, d): r and s become a r + b s, c r + d s."""
     a, b, c, d = by
     for k in range(pair.size):
         if pair[k] == 1:
@@ -317,7 +331,7 @@ def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) ->
 
     `decay` has all exp(m_f time).
     """
-    _, _, starts, rates, residues, errors, direct = noise
+    starts, rates, residues, direct = noise.starts, noise.poles, noise.residues, noise.direct
     power, turns = np.exp(s * time), 1.0 + one_norm(s) * time  # rounding of s * time turns the phase
     ahead, behind, ahead_slope, behind_slope, error = 0j, 0j, 0j, 0j, 0.0
     for f in range(starts[group], starts[group + 1]):
@@ -327,7 +341,7 @@ def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) ->
         if time == 0.0:
             behind -= term
             behind_slope += steep
-            error += errors[f] * one_norm(term)
+            error += noise.errors[f] * one_norm(term)
             continue
         apart = s - rates[f]
         if one_norm(apart) * time > _SERIES:
@@ -341,7 +355,7 @@ def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) ->
         ahead_slope += residues[f] * rising + power * (steep - time * term)
         behind -= decay[f] * term
         behind_slope += decay[f] * steep
-        error += errors[f] * turns * (one_norm(residues[f]) * one_norm(between) + one_norm(term))
+        error += noise.errors[f] * turns * (one_norm(residues[f]) * one_norm(between) + one_norm(term))
     if time == 0.0:
         behind += 0.5 * direct[group]
         ahead, ahead_slope = behind, behind_slope
@@ -355,7 +369,7 @@ def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) ->
 @part(borrowing=True)
 def fill_theta(noise: Array, group: int, room: Array) -> None:
     """Fill `room.ahead`, `room.behind`, their slopes and `room.error` for a group of outputs."""
-    delays, pole, pair = noise[0], room.modes.pole, room.modes.pair
+    delays, pole, pair = noise.delays, room.modes.pole, room.modes.pair
     row = 0
     for i in range(delays.size):
         for j in range(i, delays.size):
@@ -379,7 +393,7 @@ def fill_theta(noise: Array, group: int, room: Array) -> None:
 @part(borrowing=True)
 def fill_exponents(noise: Array, room: Array) -> None:
     """Fill `room.exponent`."""
-    delays, _, _, rates, _, _, _ = noise
+    delays, rates = noise.delays, noise.poles
     row = 0
     for i in range(delays.size):
         for j in range(i + 1, delays.size):
@@ -391,7 +405,7 @@ def fill_exponents(noise: Array, room: Array) -> None:
 @part()
 def fill_differences(noise: Array, group: int, room: Array) -> None:
     """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`."""
-    delays, pole, pair = noise[0], room.modes.pole, room.modes.pair
+    delays, pole, pair = noise.delays, room.modes.pole, room.modes.pair
     row = 0
     for i in range(delays.size):
         for j in range(i, delays.size):
@@ -456,7 +470,7 @@ def correct_past(delays: Array, room: Array) -> None:
 def find_covariance(noise: Array, group: int, room: Array) -> None:
     """Fill `room.past` and `room.covariance` for a group of outputs."""
     modes, inputs, past, covariance = room.modes, room.inputs, room.past, room.covariance
-    n, m, quotient = modes.pole.size, noise[0].size, modes.quotient
+    n, m, quotient = modes.pole.size, noise.delays.size, modes.quotient
     for k in range(n):
         for j in range(m):
             past.value[j, k] = room.ahead[0, k] * inputs.value[j, k]
@@ -469,7 +483,7 @@ def find_covariance(noise: Array, group: int, room: Array) -> None:
                 past.value[i, k] += room.behind[row, k] * inputs.value[j, k]
                 past.error[j, k] += room.error[row, k] * one_norm(inputs.value[i, k])
                 past.error[i, k] += room.error[row, k] * one_norm(inputs.value[j, k])
-    correct_past(noise[0], room)
+    correct_past(noise.delays, room)
     for k in range(n):
         for q in range(k + 1):
             value, error = 0j, 0.0
@@ -515,12 +529,12 @@ def real_covariance(room: Array) -> None:
 @part()
 def autocorrelation(noise: Array, group: int, time: float) -> tuple[float, float]:
     """Autocorrelation at a time, and a bound of its rounding errors, of a group without a delta function."""
-    _, _, starts, rates, residues, errors, _ = noise
+    starts, rates, residues = noise.starts, noise.poles, noise.residues
     value, size = 0.0, 0.0
     for f in range(starts[group], starts[group + 1]):
         term = residues[f] * np.exp(rates[f] * abs(time))
         value += term.real
-        size += errors[f] * one_norm(term)
+        size += noise.errors[f] * one_norm(term)
     return value, size
 
 
@@ -529,7 +543,7 @@ def mean_square(
     noise: Array, group: int, room: Array, o: int, D: Array, remainder_D: Array
 ) -> tuple[float, float, float]:
     """Mean square of an output, and relative sizes of the terms of its correction and of its rounding errors."""
-    outputs, past, covariance, delays = room.outputs, room.past, room.covariance, noise[0]
+    outputs, past, covariance, delays = room.outputs, room.past, room.covariance, noise.delays
     n, m = room.modes.pole.size, delays.size
     total, change, terms, rounding = 0.0, 0.0, 0.0, 0.0
     for k in range(n):
@@ -579,10 +593,10 @@ class Slopes(NamedTuple):
 @part()
 def add_slopes(noise: Array, group: int, room: Array, D: Array, shares: Array, slopes: Array) -> None:
     """Add to `slopes` those of the sum of the mean squares of a group of outputs with `shares`."""
-    delays, groups, modes = noise[0], noise[1], room.modes
+    delays, groups, modes = noise.delays, noise.groups, room.modes
     inputs, outputs, past, covariance = room.inputs, room.outputs, room.past, room.covariance
     n, m, Q, G = modes.pole.size, delays.size, room.complex[0], room.complex[1]
-    back = room.complex[2]  # in its first rows, what the mean squares owe to n_j
+    back = room.back
     for k in range(n):
         for q in range(k + 1):
             value = 0j
@@ -695,17 +709,16 @@ def gradient_of(p: Array, descriptor: Array, closing: Array, room: Array, slopes
     "r.m.s. norms by modes",
     f"(float64[:,::1], {DESCRIPTOR}, UniTuple(float64[:,::1], 2), {NOISE}, float64[::1])",
 )
-def norms_by_modes(points: Array, descriptor: Array, extended: Array, noise: Array, weights: Array) -> Any:
+def norms_by_modes(points: Array, descriptor: Array, extended: Array, given: Array, weights: Array) -> Any:
     """Norms, gradients and error estimates as `inerter.kernels.h2.norms` has them, by modes.
 
-    `noise` = (delays (inputs,) [s] in rising order, group (outputs,) of outputs with the same filter, first pole of
-    each group and their number, poles m_f [1/s], residues r_f, relative errors of r_f / (m_f + s), d (groups,)). Where
-    the modes do not suffice, the error estimate is infinite, and norms and gradient are nan. Behind a filter with d,
-    D counts as zero: else the norm would be infinite.
+    `given` has the fields of `Noise` in their order. Where the modes do not suffice, the error estimate is infinite,
+    and norms and gradient are nan. Behind a filter with d > 0, D counts as zero: else the norm would be infinite.
     """
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    _, groups, _, rates, _, _, direct = noise
-    closing, room = extended_space(descriptor), modal_room(n, m, o, rates.size)
+    noise = Noise(given[0], given[1], given[2], given[3], given[4], given[5], given[6])
+    groups, direct = noise.groups, noise.direct
+    closing, room = extended_space(descriptor), modal_room(n, m, o, noise.poles.size)
     slopes = Slopes(
         np.zeros((n, n)), np.zeros((m, n), np.complex128), np.zeros((o, n), np.complex128), np.zeros((o, m))
     )

@@ -53,6 +53,7 @@ def by_quadrature(descriptor, delays, filters, p):
 
 
 CASES = [
+    (2, (0.0, 0.1, 0.3), (LOW, BAND)),
     (5, (0.0,), (None, BAND)),
     (6, (0.0, 0.4), (LOW, BAND)),
     (4, (0.0, 0.0, 0.3), (BAND, LOW)),
@@ -82,7 +83,7 @@ def test_norms_and_gradients_are_those_of_the_integral(n, delays, filters):
 
 
 def test_compiled_code_gives_the_numbers_of_plain_python():
-    n, delays, filters = CASES[3]
+    n, delays, filters = CASES[4]
     rng = np.random.default_rng(0)
     given = random_system(rng, n, delays, filters)
     points, weights = rng.uniform(0.5, 1.5, (3, 2)), np.ones(2)

@@ -141,7 +141,7 @@ def modal_room(n: int, m: int, o: int, poles: int) -> Any:
 
 @part(borrowing=True)
 def mix_rows(M: Array, pair: Array, by: Array) -> None:
-    """Multiply the rows of each conjugate pair by a matrix, given as (a, b, c, d): r and s become a r + b s, c r + d s."""
+    """Multiply the rows of each conjugate pair by (a, b; c, d): r and s become a r + b s and c r + d s."""
     a, b, c, d = by
     for k in range(pair.size):
         if pair[k] == 1:

@@ -30,8 +30,8 @@ _AGREES = 1e-6
 class FoundNetwork:
     """A network with its best values.
 
-    `simpler` is the layout of a smaller network that does as well, since elements lie at their bounds; `like` are
-    networks of equal admittance, whose values follow from these.
+    `simpler` is the layout of a smaller network that does as well, within 0.1 %: one of equal admittance, or what is
+    left without the elements at their bounds. `like` are all networks of equal admittance.
     """
 
     topology: Topology
@@ -150,17 +150,17 @@ def rank_networks(searched: Iterable[SearchedNetwork]) -> list[SearchedNetwork]:
 
 def _share_within_classes(
     plan: SearchPlan, searched: Sequence[SearchedNetwork]
-) -> tuple[list[SearchedNetwork], dict[Topology, tuple[str, ...]]]:
+) -> tuple[list[SearchedNetwork], dict[Topology, tuple[Topology, ...]]]:
     """The networks, with the best values of one that has the same admittance where they keep the bounds.
 
-    Also the other networks of each class, by their layouts.
+    Also the other networks of each class.
     """
     known = {one.topology: one for one in searched}
-    like: dict[Topology, tuple[str, ...]] = {}
+    like: dict[Topology, tuple[Topology, ...]] = {}
     for members in equivalence_classes(known):
         best = min(members, key=lambda topology: (known[topology].value, topology))
         for topology in members:
-            like[topology] = tuple(plan.topology_text(other) for other in members if other != topology)
+            like[topology] = tuple(other for other in members if other != topology)
             own = known[topology]
             if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
                 continue
@@ -172,13 +172,16 @@ def _share_within_classes(
 
 
 def _found(
-    plan: SearchPlan, one: SearchedNetwork, like: tuple[str, ...], lowest: dict[Topology, float]
+    plan: SearchPlan, one: SearchedNetwork, like: tuple[Topology, ...], lowest: dict[Topology, float]
 ) -> FoundNetwork:
     names = one.topology.names(plan.taken)
     parameters = dict(zip(names, one.values, strict=True)) | one.others
     active = plan.active_bounds(one.topology, one.values)
+    smaller = [other for other in like if other.size < one.topology.size]
     reduced = reduced_topology(one.topology, [active.get(name, "") for name in names]) if active else None
-    as_well = reduced is not None and lowest.get(reduced, float("inf")) <= one.value * (1.0 + _LIKE)
+    if reduced is not None:
+        smaller.append(reduced)
+    simpler = [other for other in smaller if lowest.get(other, float("inf")) <= one.value * (1.0 + _LIKE)]
     return FoundNetwork(
         topology=one.topology,
         layout=plan.topology_text(one.topology),
@@ -189,8 +192,8 @@ def _found(
         n_starts=one.n_starts,
         n_converged=one.n_converged,
         status=OK if not one.reason else Status(StatusKind.INACCURATE, one.reason),
-        simpler=plan.topology_text(reduced) if reduced is not None and as_well else "",
-        like=like,
+        simpler=plan.topology_text(min(simpler)) if simpler else "",
+        like=tuple(map(plan.topology_text, like)),
         plan=plan,
     )
 

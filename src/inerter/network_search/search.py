@@ -236,7 +236,9 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     best = int(np.argmin(values))
     if not np.isfinite(values[best]):
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
-    point = np.clip(points[best], lower, upper)
+    point = points[best]
+    for end in (lower, upper):  # which logarithms miss by a rounding
+        point = np.where(np.isclose(point, end, rtol=1e-12, atol=0.0), end, point)
     agree = int(np.sum(values <= values[best] * (1.0 + AGREEMENT)))
     return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(point.tolist()))
 

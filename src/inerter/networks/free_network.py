@@ -186,7 +186,8 @@ def _bounds(what: str, kind: type[Element], given: object) -> Bounds:
         lower, upper = given  # type: ignore[misc]
     except (TypeError, ValueError):
         raise NetworkError(
-            f"{what} needs the lower and upper bound of a {kind.quantity} [{kind.unit}], such as (10, 1e6), got {given!r}."
+            f"{what} needs the lower and upper bound of a {kind.quantity} [{kind.unit}], such as (10, 1e6), "
+            f"got {given!r}."
         ) from None
     kind.of(free(lower, upper))  # which checks both
     return float(lower), float(upper)

@@ -15,7 +15,7 @@ import flint
 from inerter import GROUND, Damper, Inerter, Mechanism, Spring
 from inerter.indices.definition import Combination
 from inerter.indices.excitation import RoadVelocity
-from inerter.networks.elements import Parallel, Series
+from inerter.networks.elements import Bridge, Parallel, Series
 
 _ORDER = {Spring: 0, Damper: 1, Inerter: 2}
 INFINITE = "infinite"
@@ -67,6 +67,13 @@ class RationalMechanism:
             ends.append(lower)
             placed = [self._mount(p, a, b) for p, a, b in zip(network.parts, ends[:-1], ends[1:], strict=True)]
             return placed[0]
+        if isinstance(network, Bridge):
+            left, right = ({self.size + i: flint.fmpq(1)} for i in range(2))
+            self.size += 2
+            carried = self._mount(network.a, upper, left) + self._mount(network.c, upper, right)
+            for part, one, other in ((network.b, left, lower), (network.d, right, lower), (network.e, left, right)):
+                self._mount(part, one, other)
+            return carried
         nodes: dict[int, flint.fmpq] = {}
         roads: dict[str, flint.fmpq] = {}
         for end, sign in ((upper, 1), (lower, -1)):

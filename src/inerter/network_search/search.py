@@ -15,7 +15,7 @@ from numbers import Integral
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, InerterError
+from inerter.errors import DesignError, InerterError, PerformanceIndexError
 from inerter.kernels.network_search import Variables, search_network
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import IndexLike, is_composite
@@ -24,7 +24,7 @@ from inerter.methods.network_norm import NetworkIndex, network_index, network_pr
 from inerter.methods.norm import Norm
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.searched import SearchedNetwork
-from inerter.networks.elements import Damper, Element, Free, Network, free
+from inerter.networks.elements import Damper, Element, Free, Network, Spring, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
@@ -176,7 +176,14 @@ def plan_search(
     if set(probe.free_values()) != {_PLACE}:
         return plan
     mechanism = probe.mechanism()
-    return replace(plan, compiled=network_index(mechanism, index.definition(mechanism), _PLACE))  # type: ignore[union-attr]
+    sprung = with_chosen_network(vehicle, place, Spring(1.0)).mechanism()
+    try:
+        definitions = [index.definition(each) for each in (mechanism, sprung)]  # type: ignore[union-attr]
+    except PerformanceIndexError:
+        return plan
+    if definitions[0].outputs != definitions[1].outputs:  # whether the network carries weight is part of the index
+        return plan
+    return replace(plan, compiled=network_index(mechanism, definitions[0], _PLACE))
 
 
 def places_of(vehicle: Vehicle) -> list[FreeNetwork]:

@@ -69,8 +69,10 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
         for b in graph.branches
         if b.element.linear is LinearRole.STIFFNESS or b.element.switches_by(GuardRole.ELONGATION)
     ]
-    rows = np.array([[*b.nodes, *b.roads[len(mechanism.roads) :]] for b in carrying])
-    ways = scipy.linalg.null_space(rows.reshape(len(carrying), -1), rcond=_BALANCED)
+    rows = np.zeros((len(carrying), len(graph.nodes) + len(contacts)))
+    for row, b in zip(rows, carrying, strict=True):
+        row[:] = [*b.nodes, *b.roads[len(mechanism.roads) :]]
+    ways = scipy.linalg.null_space(rows, rcond=_BALANCED) if carrying else np.eye(rows.shape[1])
     weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.coefficient for c in mechanism.masses.values()])
     return ways[list(mechanism.masses)], ways[len(graph.nodes) :], weight
 

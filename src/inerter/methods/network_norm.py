@@ -6,9 +6,7 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,7 +100,7 @@ def network_program(network: Network) -> NetworkProgram:
 
 @dataclass(frozen=True, eq=False)
 class NetworkIndex:
-    """An index of r.m.s. values of a vehicle over the admittance of one network in it."""
+    """An index of a vehicle, of r.m.s. values or a peak gain, over the admittance of one network in it."""
 
     definition: IndexDefinition
     functions: tuple[PortFunction, ...]
@@ -158,25 +156,18 @@ def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | 
 def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str) -> NetworkIndex | None:
     """The index over the admittance of the network at `place`, which is a damper of that free value in `mechanism`.
 
-    None where compiled code cannot give it: for a peak gain, several delays, or a spectrum that is no fraction.
+    None where compiled code cannot give it: for several delays, or a spectrum that is no fraction.
     """
     problem = linear_problem(mechanism, definition, CONVENTIONS["exact"])
-    if (
-        definition.is_peak
-        or problem.excesses
-        or np.ptp(problem.delays) > 0.0
-        or set(problem.descriptor.free) != {place}
-    ):
+    several = np.ptp(problem.delays) > 0.0 or len(set(problem.sources)) < len(problem.sources)
+    if several or problem.excesses or set(problem.descriptor.free) != {place}:
         return None
     outputs, inputs = problem.descriptor.outputs, problem.descriptor.inputs
     functions = port_functions(problem.descriptor, place, inputs, outputs)
     squares = problem.weights**2
     together = definition.combination is Combination.ROOT_OF_SQUARES
-    merged = _merge_inputs(functions, problem.sources)
-    if merged is None:
-        return None
     rows: list[tuple[PortFunction, float, int]] = [
-        (function, float(squares[k]), 0 if together else k) for k, row in enumerate(merged) for function in row
+        (function, float(squares[k]), 0 if together else k) for k, row in enumerate(functions) for function in row
     ]
     return NetworkIndex(
         definition,
@@ -184,8 +175,3 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
         np.array([weight for _, weight, _ in rows]),
         np.array([float(group) for *_, group in rows]),
     )
-
-
-def _merge_inputs(functions: Sequence[Sequence[PortFunction]], sources: Sequence[str]) -> Any:
-    """Functions of each output by source; None where several inputs share a source."""
-    return functions if len(set(sources)) == len(sources) else None

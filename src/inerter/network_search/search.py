@@ -16,9 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError
+from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_search import Variables, search_network
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.composite_index import IndexLike, is_composite
+from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
 from inerter.methods.network_norm import NetworkIndex, network_index, network_program
 from inerter.methods.norm import Norm
@@ -37,6 +38,7 @@ from inerter.work.progress import report
 Array = NDArray[np.float64]
 _STARTS, _TRIED = 8, 32  # searches for each value, and samples of which each starts from the best
 _GROUP = 24  # networks that are handed out together
+_CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 _PLACE = "free_network_admittance"
 
@@ -102,7 +104,9 @@ class SearchPlan:
 
     def kernels(self) -> list[object]:
         """Compiled code that the search calls."""
-        return [search_network] if self.compiled is not None else []
+        if self.compiled is None:
+            return []
+        return [search_network_peak if self.compiled.definition.is_peak else search_network]
 
 
 def search(
@@ -230,17 +234,32 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     starts = plan.starts or _STARTS * size
     lower, upper = (np.array([getattr(end, name) for end in ends]) for name in ("lower", "upper"))
     variables = Variables(np.ones(size), np.arange(size), np.log(lower), np.log(upper))
-    points, slopes = np.zeros((starts, size)), np.zeros(starts)
-    samples = _samples(starts * _TRIED, size, plan.seed)
-    values = np.asarray(search_network(samples, _TRIED, variables, program.program, port, points, slopes))
-    best = int(np.argmin(values))
-    if not np.isfinite(values[best]):
+    points, samples = np.zeros((starts, size)), _samples(starts * _TRIED, size, plan.seed)
+    given = samples, _TRIED, variables, program.program, port, points
+    if plan.compiled.definition.is_peak:
+        values = np.asarray(search_network_peak(*given)) * np.sqrt(port.weights[0])
+    else:
+        values = np.asarray(search_network(*given, np.zeros(starts)))
+    if not np.isfinite(values.min()):
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
-    point = points[best]
     for end in (lower, upper):  # which logarithms miss by a rounding
-        point = np.where(np.isclose(point, end, rtol=1e-12, atol=0.0), end, point)
-    agree = int(np.sum(values <= values[best] * (1.0 + AGREEMENT)))
-    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(point.tolist()))
+        points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
+    best = _first_confirmed(plan, topology, values, points) if plan.compiled.definition.is_peak else np.argmin(values)
+    if best is None:
+        return _search_by_optimise(plan, topology)
+    agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))
+    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(points[best].tolist()))
+
+
+def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:
+    """The best of some optima whose value is that of the method itself, since a search may miss a sharp peak."""
+    design, names = plan.design(topology), topology.names(plan.taken)
+    for number in np.argsort(values, kind="stable")[:_CONFIRMED].tolist():
+        values_of = dict(zip(names, points[number].tolist(), strict=True))
+        estimate = estimate_of(design.with_values(values_of), plan.index, plan.method)
+        if estimate.status.ok and abs(estimate.value - values[number]) <= _EQUAL * values[number]:
+            return int(number)
+    return None
 
 
 def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork:

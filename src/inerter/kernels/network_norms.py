@@ -116,7 +116,7 @@ def _add_products(
     q_low: Array,
     of: int,
 ) -> None:
-    """Add s^first p q to `result`, whose highest power comes first and is that of its last index; see `fill_fraction`."""
+    """Add s^first p q to `result`, whose highest power comes first; see `fill_fraction`."""
     for i in range(degree + 1):
         for j in range(of + 1):
             k = first - i - j

@@ -52,6 +52,7 @@ class PeakSpace(NamedTuple):
     hessian: Matrix
     factor: Matrix
     held: Ints
+    count: Ints  # (1,) evaluations
 
 
 @part(borrowing=True)
@@ -68,7 +69,7 @@ def _gain(n: int, space: PeakSpace, omega: float) -> float:
     """Square of the gain."""
     real, imag = _parts_at(space.a, n, omega)
     top, top_imag = _parts_at(space.b, n - 1, omega)
-    return (top * top + top_imag * top_imag) / (real * real + imag * imag)
+    return float((top * top + top_imag * top_imag) / (real * real + imag * imag))
 
 
 @part(borrowing=True)
@@ -141,8 +142,10 @@ def _peaks_at(
     refined: bool,
 ) -> int:
     """Fill the peaks at a point; their number, 0 where the mechanism is not stable."""
+    space.count[0] += 1
     for leaf in range(variables.of_leaf.size):
-        variables.values[leaf] = np.exp(point[variables.of_leaf[leaf]])
+        if variables.of_leaf[leaf] >= 0:
+            variables.values[leaf] = np.exp(point[variables.of_leaf[leaf]])
     admittance(variables.values, program, space.norms.network)
     fill_fraction(0, program, port, space.norms, False)
     n, fraction = port.forms[0, DEGREE], space.norms.fraction
@@ -235,7 +238,8 @@ def _fill_gradients(
         for i in range(gradients.shape[1]):
             gradients[peak, i] = 0.0
         for leaf in range(space.slopes.size):
-            gradients[peak, variables.of_leaf[leaf]] += space.slopes[leaf] * variables.values[leaf]
+            if variables.of_leaf[leaf] >= 0:
+                gradients[peak, variables.of_leaf[leaf]] += space.slopes[leaf] * variables.values[leaf]
 
 
 @part(borrowing=True)
@@ -479,11 +483,11 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
 
 
 @part()
-def _peak_space(k: int, program: Program, port: Port) -> PeakSpace:
+def _peak_space(k: int, leaves: int, program: Program, port: Port) -> PeakSpace:
     norms, n = norm_space(program, port), port.forms[0, DEGREE]
     return PeakSpace(
         norms,
-        np.zeros(k),
+        np.zeros(leaves),
         np.zeros(n + 1),
         np.zeros(n + 1),
         np.zeros(_MOST),
@@ -502,23 +506,25 @@ def _peak_space(k: int, program: Program, port: Port) -> PeakSpace:
         np.zeros((k, k)),
         np.zeros((k, k)),
         np.zeros(k, np.int64),
+        np.zeros(1, np.int64),
     )
 
 
 @kernel("search of a network for a peak gain", typed=True)
 def search_network_peak(
-    samples: Matrix, tried: int, variables: Variables, program: Program, port: Port, points: Matrix
+    samples: Matrix, tried: int, variables: Variables, program: Program, port: Port, points: Matrix, counts: Ints
 ) -> Floats:
     """Minima of a peak gain from the best of each `tried` rows of `samples`, which lie in the unit cube.
 
-    `points` (starts, variables) is filled with the optima, as element values; the result has the gains, infinite where
-    all samples of a start are.
+    `points` (starts, variables) and `counts` (starts,) are filled with the optima, as element values, and the numbers
+    of evaluations; the result has the gains, infinite where all samples of a start are.
     """
     k, starts = samples.shape[1], points.shape[0]
-    space = _peak_space(k, program, port)
+    space = _peak_space(k, variables.of_leaf.size, program, port)
     result = np.zeros(starts)
     for start in range(starts):
         best, chosen = np.inf, -1
+        space.count[0] = 0
         for row in range(start * tried, (start + 1) * tried):
             for i in range(k):
                 space.trial[i] = variables.lower[i] + samples[row, i] * (variables.upper[i] - variables.lower[i])
@@ -534,6 +540,7 @@ def search_network_peak(
         for i in range(k):
             space.point[i] = variables.lower[i] + samples[chosen, i] * (variables.upper[i] - variables.lower[i])
         result[start] = np.exp(_descend(variables, program, port, space))
+        counts[start] = space.count[0]
         for i in range(k):
             points[start, i] = np.exp(space.point[i])
     return result
@@ -543,7 +550,7 @@ def search_network_peak(
 def peak_gains(points: Matrix, program: Program, port: Port) -> Floats:
     """Highest gain that the grid finds at each row of element values (designs, leaves)."""
     k = points.shape[1]
-    space = _peak_space(k, program, port)
+    space = _peak_space(k, k, program, port)
     variables = Variables(np.zeros(k), np.arange(k), np.zeros(k), np.zeros(k))
     result = np.zeros(points.shape[0])
     for row in range(points.shape[0]):

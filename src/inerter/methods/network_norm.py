@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.indices.definition import Combination, IndexDefinition
 from inerter.kernels.network_norms import Port
+from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
     ARMS,
     BRIDGE,
@@ -23,13 +24,15 @@ from inerter.kernels.network_polynomials import (
     TREES,
     Program,
 )
+from inerter.kernels.network_search import Variables, search_network
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.networks.elements import Bridge, Element, Network, Parallel
+from inerter.networks.elements import Bridge, Element, Free, Network, Parallel, Tied
 from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.systems.network_port import PortFunction, port_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+TRIED = 32  # samples of which each start is the best
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +102,15 @@ def network_program(network: Network) -> NetworkProgram:
 
 
 @dataclass(frozen=True, eq=False)
+class CompiledSearch:
+    """Optima that many starts find, in compiled code: element values (starts, variables), values, and evaluations."""
+
+    points: Array
+    values: Array
+    evaluations: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
 class NetworkIndex:
     """An index of a vehicle, of r.m.s. values or a peak gain, over the admittance of one network in it."""
 
@@ -131,6 +143,39 @@ class NetworkIndex:
             self.weights[kept],
             self.groups[kept],
         )
+
+    @property
+    def is_peak(self) -> bool:
+        """Whether the index is a peak gain."""
+        return self.definition.is_peak
+
+    def search(self, network: Network, lower: Array, upper: Array, samples: Array) -> CompiledSearch | None:
+        """Optima over the free values of a network, in the order in which they first occur, between these bounds.
+
+        One start for each `TRIED` rows of `samples` (rows, values) in the unit cube. None if the index is infinite for
+        all values, and for values that are tied.
+        """
+        program = network_program(network)
+        port, leaves = self.port(program), [element.value for element in network.elements()]
+        if port is None or port.weights.size == 0 or any(isinstance(value, Tied) for value in leaves):
+            return None
+        names = list(dict.fromkeys(value.name for value in leaves if isinstance(value, Free)))
+        of_leaf = [names.index(value.name) if isinstance(value, Free) else -1 for value in leaves]
+        gains = [element.gain for element in network.elements()]
+        if any(gain != 1.0 for gain in gains):
+            return None
+        numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
+        variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
+        assert samples.shape[1] == lower.size == upper.size == len(names), "each free value has a name of its own"
+        starts = samples.shape[0] // TRIED
+        points, counts = np.zeros((starts, len(names))), np.zeros(starts, np.int64)
+        given = samples, TRIED, variables, program.program, port, points, counts
+        values = np.asarray(search_network_peak(*given) if self.is_peak else search_network(*given))
+        if self.is_peak:
+            values = values * np.sqrt(port.weights[0])
+        for end in (lower, upper):  # which logarithms miss by a rounding
+            points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
+        return CompiledSearch(points, values, counts)
 
 
 def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | None:

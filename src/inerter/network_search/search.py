@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError
 from inerter.kernels.network_peaks import search_network_peak
-from inerter.kernels.network_search import Variables, search_network
+from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import NetworkIndex, network_index, network_program
+from inerter.methods.network_norm import TRIED, NetworkIndex, network_index
 from inerter.methods.norm import Norm
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.searched import SearchedNetwork
-from inerter.networks.elements import Damper, Element, Free, Network, free
+from inerter.networks.elements import Damper, Element, Network, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
@@ -36,7 +36,7 @@ from inerter.work.pool import worker_pool
 from inerter.work.progress import report
 
 Array = NDArray[np.float64]
-_STARTS, _TRIED = 8, 32  # searches for each value, and samples of which each starts from the best
+_STARTS = 8  # searches for each value
 _GROUP = 24  # networks that are handed out together
 _CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -106,7 +106,7 @@ class SearchPlan:
         """Compiled code that the search calls."""
         if self.compiled is None:
             return []
-        return [search_network_peak if self.compiled.definition.is_peak else search_network]
+        return [search_network_peak if self.compiled.is_peak else search_network]
 
 
 def search(
@@ -225,26 +225,15 @@ def _samples(count: int, size: int, seed: int) -> Array:
 def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     assert plan.compiled is not None
     network = plan.network(topology)
-    ends = [element.value for element in network.elements() if isinstance(element.value, Free)]
-    program = network_program(network)
-    port = plan.compiled.port(program)
-    if port is None:
+    lower, upper = np.array(plan.ends(topology)).T
+    starts = plan.starts or _STARTS * topology.size
+    found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
+    if found is None:
         return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
-    size = len(ends)
-    starts = plan.starts or _STARTS * size
-    lower, upper = (np.array([getattr(end, name) for end in ends]) for name in ("lower", "upper"))
-    variables = Variables(np.ones(size), np.arange(size), np.log(lower), np.log(upper))
-    points, samples = np.zeros((starts, size)), _samples(starts * _TRIED, size, plan.seed)
-    given = samples, _TRIED, variables, program.program, port, points
-    if plan.compiled.definition.is_peak:
-        values = np.asarray(search_network_peak(*given)) * np.sqrt(port.weights[0])
-    else:
-        values = np.asarray(search_network(*given, np.zeros(starts)))
+    values, points = found.values, found.points
     if not np.isfinite(values.min()):
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
-    for end in (lower, upper):  # which logarithms miss by a rounding
-        points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
-    best = _first_confirmed(plan, topology, values, points) if plan.compiled.definition.is_peak else np.argmin(values)
+    best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
     if best is None:
         return _search_by_optimise(plan, topology)
     agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))

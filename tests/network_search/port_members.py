@@ -74,7 +74,7 @@ def port_member(number: int) -> PortMember:
     question = linear_member(number)
     rng = np.random.default_rng([59, number])
     mechanism, network = question.vehicle.mechanism(), random_network_of_search(rng)
-    strut = bool(mechanism.struts) and rng.random() < 0.8 or not mechanism.tyres
+    strut = (bool(mechanism.struts) and rng.random() < 0.8) or not mechanism.tyres
     mounts = mechanism.struts if strut else mechanism.tyres
     at = int(rng.integers(len(mounts)))
     way = int(rng.integers(3))

@@ -238,7 +238,10 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     if found is None:
         return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
     values, points = found.values, found.points
-    if not np.isfinite(values.min()):
+    if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
+        middle = dict(zip(topology.names(plan.taken), np.sqrt(lower * upper).tolist(), strict=True))
+        if np.isfinite(estimate_of(plan.design(topology).with_values(middle), plan.index, plan.method).value):
+            return _search_by_optimise(plan, topology)
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
     best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
     if best is None:

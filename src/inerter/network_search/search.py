@@ -21,8 +21,8 @@ from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import TRIED, NetworkIndex, network_index
-from inerter.methods.norm import Norm
+from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index
+from inerter.methods.norm import is_exact_norm
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.elements import Damper, Element, Network, Spring, free
@@ -40,7 +40,6 @@ _STARTS = 8  # searches for each value
 _GROUP = 24  # networks that are handed out together
 _CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
-_PLACE = "free_network_admittance"
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ class SearchPlan:
 def search(
     vehicle: Vehicle,
     index: IndexLike,
-    method: Method | None = None,
+    method: Method,
     *,
     subject_to: Sequence[Limit] = (),
     seed: int = 0,
@@ -137,14 +136,14 @@ def search(
     >>> found.ranking[0].layout, round(found.ranking[0].value, 4)
     ('c1 - b1', 2.4281)
     """
-    plan = plan_search(vehicle, index, Norm() if method is None else method, subject_to, seed, starts)
+    plan = plan_search(vehicle, index, method, subject_to, seed, starts)
     if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs < 1:
         raise DesignError(f"`jobs` must be a positive integer, got {jobs!r}.")
     groups = plan.groups()
     found: list[SearchedNetwork] = []
     with worker_pool(int(jobs), executor) as pool:
         prepare_on(pool, plan.kernels())
-        for result in pool.spread(partial(search_group, plan), groups):
+        for result in pool.spread(partial(search_group, replace(plan)), groups):  # without all topologies in its cache
             found.extend(result)
             best = min((one.value for one in found), default=np.inf)
             report("networks", len(found), len(plan.topologies), best=best if np.isfinite(best) else None)
@@ -171,13 +170,16 @@ def plan_search(
             f"A search needs a design with one free network, such as Spring(120e3) | any_network(4, ...); got {found}."
         )
     place, limits = places[0], check_limits(subject_to)
-    check_request(with_chosen_network(vehicle, place, _probe(place)), index, method)
+    for asked in (index, *(limit.of for limit in limits)):
+        check_request(with_chosen_network(vehicle, place, _probe(place)), asked, method)
     plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
-    alone = len(places) == 1 and not limits and method == Norm() and not is_composite(index)
+    if not plan.topologies:
+        raise DesignError(f"No network is left to search: {place!r} leaves out all of them.")
+    alone = len(places) == 1 and not limits and is_exact_norm(method) and not is_composite(index)
     if not alone:
         return plan
-    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, _PLACE), _PLACE))
-    if set(probe.free_values()) != {_PLACE}:
+    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, PLACE), PLACE))
+    if set(probe.free_values()) != {PLACE}:
         return plan
     sprung = with_chosen_network(vehicle, place, Spring(1.0))
     try:
@@ -185,7 +187,7 @@ def plan_search(
         definition, other = (index.definition(m) for m in (mechanism, sprung.mechanism()))  # type: ignore[union-attr]
         if definition.outputs != other.outputs:  # the index depends on which networks carry weight
             return plan
-        return replace(plan, compiled=network_index(mechanism, definition, _PLACE))
+        return replace(plan, compiled=network_index(mechanism, definition, PLACE))
     except InerterError:  # `optimise` says which networks have no index
         return plan
 
@@ -209,7 +211,7 @@ def with_chosen_network(vehicle: Vehicle, place: FreeNetwork, network: Network) 
 
 def _probe(place: FreeNetwork) -> Element:
     kind, ends = next(iter(place.bounds.items()))
-    return kind.of(free(*ends), _PLACE)
+    return kind.of(free(*ends), PLACE)
 
 
 def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:

@@ -20,11 +20,16 @@ from inerter.networks.elements import (
     Spring,
     free,
 )
+from inerter.networks.elements.algebra import Complex, Fraction
 from inerter.networks.elements.values import check_name
 from inerter.networks.enumeration import Topology, enumerate_networks
 
 Bounds = tuple[float, float] | None
 _MOST = 7  # elements: seven give 11 thousand networks
+_NOT_CHOSEN = (
+    "The design contains any_network(...), which is not a network yet. Use search(...) to find the best one, "
+    "or put a network in its place."
+)
 
 
 @dataclass(frozen=True)
@@ -57,6 +62,8 @@ class FreeNetwork(Network):
                 f"A free network has from 1 to {_MOST} elements, got min_elements={self.min_elements} and "
                 f"max_elements={self.max_elements}."
             )
+        if not isinstance(self.bridges, bool):
+            raise NetworkError(f"bridges must be True or False, got {self.bridges!r}.")
         for what, kind in (("springs", Spring), ("dampers", Damper), ("inerters", Inerter)):
             object.__setattr__(self, what, _bounds(what, kind, getattr(self, what)))
         if not self.bounds:
@@ -71,6 +78,10 @@ class FreeNetwork(Network):
     def elements(self) -> Iterator[Element]:
         """No elements yet."""
         return iter(())
+
+    def fraction(self, s: Complex) -> Fraction:
+        """Raises `DesignError`: no network is chosen yet."""
+        raise DesignError(_NOT_CHOSEN)
 
     def topologies(self) -> list[Topology]:
         """All networks that it may be, by number of elements, then by expression."""
@@ -152,13 +163,11 @@ def with_free_networks(network: Network, chosen: Mapping[FreeNetwork, Network]) 
     return network.with_parts(parts)
 
 
-def check_chosen(network: Network) -> None:
-    """Raise `DesignError` if there is a free network in a network."""
+def check_chosen(network: Network) -> Network:
+    """The network; raises `DesignError` if there is a free network in it."""
     if free_networks(network):
-        raise DesignError(
-            "The design contains any_network(...), which is not a network yet. Use search(...) to find the best one, "
-            "or put a network in its place."
-        )
+        raise DesignError(_NOT_CHOSEN)
+    return network
 
 
 def _count(what: str, value: object) -> int | None:

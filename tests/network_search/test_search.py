@@ -1,0 +1,272 @@
+"""Searches of networks: optima by another way, order, executors, and the rules of the results."""
+
+from __future__ import annotations
+
+import pickle
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter import Damper, Spring
+from inerter.network_search import search as module
+from inerter.network_search.results import TIED, reduced_topology
+from inerter.networks.enumeration import Topology, enumerate_networks
+from inerter.networks.equivalence import equivalence_classes
+
+ROAD = it.Road(roughness=5e-7, speed=25)
+INDICES = {
+    "comfort": it.RideComfort(ROAD),
+    "weighted comfort": it.RideComfort(ROAD, weighting="Wk"),
+    "load": it.TyreLoad(ROAD),
+    "travel": it.SuspensionTravel(ROAD),
+}
+BOUNDS = {"springs": (1e2, 1e7), "dampers": (1e1, 1e6), "inerters": (1e-2, 1e5)}
+NORM = it.Norm()
+
+
+def car(most: int, **more) -> it.QuarterCar:
+    return paper_quarter_car(Spring(120e3) | it.any_network(most, **{**BOUNDS, **more}))
+
+
+@cache
+def found(index: str, most: int, seed: int = 0) -> it.SearchResult:
+    return it.search(car(most), INDICES[index], NORM, seed=seed)
+
+
+def facts(result: it.SearchResult) -> list[tuple]:
+    """All that a search says of its networks, but for the plan."""
+    ranking = [
+        (one.layout, one.value, one.parameters, one.active_bounds, one.n_converged, one.status, one.simpler, one.like)
+        for one in result.ranking
+    ]
+    return [*ranking, *result.failed]
+
+
+@pytest.mark.parametrize(
+    ("index", "most", "starts"),
+    [
+        ("comfort", 2, 20),
+        *(pytest.param(index, 4, 100, marks=pytest.mark.campaign) for index in INDICES),
+    ],
+)
+def test_no_search_of_one_network_is_better(index, most, starts):
+    """Gradient searches by states: a limit that is never reached keeps `optimise` from the compiled search."""
+    unlimited = [it.at_most(INDICES["load"], 1e9)]
+    for one in found(index, most).ranking:
+        design = one.plan.design(one.topology)
+        alone = it.optimise(design, INDICES[index], NORM, starts=starts, subject_to=unlimited)
+        assert one.value <= alone.value * (1.0 + 1e-8), one.layout
+
+
+@pytest.mark.parametrize("index", INDICES)
+def test_values_are_those_of_the_designs(index):
+    for one in found(index, 3).ranking:
+        assert one.status.ok
+        assert it.evaluate(one.design, INDICES[index], NORM).value == pytest.approx(one.value, rel=1e-9)
+        for name, value in one.parameters.items():
+            lower, upper = {"k": (1e2, 1e7), "c": (1e1, 1e6), "b": (1e-2, 1e5)}[name[0]]
+            assert lower <= value <= upper
+            assert (name in one.active_bounds) == (value in (lower, upper))
+
+
+@pytest.mark.parametrize(("most", "seeds"), [(3, range(3)), pytest.param(4, range(10), marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("index", INDICES)
+def test_seeds_give_the_same_best_networks(index, most, seeds):
+    best = [found(index, most, seed).ranking[:10] for seed in seeds]
+    for other in best[1:]:
+        assert [one.layout for one in other] == [one.layout for one in best[0]]
+        assert [one.value for one in other] == pytest.approx([one.value for one in best[0]], rel=1e-8)
+
+
+@pytest.mark.parametrize("way", ["threads", "processes", "other groups"])
+def test_whatever_shares_the_work_the_result_is_the_same(way, monkeypatch):
+    if way == "other groups":
+        monkeypatch.setattr(module, "_GROUP", 5)
+        shared = it.search(car(3), INDICES["load"], NORM)
+    else:
+        pool = ThreadPoolExecutor if way == "threads" else ProcessPoolExecutor
+        with pool(2) as executor:
+            shared = it.search(car(3), INDICES["load"], NORM, executor=executor)
+    assert facts(shared) == facts(found("load", 3))
+
+
+def test_what_is_sent_to_a_worker_does_not_grow_with_the_number_of_networks():
+    sizes = []
+    for most in (1, 4):
+        sent = []
+        plan = module.plan_search(car(most), INDICES["load"], NORM)
+        assert len(plan.topologies) == sum(len(list(enumerate_networks(n))) for n in range(1, most + 1))
+        sent.append(len(pickle.dumps(module.replace(plan))))
+        sizes += sent
+    assert sizes[1] < 1.1 * sizes[0]
+
+
+@pytest.mark.parametrize("most", [1, 3])
+def test_no_network_is_dropped_and_each_that_fails_says_why(most):
+    result = found("comfort", most)
+    topologies = car(most).strut.parts[1].topologies()
+    layouts = [one.layout for one in result.ranking] + [layout for layout, _ in result.failed]
+    assert sorted(layouts) == sorted(topology.expression for topology in topologies)
+    assert result.n_networks == len(topologies)
+    assert all(reason for _, reason in result.failed)
+    assert {layout for layout, _ in result.failed} == {t.expression for t in topologies if not t.counts["c"]}
+
+
+def test_networks_are_ranked_by_value_then_by_size_then_by_layout():
+    ranking = found("comfort", 4).ranking
+    for one, other in pairwise(ranking):
+        tied = abs(other.value - one.value) <= 2.0 * TIED * one.value
+        assert one.value < other.value or (tied and one.topology < other.topology)
+
+
+@pytest.mark.parametrize("index", ["comfort", "load", "travel"])
+def test_networks_of_equal_admittance_have_equal_values(index):
+    result = found(index, 4)
+    by_topology = {one.topology: one for one in result.ranking}
+    for members in equivalence_classes(by_topology):
+        for topology in members:
+            one = by_topology[topology]
+            assert set(one.like) == {by_topology[other].layout for other in members if other != topology}
+            for other in members:
+                free = not one.active_bounds and not by_topology[other].active_bounds
+                if free:
+                    assert one.value == pytest.approx(by_topology[other].value, rel=1e-7)
+
+
+@pytest.mark.parametrize("index", ["comfort", "load", "travel"])
+def test_a_network_does_as_well_as_a_simpler_one(index):
+    result = found(index, 4)
+    by_layout = {one.layout: one for one in result.ranking}
+    simpler = [one for one in result.ranking if one.simpler]
+    assert simpler
+    for one in simpler:
+        smaller = by_layout[one.simpler]
+        assert smaller.n_elements < one.n_elements
+        assert smaller.value <= one.value * 1.001
+        assert one.active_bounds or smaller.layout in one.like
+
+
+@pytest.mark.parametrize("index", ["comfort", "load", "travel"])
+def test_the_frontier_has_the_best_of_each_size_that_is_better_than_all_smaller(index):
+    result = found(index, 4)
+    counted = [one for one in result.ranking if not one.simpler]
+    for frontier, size in (
+        (result.frontier, lambda one: one.n_elements),
+        (result.frontier_of_inerters, lambda one: one.topology.counts["b"]),
+    ):
+        assert all(size(one) < size(other) and one.value > other.value for one, other in pairwise(frontier))
+        for one in frontier:
+            assert one.value <= min(each.value for each in counted if size(each) <= size(one)) * (1.0 + TIED)
+        best = min(one.value for one in counted)
+        assert frontier[-1].value <= best * (1.0 + 1e-7)
+
+
+def test_near_optimal_networks_are_within_the_share():
+    result = found("comfort", 4)
+    near = result.near_optimal(0.02)
+    assert {one.layout for one in near} == {
+        one.layout for one in result.ranking if one.value <= 1.02 * result.ranking[0].value
+    }
+    assert [one.n_elements for one in near] == sorted(one.n_elements for one in near)
+
+
+@pytest.mark.parametrize(
+    ("tree", "at", "rest"),
+    [
+        (("|", "k", ("-", "c", "b")), ("", "lower", ""), "k"),
+        (("|", "k", ("-", "c", "b")), ("", "", "upper"), ("|", "k", "c")),
+        (("|", "k", ("-", "c", "b")), ("lower", "", ""), ("-", "c", "b")),
+        (("|", "k", ("-", "c", "b")), ("", "", ""), None),
+        (("-", "b", ("|", "k", "c")), ("", "upper", ""), "b"),
+        (("-", "b", ("|", "k", "c")), ("lower", "", ""), None),
+        (("-", "b", ("|", "c", ("-", "k", "c"))), ("upper", "", "upper", ""), "c"),
+        (("bridge", "k", "c", "b", "k", "c"), ("lower", "", "", "", ""), None),
+    ],
+)
+def test_what_is_left_without_elements_at_their_bounds(tree, at, rest):
+    topology = Topology(tree)
+    assert topology.tree == tree
+    assert reduced_topology(topology, at) == (None if rest is None else Topology(rest))
+
+
+@pytest.mark.parametrize("way", ["limit", "linearisation"])
+def test_limits_and_other_methods_are_searched_by_optimise(way):
+    limits = [it.at_most(INDICES["load"], 560.0)] if way == "limit" else []
+    method = NORM if way == "limit" else it.StatisticalLinearisation()
+    result = it.search(car(2, springs=None), INDICES["comfort"], method, subject_to=limits, starts=4)
+    assert result.ranking
+    assert result.n_networks == 4
+    for one in result.ranking:
+        alone = it.optimise(one.plan.design(one.topology), INDICES["comfort"], method, subject_to=limits, starts=4)
+        assert (one.value, one.parameters) == (alone.value, alone.parameters)
+        if limits and one.status.ok:
+            assert it.evaluate(one.design, INDICES["load"], NORM).value <= 560.0 * (1.0 + 1e-6)
+
+
+def test_two_places_have_the_same_network_with_the_same_values():
+    place = it.any_network(2, dampers=BOUNDS["dampers"], inerters=BOUNDS["inerters"])
+    half = paper_half_car(Spring(60e3) | place, Spring(50e3) | place)
+    result = it.search(half, INDICES["comfort"], NORM, starts=4)
+    assert result.n_networks == 4
+    best = result.ranking[0]
+    assert set(best.parameters) == set(best.topology.names())
+    front, rear = (list(strut.elements())[1:] for strut in (best.design.front, best.design.rear))
+    assert [element.value for element in front] == [element.value for element in rear] == [*best.parameters.values()]
+
+
+def test_free_values_beside_the_network_are_found_with_it():
+    strut = Spring(it.free(8e4, 2e5, name="k")) | it.any_network(2, dampers=BOUNDS["dampers"])
+    (one,) = it.search(paper_quarter_car(strut), INDICES["load"], NORM, starts=6).ranking
+    alone = it.optimise(
+        paper_quarter_car(Spring(it.free(8e4, 2e5, name="k")) | Damper(it.free(1e1, 1e6, name="c1"))),
+        INDICES["load"],
+        NORM,
+        starts=6,
+    )
+    assert one.parameters == pytest.approx(alone.parameters, rel=1e-5)
+
+
+def test_an_index_that_depends_on_what_carries_weight():
+    """Static loads are known only with a spring between body and wheel, which here the network has to be."""
+    coefficient = it.DynamicLoadCoefficient(ROAD)
+    result = it.search(paper_quarter_car(it.any_network(2, **BOUNDS)), coefficient, NORM, starts=4)
+    assert [one.layout for one in result.ranking] == ["k1 | c1"]
+    assert dict(result.failed)["c1"].startswith("The static tyre loads are not known")
+    weight = 9.80665 * (181.75 + 25.0)
+    load = it.evaluate(result.ranking[0].design, INDICES["load"], NORM).value
+    assert result.ranking[0].value == pytest.approx(load / weight, rel=1e-9)
+
+
+def test_a_network_beside_a_tyre_is_searched_where_it_has_a_value():
+    """A damper on the velocity of the road passes white noise, so that only springs are left."""
+    fixed = paper_quarter_car(Spring(120e3) | Damper(2e3)).mechanism()
+    (tyre,) = fixed.tyres
+    place = it.any_network(2, springs=(1e4, 1e6), dampers=(1e1, 1e6))
+    network = tyre.network | place
+    softened = replace(fixed, tyres=(replace(tyre, network=network),))
+    result = it.search(softened, INDICES["comfort"], NORM, starts=4)
+    assert result.n_networks == 4
+
+
+def test_names_of_the_elements_are_those_that_are_left():
+    strut = Spring(120e3, "k1") | it.any_network(2, springs=BOUNDS["springs"], dampers=BOUNDS["dampers"])
+    result = it.search(paper_quarter_car(strut), INDICES["comfort"], NORM)
+    assert {name for one in result.ranking for name in one.parameters} == {"k2", "c1"}
+    assert all(np.isfinite(one.value) for one in result.ranking)
+
+
+@pytest.mark.parametrize("number", sampled(range(30), range(1)))
+def test_networks_with_bridges_are_searched_too(number):
+    rng = np.random.default_rng([61, number])
+    kinds = ("springs", "dampers") if rng.random() < 0.5 else ("dampers", "inerters")
+    place = it.any_network(5, **{kind: BOUNDS[kind] for kind in kinds}, min_elements=5, bridges=True)
+    result = it.search(paper_quarter_car(Spring(120e3) | place), INDICES["comfort"], NORM, starts=4)
+    assert any(one.layout.startswith("bridge") for one in result.ranking)
+    assert all(one.status.ok for one in result.ranking)

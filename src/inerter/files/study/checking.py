@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.files.common.problem import at
+from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
@@ -19,7 +19,7 @@ from inerter.files.study.limits import limited_definitions, limits_in
 from inerter.files.study.loading import load_study
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
-from inerter.files.study.study import Study, elements_used
+from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.tasks import tasks
 from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
@@ -63,13 +63,15 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     way it is joined rather than on its numbers, and one that cannot has a status that says so. `tell` is called before
     each, with how many are assembled and how many there are. A study that was checked just before is not again.
 
-    Raises `StudyError` with a line for every layout that cannot be analysed.
+    Raises `StudyError` with a line for every layout that cannot be analysed, or has a free network.
     """
     global _sound  # noqa: PLW0603
     if study is _sound:
         return
-    problems, every = [], cases(study)
-    tried = _points_to_check(every)
+    searched = searched_layouts(study)
+    problems = [_unchosen(study, layout, names) for layout, names in searched.items()]
+    every = cases(study)
+    tried = () if problems else _points_to_check(every)
     for number, layout in enumerate(study.layouts):
         for done, point in enumerate(tried, start=number * len(tried)):
             tell(done, len(tried) * len(study.layouts))
@@ -81,6 +83,12 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     if problems:
         raise refusal(study.path, problems)
     _sound = study
+
+
+def _unchosen(study: Study, layout: str, names: Sequence[str]) -> Problem:
+    what = f"{some(names)} is a free network" if len(names) == 1 else f"{some(names)} are free networks"
+    search = f"Find the best network with: inerter search {study.path.name}"
+    return at(("layouts", layout), fault=f"{what}, not a design yet", expected="elements", hint=f"{search}.")
 
 
 def _points_to_check(every: Cases) -> list[int]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.atomic_io import escape_surrogates
-from inerter.files.common.elements import with_tied_values
+from inerter.files.common.elements import free_networks_in, with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
@@ -55,7 +55,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     problems = [
         *element_problems,
         *vehicle_problems(study.model, study.vehicle),
-        *layout_problems(study.elements, study.layouts),
+        *layout_problems({**study.elements, **study.free_networks}, study.layouts),
         *line_problems,
         *_road_problems(study),
     ]
@@ -102,6 +102,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
         coherence=(road and road["coherence"]) or {},
         line=line,
         elements=elements,
+        free_networks=free_networks_in(found["elements"]),
         layouts=found["layouts"],
         own_indices=dict(found["indices"]),
         method_settings={name: table for name, table in found.get("methods", {}).items() if table},
@@ -137,7 +138,8 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:
-    used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
+    named = elements_used(study)
+    used = [name for name in named if name in study.free_networks or isinstance(study.elements[name].value, Free)]
     used += [name for name, value in study.vehicle.items() if isinstance(value, Free)]
     if used and study.optimise is None:
         method = quote_value(methods_that(searches)[0])

@@ -1,0 +1,124 @@
+"""Tables of a search over networks: the best for each number of elements, the ranking, and all networks in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isfinite, nan
+from typing import TYPE_CHECKING
+
+from inerter.errors import StatusKind
+from inerter.formatting import format_percent, format_quantity, label_with_unit
+from inerter.networks.elements import ELEMENT_TYPES
+from inerter.table import Column, Quantity, Row, Table, cells, columns
+
+if TYPE_CHECKING:
+    from inerter.files.study.searching import LayoutSearch, StudySearch
+    from inerter.files.study.study import Study
+    from inerter.network_search.results import FoundNetwork
+
+RANKED = 10  # networks in a ranking for people
+
+
+def improvement(value: float, reference: float) -> float:
+    """How far a value is below a reference, in per cent of it; nan where that has no meaning."""
+    if not (isfinite(value) and isfinite(reference)) or reference == 0.0:
+        return nan
+    return 100.0 * (reference - value) / abs(reference)
+
+
+def frontier_table(study: Study, one: LayoutSearch) -> Table:
+    """The best network for each number of elements, with what it gains on the one before and on the baseline."""
+    heads = [
+        *columns("Elements", one.index, "Gain", *([f"On {study.baseline}"] if isfinite(one.baseline) else [])),
+        Column("Network", prose=True),
+    ]
+    rows, before = [], nan
+    for found in one.result.frontier:
+        gains = [improvement(found.value, before), *([improvement(found.value, one.baseline)] * isfinite(one.baseline))]
+        texts = [None if gain != gain else format_percent(gain) for gain in gains]
+        rows.append(Row(cells(f"{found.n_elements}", Quantity(found.value, found.unit), *texts, found.layout)))
+        before = found.value
+    return Table(f"{one.heading}: best network for each number of elements", heads, rows)
+
+
+def ranking_table(study: Study, one: LayoutSearch) -> Table:
+    """The best networks with their values; an asterisk marks a value at a bound."""
+    heads = [
+        *columns("Rank", one.index, "Agreement"),
+        Column("Network", listed="Network and values"),
+        *(Column(name, listed="Network and values") for name in _parameters(one.result.ranking[:RANKED])),
+    ]
+    names = _parameters(one.result.ranking[:RANKED])
+    rows = []
+    for rank, found in enumerate(one.result.ranking[:RANKED], 1):
+        values = [_value_text(study, found, name) if name in found.parameters else None for name in names]
+        agreement = f"{found.n_converged} of {found.n_starts}"
+        content = cells(f"{rank}", Quantity(found.value, found.unit), agreement, found.layout, *values)
+        rows.append(Row(content, status=_doubt(found)))
+    count = len(one.result.ranking)
+    what = f"{one.heading}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
+    return Table(f"{what} (* at a bound)" if _any_at_bound(one.result.ranking[:RANKED]) else what, heads, rows)
+
+
+def networks_table(found: StudySearch) -> Table:
+    """All networks of all searches, those that failed last, with a column for every parameter."""
+    searches = found.searches
+    names = _parameters([network for one in searches for network in one.result.ranking])
+    keys = ("layout", "index", "rank", "network", "elements", "value", "unit", "improvement_percent", "status")
+    units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
+    heads = [Column(key=key) for key in (*keys, *units, "at_bound", "starts", "agreed")]
+    return Table("Networks", heads, [Row(cells(*row)) for one in searches for row in _rows(one, names)])
+
+
+def _rows(one: LayoutSearch, names: list[str]) -> Iterator[list[str | int | float | None]]:
+    for rank, found in enumerate(one.result.ranking, 1):
+        yield [
+            *(one.layout, one.index, rank, found.layout, found.n_elements, found.value, found.unit),
+            *(improvement(found.value, one.baseline), str(found.status)),
+            *(found.parameters.get(name) for name in names),
+            ";".join(f"{name}:{end}" for name, end in found.active_bounds.items()),
+            *(found.n_starts, found.n_converged),
+        ]
+    nothing = [None] * len(names)
+    for layout, reason in one.result.failed:
+        status = f"{StatusKind.FAILED.value}: {reason}"
+        yield [one.layout, one.index, None, layout, None, None, one.result.unit, None, status, *nothing, "", None, None]
+
+
+def parameter_unit(study: Study, name: str) -> str:
+    """Unit of a free value: of one that the file names, or of an element of a network found, by the kind in its name."""
+    kinds = {kind.symbol: kind.unit for kind in ELEMENT_TYPES}
+    return study.free_units.get(name) or kinds.get(name.rstrip("0123456789"), "")
+
+
+def at_bound_notes(one: LayoutSearch) -> Iterator[str]:
+    """Remarks on the best networks with elements at their bounds, and on smaller ones that do as well."""
+    for found in dict.fromkeys((*one.result.frontier, *one.result.ranking[:RANKED])):
+        if found.active_bounds:
+            ends = ", ".join(f"{name} at its {end} bound" for name, end in found.active_bounds.items())
+            yield f"{found.layout} has {ends}{f', so {found.simpler} does as well' if found.simpler else ''}"
+
+
+def _parameters(found: tuple[FoundNetwork, ...] | list[FoundNetwork]) -> list[str]:
+    """Names of all parameters, by kind and number."""
+    every = {name for network in found for name in network.parameters}
+    ranks = {kind.symbol: rank for rank, kind in enumerate(ELEMENT_TYPES)}
+
+    def order(name: str) -> tuple[int, str, int]:
+        stem = name.rstrip("0123456789")
+        return ranks.get(stem, len(ranks)), stem, int(name[len(stem) :] or 0)
+
+    return sorted(every, key=order)
+
+
+def _value_text(study: Study, found: FoundNetwork, name: str) -> str:
+    text = format_quantity(found.parameters[name], parameter_unit(study, name))
+    return f"{text}*" if name in found.active_bounds else text
+
+
+def _doubt(found: FoundNetwork) -> str:
+    return "" if found.status.ok else str(found.status)
+
+
+def _any_at_bound(found: tuple[FoundNetwork, ...]) -> bool:
+    return any(network.active_bounds for network in found)

@@ -68,6 +68,9 @@ from inerter.methods.norm import Norm as Norm
 from inerter.methods.registry import METHODS as METHODS
 from inerter.methods.static_stiffness import static_stiffness as static_stiffness
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
+from inerter.network_search.results import FoundNetwork as FoundNetwork
+from inerter.network_search.results import SearchResult as SearchResult
+from inerter.network_search.search import search as search
 from inerter.networks.catalogue import LAYOUTS as LAYOUTS
 from inerter.networks.elements import Bridge as Bridge
 from inerter.networks.elements import Damper as Damper
@@ -89,6 +92,8 @@ from inerter.networks.elements.roles import StatisticalRole as StatisticalRole
 from inerter.networks.elements.roles import SwitchRole as SwitchRole
 from inerter.networks.enumeration import Topology as Topology
 from inerter.networks.enumeration import enumerate_networks as enumerate_networks
+from inerter.networks.free_network import FreeNetwork as FreeNetwork
+from inerter.networks.free_network import any_network as any_network
 from inerter.networks.parser import network as network
 from inerter.norms.h2 import h2_norm as h2_norm
 from inerter.norms.hinf import hinf_norm as hinf_norm

@@ -105,7 +105,16 @@ def norm_space(program: Program, port: Port) -> NormSpace:
 
 @part(borrowing=True)
 def _add_products(
-    result: Array, low: Array, fine: bool, first: int, p: Array, p_low: Array, degree: int, q: Array, q_low: Array, of: int
+    result: Array,
+    low: Array,
+    fine: bool,
+    first: int,
+    p: Array,
+    p_low: Array,
+    degree: int,
+    q: Array,
+    q_low: Array,
+    of: int,
 ) -> None:
     """Add s^first p q to `result`, whose highest power comes first and is that of its last index; see `_fraction`."""
     for i in range(degree + 1):
@@ -222,9 +231,8 @@ def index_in(values: Array, program: Program, port: Port, space: NormSpace, grad
     the precision does not suffice).
     """
     admittance(values, program, space.network)
-    error, fine = _squares(program, port, space, False), False
+    error, _fine = _squares(program, port, space, False), False
     if not error <= _ACCURATE:
-        fine = True
         fine_admittance(values, program, space.network)
         error = _squares(program, port, space, True)
     if not error <= _ACCURATE:

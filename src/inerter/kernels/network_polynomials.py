@@ -138,7 +138,7 @@ def admittance_adjoint(program: Program, room: Polynomials, gradient: Array) -> 
 
     The adjoints of all other parts are overwritten.
     """
-    parts, bridges = program
+    parts, _bridges = program
     last = parts.shape[0] - 1
     for k in range(last):
         _clear(room.top_adjoint[k], parts[k, TOP])
@@ -203,9 +203,7 @@ def _add_fine_convolution(
 
 
 @part(borrowing=True)
-def _fine_bridge_product(
-    program: Program, room: Polynomials, row: int, term: int, in_top: bool, work: Array
-) -> int:
+def _fine_bridge_product(program: Program, room: Polynomials, row: int, term: int, in_top: bool, work: Array) -> int:
     """A term of a bridge in the first two rows of `work`, in twice the precision; its degree."""
     parts, bridges = program
     work[0, 0], work[1, 0], degree = 1.0, 0.0, 0

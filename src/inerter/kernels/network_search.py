@@ -59,7 +59,7 @@ def _index_at(
             variables.values[leaf] = np.exp(point[variables.of_leaf[leaf]])
     if gradient.size == 0:
         value, _ = index_in(variables.values, program, port, space.norms, gradient)
-        return np.log(value)
+        return float(np.log(value))
     value, _ = index_in(variables.values, program, port, space.norms, space.slopes)
     for i in range(gradient.size):
         gradient[i] = 0.0
@@ -67,7 +67,7 @@ def _index_at(
         for leaf in range(variables.of_leaf.size):
             if variables.of_leaf[leaf] >= 0:
                 gradient[variables.of_leaf[leaf]] += space.slopes[leaf] * variables.values[leaf] / value
-    return np.log(value)
+    return float(np.log(value))
 
 
 @part(borrowing=True)

@@ -20,8 +20,10 @@ from inerter.indices.excitation import road_of
 from inerter.kernels import excess as excess_kernels
 from inerter.kernels import gain as gain_kernels
 from inerter.kernels import h2 as h2_kernels
+from inerter.kernels import modal as modal_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
+from inerter.methods.modal_norm import modal_arguments, stacks_of
 from inerter.networks.elements import middle
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
@@ -34,11 +36,12 @@ from inerter.vehicle.mechanism import Mechanism
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
-_ASTRIDE, _SAME = 1e-4, 1e-7  # relative distance at which a gradient is looked at; what it and values may be off by
+_ASTRIDE, _SAME = (1e-4, 1e-5), 1e-7  # relative distances at which a gradient is looked at; what it may be off by
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
 _UNCERTAIN = 1e-10  # error estimate from which on the error bound of a norm behind a filter may be exceeded
+_MANY_STATES = 9  # with those of filters, from which on modes are faster than covariances
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -48,21 +51,24 @@ class CompiledNorm:
 
     problem: LinearProblem
 
-    @cached_property
+    @property
     def descriptor(self) -> tuple[Any, ...]:
         """The descriptor's arrays in the order in which compiled code takes them."""
-        names = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
-        return tuple(np.ascontiguousarray(getattr(self.problem.descriptor, name), dtype=float) for name in names)
+        return self._stacks[0]
 
-    @cached_property
+    @property
     def extended_descriptor(self) -> tuple[Array, Array]:
         """S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors: no entries where these are zero."""
-        d = self.problem.descriptor
-        stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
-        stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
-        rounded = np.ascontiguousarray(stack, dtype=float)
-        lost = np.ascontiguousarray(stack - rounded, dtype=float)
-        return rounded, lost if lost.any() else np.zeros((0, 0))
+        return self._stacks[1]
+
+    @cached_property
+    def _stacks(self) -> tuple[tuple[Any, ...], tuple[Array, Array]]:
+        return stacks_of(self.problem.descriptor)
+
+    @cached_property
+    def _modal_arguments(self) -> tuple[Any, Any, Any] | None:
+        """Arguments of the norms by modes; None where these cannot serve or take longer."""
+        return modal_arguments(self.problem) if len(self.problem.descriptor.states) >= _MANY_STATES else None
 
     @cached_property
     def arrivals(self) -> tuple[Array, tuple[Any, Any, float], tuple[NDArray[np.int64], Array]]:
@@ -214,8 +220,7 @@ class CompiledNorm:
         Over several sources, squares are added up for the outputs that each one excites.
         """
         if not self.single_source_definitions and np.all(self.reachable_outputs) and self._excess is None:
-            norms, gradients, errors = h2_kernels.norms(points, *self.arguments, weights)
-            return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
+            return self._kernel_norms(points, weights)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
         for seen, one in self.per_source_definitions:
@@ -234,25 +239,57 @@ class CompiledNorm:
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
         return total, gradients, errors
 
+    def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter."""
+        norms, gradients, errors = self._by_modes(points, weights)
+        rest = np.flatnonzero(np.isinf(errors))
+        if rest.size:
+            found = h2_kernels.norms(points[rest], *self.arguments, weights)
+            norms[rest], errors[rest] = found[0], found[2]
+            if weights.size:
+                gradients[rest] = found[1]
+        return norms, gradients, errors
+
+    def _by_modes(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """Norms, gradients and error estimates over one source by modes; estimates are infinite where modes fail."""
+        if self._modal_arguments is None:
+            missing = np.full((points.shape[0], self.problem.weights.size), np.nan)
+            slopes = np.full((points.shape[0] if weights.size else 0, points.shape[1]), np.nan)
+            return missing, slopes, np.full(points.shape[0], np.inf)
+        descriptor, extended, noise = self._modal_arguments
+        norms, gradients, errors = modal_kernels.norms_by_modes(points, descriptor, extended, noise, weights)
+        return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
+
     @cached_property
     def _excess(self) -> Excess | None:
         """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
     def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,)."""
-        found, _, errors = map(np.asarray, h2_kernels.norms(points, *self.arguments, np.empty(0)))
+        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,).
+
+        The first two are one where the filter is exact or modes do without it.
+        """
         if self._excess is None:
-            return found, found, errors
-        own = (self.descriptor, self.arrivals, self._excess.table)
-        squares = found**2 + excess_kernels.corrections(points, *own, np.empty(0))[0]
-        norms = np.sqrt(np.maximum(squares, 0.0))
-        return norms, found, np.where(np.any(np.isnan(norms), axis=1), np.inf, errors)
+            norms, _, errors = self._kernel_norms(points, np.empty(0))
+            return norms, norms, errors
+        norms, _, errors = self._by_modes(points, np.empty(0))
+        behind, rest = norms.copy(), np.flatnonzero(np.isinf(errors))
+        if rest.size:
+            found, _, unsure = map(np.asarray, h2_kernels.norms(points[rest], *self.arguments, np.empty(0)))
+            own = (self.descriptor, self.arrivals, self._excess.table)
+            squares = found**2 + excess_kernels.corrections(points[rest], *own, np.empty(0))[0]
+            norms[rest], behind[rest] = np.sqrt(np.maximum(squares, 0.0)), found
+            errors[rest] = np.where(np.any(np.isnan(norms[rest]), axis=1), np.inf, unsure)
+        return norms, behind, errors
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
         if self._excess is None:
-            return np.asarray(h2_kernels.norms(point[None], *self.arguments, weights)[1][0])
+            return np.asarray(self._kernel_norms(point[None], weights)[1][0])
+        _, gradients, errors = self._by_modes(point[None], weights)
+        if np.isfinite(errors[0]):
+            return np.asarray(gradients[0])
         shares, own = weights / np.maximum(norms, 1e-150), (self.descriptor, self.arrivals, self._excess.table)
         slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
@@ -311,12 +348,18 @@ class CompiledNorm:
         return float(self._combine(self._exact_norms(point)))
 
     def _gradient_agrees(self, point: Array, value: float, gradient: Array) -> bool:
-        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound."""
+        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound.
+
+        The shorter step is for resonances so sharp that the difference by the longer one is off.
+        """
         direction = np.cos(1.0 + np.arange(point.size))
-        ends = point * np.exp(_ASTRIDE * np.outer([1.0, -1.0], direction))
-        ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
-        slope = (ahead - behind) / (2.0 * _ASTRIDE)
-        return bool(abs(slope - (gradient * point) @ direction) <= _SAME * value)
+        for step in _ASTRIDE:
+            ends = point * np.exp(step * np.outer([1.0, -1.0], direction))
+            ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
+            slope = (ahead - behind) / (2.0 * step)
+            if abs(slope - (gradient * point) @ direction) <= _SAME * value:
+                return True
+        return False
 
     def active(self, point: Array) -> Array | None:
         """Frequencies [rad/s] of the local maxima of the gain, the highest (or sharpest) first, for a peak gain."""
@@ -339,12 +382,17 @@ class CompiledNorm:
 
 
 def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
-    """The compiled code that values of the question and their gradients call."""
+    """The compiled code that values of the question and their gradients call, whatever the vehicle."""
     if definition.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
     coherence = getattr(road_of(definition.drive), "coherence", None)
     corrected = coherence is not None and coherence.is_isotropic
-    return (h2_kernels.norms, excess_kernels.corrections) if corrected else (h2_kernels.norms,)
+    found: list[Any] = [h2_kernels.norms]
+    if corrected:
+        found.append(excess_kernels.corrections)
+    if coherence is not None or any(one is not None for one in definition.filters):
+        found.append(modal_kernels.norms_by_modes)
+    return tuple(found)
 
 
 def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:

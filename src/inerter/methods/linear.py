@@ -23,7 +23,7 @@ from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.filters import Filter, high_pass
-from inerter.systems.input_paths import Column, apply_excitation, columns_of, excesses_of, inputs_of
+from inerter.systems.input_paths import Column, InputPath, apply_excitation, columns_of, excesses_of, inputs_of
 from inerter.systems.linear import LinearSystem
 from inerter.systems.output_filters import with_output_filters
 from inerter.vehicle.mechanism import Mechanism
@@ -83,6 +83,7 @@ class LinearProblem:
     unfiltered: Descriptor
     arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
+    paths: tuple[InputPath, ...]  # from the sources to the inputs of the mechanism
     excesses: Mapping[str, Excess] = field(default_factory=dict)  # of sources whose filters only stand in for a density
 
     @cached_property
@@ -134,7 +135,8 @@ class LinearProblem:
         half = on_one_side(mechanism, [a for a in self.definition.input_paths(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
-            return replace(self, unfiltered=apply_excitation(described, half[1]), arrivals=tuple(columns_of(half[1])))
+            driven = apply_excitation(described, half[1])
+            return replace(self, unfiltered=driven, arrivals=tuple(columns_of(half[1])), paths=half[1])
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(
@@ -145,7 +147,8 @@ class LinearProblem:
             inputs=tuple(d.inputs[i] for i in chosen),
             sizes=(S, R, F[:, :, chosen], Y_eta, Y_x, Y_u[:, :, chosen]),
         )
-        return replace(self, unfiltered=descriptor, arrivals=tuple(self.arrivals[i] for i in chosen))
+        paths = tuple(path for path in self.paths if path.source == source)
+        return replace(self, unfiltered=descriptor, arrivals=tuple(self.arrivals[i] for i in chosen), paths=paths)
 
     def system(self, closed: LinearSystem) -> LinearSystem:
         """The closed descriptor with sources and delays."""
@@ -234,9 +237,8 @@ def linear_problem(mechanism: Mechanism, definition: IndexDefinition, convention
     paths = definition.input_paths(driven)
     descriptor = describe(driven, inputs_of(paths), [output.output for output in definition.outputs])
     columns = tuple(columns_of(paths))
-    return LinearProblem(
-        asked, apply_excitation(descriptor, paths), columns, conventions.pade_order, excesses_of(paths)
-    )
+    excited = apply_excitation(descriptor, paths)
+    return LinearProblem(asked, excited, columns, conventions.pade_order, tuple(paths), excesses_of(paths))
 
 
 def check_peak_gain(definition: IndexDefinition) -> None:

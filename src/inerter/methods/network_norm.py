@@ -161,7 +161,12 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
     None where compiled code cannot give it: for a peak gain, several delays, or a spectrum that is no fraction.
     """
     problem = linear_problem(mechanism, definition, CONVENTIONS["exact"])
-    if definition.is_peak or problem.excesses or np.ptp(problem.delays) > 0.0 or set(problem.descriptor.free) != {place}:
+    if (
+        definition.is_peak
+        or problem.excesses
+        or np.ptp(problem.delays) > 0.0
+        or set(problem.descriptor.free) != {place}
+    ):
         return None
     outputs, inputs = problem.descriptor.outputs, problem.descriptor.inputs
     functions = port_functions(problem.descriptor, place, inputs, outputs)

@@ -180,11 +180,14 @@ def _bounds(what: str, kind: type[Element], given: object) -> Bounds:
         return None
     if isinstance(given, Free):
         given = (given.lower, given.upper)
+    lower: float
+    upper: float
     try:
         lower, upper = given  # type: ignore[misc]
     except (TypeError, ValueError):
         raise NetworkError(
-            f"{what} needs the lower and upper bound of a {kind.quantity} [{kind.unit}], such as (10, 1e6), got {given!r}."
+            f"{what} needs the lower and upper bound of a {kind.quantity} [{kind.unit}], such as (10, 1e6), "
+            f"got {given!r}."
         ) from None
     kind.of(free(lower, upper))  # which checks both
     return float(lower), float(upper)

@@ -335,7 +335,7 @@ def _starting_points(
 ) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
     count = max(2 ** min(6 + lower.size, 12), 2 ** math.ceil(math.log2(starts)))
-    unit = _quasi_random_points(count, lower.size, seed)
+    unit = quasi_random_points(count, lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
     report("samples", 0, len(points), share=0.0)
 
@@ -351,7 +351,7 @@ def _starting_points(
     return [points[int(i)] for i in resume_or_compute(points[:starts].tobytes(), best_first)], len(points)
 
 
-def _quasi_random_points(count: int, size: int, seed: int) -> Array:
+def quasi_random_points(count: int, size: int, seed: int) -> Array:
     """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start.
 
     Its steps are the powers of the inverse root of x**(size + 1) = x + 1 (M. Roberts, The unreasonable effectiveness of

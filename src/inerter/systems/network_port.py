@@ -60,7 +60,7 @@ def port_functions(
 
 
 def _split(one: Polynomial, two: Polynomial) -> tuple[Polynomial, Polynomial]:
-    """p and q of p + y q from its values at y = 1 and 2."""
+    """P and q of p + y q from its values at y = 1 and 2."""
     slope = add(two, scale_by(one, -1))
     return add(one, scale_by(slope, -1)), slope
 

@@ -1,0 +1,1 @@
+"""Search of the best network among all that a number of springs, dampers and inerters can form."""

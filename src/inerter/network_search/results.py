@@ -1,0 +1,247 @@
+"""Results of a search: the ranking, the frontier over the number of elements, and what can be said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.formatting import format_alike
+from inerter.methods.composite_index import estimate_of
+from inerter.methods.method import Estimate
+from inerter.network_search.searched import SearchedNetwork
+from inerter.networks.enumeration import BRIDGE, PARALLEL, SERIES, Topology, Tree
+from inerter.networks.equivalence import equivalence_classes, transformed
+from inerter.vehicle.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from inerter.network_search.search import SearchPlan
+
+TIED = 1e-8  # relative difference up to which two networks have the same value
+_LIKE = 1e-3  # the same for a network and what is left of it without elements at their bounds
+_VERIFIED = 20  # networks from the best whose values are computed once more by the method itself
+_AGREES = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class FoundNetwork:
+    """A network with its best values.
+
+    `simpler` is the layout of a smaller network that does as well, within 0.1 %: one of equal admittance, or what is
+    left without the elements at their bounds. `like` are all networks of equal admittance.
+    """
+
+    topology: Topology
+    layout: str
+    value: float
+    unit: str
+    parameters: dict[str, float]
+    active_bounds: dict[str, str]
+    n_starts: int
+    n_converged: int
+    status: Status
+    simpler: str
+    like: tuple[str, ...]
+    plan: SearchPlan
+
+    @property
+    def n_elements(self) -> int:
+        """Number of elements."""
+        return self.topology.size
+
+    @cached_property
+    def design(self) -> Vehicle:
+        """The vehicle with this network and its best values."""
+        return self.plan.design(self.topology).with_values(self.parameters)
+
+    @cached_property
+    def estimate(self) -> Estimate:
+        """The index of the design by the method of the search."""
+        return estimate_of(self.design, self.plan.index, self.plan.method)
+
+
+@dataclass(frozen=True, eq=False)
+class SearchResult:
+    """All networks of a search, the best first.
+
+    Networks whose values differ by less than 1e-8 are ranked by number of elements, then by layout. `failed` are
+    networks without a value, each with the reason.
+    """
+
+    symbol: str
+    unit: str
+    ranking: tuple[FoundNetwork, ...]
+    failed: tuple[tuple[str, str], ...]
+    seed: int
+
+    @property
+    def n_networks(self) -> int:
+        """Number of networks, those without a value included."""
+        return len(self.ranking) + len(self.failed)
+
+    @cached_property
+    def frontier(self) -> tuple[FoundNetwork, ...]:
+        """The best network of each number of elements that is better than all smaller ones, in ascending order.
+
+        A network that does as well as a smaller one, with elements at their bounds, is counted there.
+        """
+        return tuple(best_of_each_size(one for one in self.ranking if not one.simpler))
+
+    @cached_property
+    def frontier_of_inerters(self) -> tuple[FoundNetwork, ...]:
+        """As `frontier`, for each number of inerters."""
+        counted = (one for one in self.ranking if not one.simpler)
+        return tuple(_improving(counted, lambda one: one.topology.counts["b"]))
+
+    def near_optimal(self, within: float = 0.01) -> tuple[FoundNetwork, ...]:
+        """Networks whose value is within a share of the best one, those of the fewest elements first."""
+        if not self.ranking:
+            return ()
+        limit = self.ranking[0].value * (1.0 + within)
+        return tuple(sorted((one for one in self.ranking if one.value <= limit), key=lambda one: one.n_elements))
+
+
+def best_of_each_size(found: Iterable[FoundNetwork]) -> Iterator[FoundNetwork]:
+    """The best network of each number of elements, where it is better than all smaller ones."""
+    return _improving(found, lambda one: one.n_elements)
+
+
+def _improving(found: Iterable[FoundNetwork], size_of: Callable[[FoundNetwork], int]) -> Iterator[FoundNetwork]:
+    by_size: dict[int, FoundNetwork] = {}
+    for one in found:
+        size = size_of(one)
+        if size not in by_size or one.value < by_size[size].value * (1.0 - TIED):
+            by_size[size] = one
+    best = float("inf")
+    for size in sorted(by_size):
+        if by_size[size].value < best * (1.0 - TIED):
+            best = by_size[size].value
+            yield by_size[size]
+
+
+def collect_results(plan: SearchPlan, searched: Iterable[SearchedNetwork]) -> SearchResult:
+    """The result of a search from the optima of all its networks, in any order."""
+    by_topology = {one.topology: one for one in searched}
+    ordered = [by_topology[topology] for topology in plan.topologies]
+    improved, like = _share_within_classes(plan, [one for one in ordered if isfinite(one.value)])
+    lowest = {one.topology: one.value for one in improved}
+    found = [_found(plan, one, like[one.topology], lowest) for one in rank_networks(improved)]
+    for i, one in enumerate(found[:_VERIFIED]):
+        found[i] = _verified(one)
+    failed = tuple((plan.topology_text(one.topology), one.reason) for one in ordered if not isfinite(one.value))
+    unit = found[0].unit if found else str(plan.index.unit)
+    return SearchResult(str(plan.index.symbol), unit, tuple(found), failed, plan.seed)
+
+
+def rank_networks(searched: Iterable[SearchedNetwork]) -> list[SearchedNetwork]:
+    """Networks by value; those of equal value by number of elements, then by expression."""
+    ranked: list[SearchedNetwork] = []
+    group: list[SearchedNetwork] = []
+    for one in sorted(searched, key=lambda one: (one.value, one.topology)):
+        if group and one.value > group[0].value * (1.0 + TIED):
+            ranked.extend(sorted(group, key=lambda each: each.topology))
+            group = []
+        group.append(one)
+    return ranked + sorted(group, key=lambda each: each.topology)
+
+
+def _share_within_classes(
+    plan: SearchPlan, searched: Sequence[SearchedNetwork]
+) -> tuple[list[SearchedNetwork], dict[Topology, tuple[Topology, ...]]]:
+    """The networks, with the best values of one that has the same admittance where they keep the bounds.
+
+    Also the other networks of each class.
+    """
+    known = {one.topology: one for one in searched}
+    like: dict[Topology, tuple[Topology, ...]] = {}
+    for members in equivalence_classes(known):
+        best = min(members, key=lambda topology: (known[topology].value, topology))
+        for topology in members:
+            like[topology] = tuple(other for other in members if other != topology)
+            own = known[topology]
+            if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
+                continue
+            values = transformed(best, known[best].values, topology)
+            if plan.keeps_bounds(topology, values):
+                value = known[best].value
+                known[topology] = replace(own, value=value, values=tuple(values), n_converged=0)
+    return list(known.values()), like
+
+
+def _found(
+    plan: SearchPlan, one: SearchedNetwork, like: tuple[Topology, ...], lowest: dict[Topology, float]
+) -> FoundNetwork:
+    names = one.topology.names(plan.taken)
+    parameters = dict(zip(names, one.values, strict=True)) | one.others
+    active = plan.active_bounds(one.topology, one.values)
+    smaller = [other for other in like if other.size < one.topology.size]
+    reduced = reduced_topology(one.topology, [active.get(name, "") for name in names]) if active else None
+    if reduced is not None:
+        smaller.append(reduced)
+    simpler = [other for other in smaller if lowest.get(other, float("inf")) <= one.value * (1.0 + _LIKE)]
+    return FoundNetwork(
+        topology=one.topology,
+        layout=plan.topology_text(one.topology),
+        value=one.value,
+        unit=str(plan.index.unit),
+        parameters=parameters,
+        active_bounds=active,
+        n_starts=one.n_starts,
+        n_converged=one.n_converged,
+        status=OK if not one.reason else Status(StatusKind.INACCURATE, one.reason),
+        simpler=plan.topology_text(min(simpler)) if simpler else "",
+        like=tuple(map(plan.topology_text, like)),
+        plan=plan,
+    )
+
+
+def _verified(found: FoundNetwork) -> FoundNetwork:
+    """The network with the status of its value by the method itself."""
+    estimate = found.estimate
+    if not found.status.ok or not estimate.status.ok:
+        return found if not found.status.ok else replace(found, status=estimate.status)
+    if abs(estimate.value - found.value) <= _AGREES * abs(found.value):
+        return found
+    one, other = format_alike([found.value, estimate.value], found.unit)
+    message = f"the value of the search, {one}, differs from that of the design, {other}"
+    return replace(found, status=Status(StatusKind.INACCURATE, message))
+
+
+def reduced_topology(topology: Topology, at_bounds: Sequence[str]) -> Topology | None:
+    """The network without elements at "lower" bounds (no force) and at "upper" ones (no motion).
+
+    None if nothing is left, if it is the same network, or for a bridge.
+    """
+    rest = iter(at_bounds)
+    found = _reduce(topology.tree, rest)
+    if found is None or isinstance(found, bool):
+        return None
+    reduced = Topology(found)
+    return reduced if reduced.size < topology.size else None
+
+
+def _reduce(tree: Tree, rest: Iterator[str]) -> Tree | bool | None:
+    """What is left of a tree; False if it is open, True if it is rigid, None if that is not known."""
+    if isinstance(tree, str):
+        bound = next(rest)
+        return {"lower": False, "upper": True}.get(bound, tree)
+    operator, *parts = tree
+    left = [_reduce(part, rest) for part in parts]
+    if operator == BRIDGE:
+        return tree if left == parts else None
+    if any(part is None for part in left):
+        return None
+    decides = operator == PARALLEL
+    if any(part is decides for part in left):
+        return decides
+    kept = [part for part in left if not isinstance(part, bool)]
+    flat: list[Tree] = []
+    for part in kept:
+        flat.extend(part[1:] if isinstance(part, tuple) and part[0] == operator else [part])
+    merged = [part for i, part in enumerate(flat) if not isinstance(part, str) or part not in flat[:i]]
+    if not merged:
+        return operator == SERIES
+    return merged[0] if len(merged) == 1 else (operator, *merged)

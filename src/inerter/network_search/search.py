@@ -1,0 +1,262 @@
+"""`search`: the best values of every network that a free network may be, ranked.
+
+A norm over random roads or forces without delays is searched in compiled code that takes any network
+(`methods.network_norm`); anything else by `optimise`, network by network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache, partial
+from numbers import Integral
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import DesignError, InerterError
+from inerter.kernels.network_search import Variables, search_network
+from inerter.kernels.prepare import prepare_on
+from inerter.methods.composite_index import IndexLike, is_composite
+from inerter.methods.method import Method, check_request
+from inerter.methods.network_norm import NetworkIndex, network_index, network_program
+from inerter.methods.norm import Norm
+from inerter.network_search.results import SearchResult, collect_results
+from inerter.network_search.searched import SearchedNetwork
+from inerter.networks.elements import Damper, Element, Free, Network, free
+from inerter.networks.enumeration import Topology
+from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
+from inerter.optimisation.limits import Limit, check_limits
+from inerter.optimisation.optimise import AGREEMENT, optimise, quasi_random_points
+from inerter.vehicle.replace_values import mounted_elements, with_networks
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.work.pool import worker_pool
+from inerter.work.progress import report
+
+Array = NDArray[np.float64]
+_STARTS, _TRIED = 8, 32  # searches for each value, and samples of which each starts from the best
+_GROUP = 24  # networks that are handed out together
+_AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
+_PLACE = "free_network_admittance"
+
+
+@dataclass(frozen=True)
+class SearchPlan:
+    """A search that can be handed to other processes in groups of networks."""
+
+    vehicle: Vehicle
+    index: IndexLike
+    method: Method
+    limits: tuple[Limit, ...]
+    seed: int
+    starts: int | None
+    place: FreeNetwork
+    compiled: NetworkIndex | None  # None: by `optimise`
+
+    @cached_property
+    def topologies(self) -> list[Topology]:
+        """All networks, by number of elements, then by expression."""
+        return self.place.topologies()
+
+    def groups(self) -> list[tuple[Topology, ...]]:
+        """The networks in groups, those with the most elements first, since they take longest."""
+        several = self.topologies[::-1]
+        size = _GROUP if self.compiled is not None else 1
+        return [tuple(several[i : i + size]) for i in range(0, len(several), size)]
+
+    @cached_property
+    def taken(self) -> frozenset[str]:
+        """Names of the elements beside the free network."""
+        return frozenset(element.label for part in mounted_elements(self.vehicle) for element in part)
+
+    def network(self, topology: Topology) -> Network:
+        """A network with free values."""
+        return self.place.network(topology, self.taken)
+
+    def design(self, topology: Topology) -> Vehicle:
+        """The vehicle with a network with free values."""
+        return with_chosen_network(self.vehicle, self.place, self.network(topology))
+
+    def topology_text(self, topology: Topology) -> str:
+        """The expression of a network by the names that its elements have in the design."""
+        return topology.format_expression(topology.names(self.taken))
+
+    def ends(self, topology: Topology) -> list[tuple[float, float]]:
+        """Bounds of the elements in the order of the expression."""
+        by_symbol = {kind.symbol: ends for kind, ends in self.place.bounds.items()}
+        return [by_symbol[symbol] for symbol in topology.kinds]
+
+    def keeps_bounds(self, topology: Topology, values: Sequence[float]) -> bool:
+        """Whether element values lie between their bounds."""
+        return all(low <= value <= high for value, (low, high) in zip(values, self.ends(topology), strict=True))
+
+    def active_bounds(self, topology: Topology, values: Sequence[float]) -> dict[str, str]:
+        """Elements at a bound, with "lower" or "upper", by name."""
+        found = {}
+        for name, value, (low, high) in zip(topology.names(self.taken), values, self.ends(topology), strict=True):
+            place = np.log(value / low) / np.log(high / low)
+            if place < _AT_BOUND or place > 1.0 - _AT_BOUND:
+                found[name] = "lower" if place < _AT_BOUND else "upper"
+        return found
+
+    def kernels(self) -> list[object]:
+        """Compiled code that the search calls."""
+        return [search_network] if self.compiled is not None else []
+
+
+def search(
+    vehicle: Vehicle,
+    index: IndexLike,
+    method: Method | None = None,
+    *,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    starts: int | None = None,
+    jobs: int = 1,
+    executor: Executor | None = None,
+) -> SearchResult:
+    """The best values of every network that the free network in `vehicle` may be, ranked by `index`.
+
+    The vehicle has one `any_network(...)`; in several places it is the same network with the same values. Each network
+    is searched from `starts` points (default: 8 for each value), as in `optimise`. `jobs` processes or an `executor`
+    (of `concurrent.futures`, of a dask client, of mpi4py) share the networks. The same seed gives the same result,
+    whatever shares the work.
+
+    Raises `DesignError` without exactly one free network, or if `seed`, `starts` or `jobs` are not valid, and what
+    `optimise` raises for the index, the method and the constraints.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.any_network(2, dampers=(10, 1e6), inerters=(0.01, 1e5))
+    >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    >>> found = it.search(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm())
+    >>> found.ranking[0].layout, round(found.ranking[0].value, 4)
+    ('c1 - b1', 2.4281)
+    """
+    plan = plan_search(vehicle, index, Norm() if method is None else method, subject_to, seed, starts)
+    if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs < 1:
+        raise DesignError(f"`jobs` must be a positive integer, got {jobs!r}.")
+    groups = plan.groups()
+    found: list[SearchedNetwork] = []
+    with worker_pool(int(jobs), executor) as pool:
+        prepare_on(pool, plan.kernels())
+        for result in pool.spread(partial(search_group, plan), groups):
+            found.extend(result)
+            best = min((one.value for one in found), default=np.inf)
+            report("networks", len(found), len(plan.topologies), best=best if np.isfinite(best) else None)
+    return collect_results(plan, found)
+
+
+def plan_search(
+    vehicle: Vehicle,
+    index: IndexLike,
+    method: Method,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    starts: int | None = None,
+) -> SearchPlan:
+    """The search as a plan; see `search`."""
+    check_vehicle(vehicle)
+    for what, number, least in (("seed", seed, 0), ("starts", 1 if starts is None else starts, 1)):
+        if isinstance(number, bool) or not isinstance(number, Integral) or number < least:
+            raise DesignError(f"`{what}` must be an integer of at least {least}, got {number!r}.")
+    places = places_of(vehicle)
+    if len(set(places)) != 1:
+        found = "no free network" if not places else f"{len(set(places))} different free networks"
+        raise DesignError(
+            f"A search needs a design with one free network, such as Spring(120e3) | any_network(4, ...); got {found}."
+        )
+    place, limits = places[0], check_limits(subject_to)
+    check_request(with_chosen_network(vehicle, place, _probe(place)), index, method)
+    plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
+    alone = len(places) == 1 and not limits and method == Norm() and not is_composite(index)
+    if not alone:
+        return plan
+    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, _PLACE), _PLACE))
+    if set(probe.free_values()) != {_PLACE}:
+        return plan
+    mechanism = probe.mechanism()
+    return replace(plan, compiled=network_index(mechanism, index.definition(mechanism), _PLACE))  # type: ignore[union-attr]
+
+
+def places_of(vehicle: Vehicle) -> list[FreeNetwork]:
+    """The free networks of a vehicle, as often as they occur."""
+    found: list[FreeNetwork] = []
+
+    def look(network: Network) -> Network:
+        found.extend(free_networks(network))
+        return network
+
+    with_networks(vehicle, look)
+    return found
+
+
+def with_chosen_network(vehicle: Vehicle, place: FreeNetwork, network: Network) -> Vehicle:
+    """The vehicle with a network in the place of its free network."""
+    return with_networks(vehicle, lambda mounted: with_free_networks(mounted, {place: network}))
+
+
+def _probe(place: FreeNetwork) -> Element:
+    kind, ends = next(iter(place.bounds.items()))
+    return kind.of(free(*ends), _PLACE)
+
+
+def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:
+    """Optima of some networks; a network that fails says why."""
+    one: Callable[[SearchPlan, Topology], SearchedNetwork] = _search_compiled if plan.compiled else _search_by_optimise
+    found = []
+    for topology in group:
+        try:
+            found.append(one(plan, topology))
+        except InerterError as error:
+            found.append(SearchedNetwork(topology, reason=str(error)))
+    return found
+
+
+@lru_cache(maxsize=16)
+def _samples(count: int, size: int, seed: int) -> Array:
+    return quasi_random_points(count, size, seed)
+
+
+def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
+    assert plan.compiled is not None
+    network = plan.network(topology)
+    ends = [element.value for element in network.elements() if isinstance(element.value, Free)]
+    program = network_program(network)
+    port = plan.compiled.port(program)
+    if port is None:
+        return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
+    size = len(ends)
+    starts = plan.starts or _STARTS * size
+    lower, upper = (np.array([getattr(end, name) for end in ends]) for name in ("lower", "upper"))
+    variables = Variables(np.ones(size), np.arange(size), np.log(lower), np.log(upper))
+    points, slopes = np.zeros((starts, size)), np.zeros(starts)
+    samples = _samples(starts * _TRIED, size, plan.seed)
+    values = np.asarray(search_network(samples, _TRIED, variables, program.program, port, points, slopes))
+    best = int(np.argmin(values))
+    if not np.isfinite(values[best]):
+        return SearchedNetwork(topology, starts, reason="no start has a finite index")
+    point = points[best]
+    for end in (lower, upper):  # which logarithms miss by a rounding
+        point = np.where(np.isclose(point, end, rtol=1e-12, atol=0.0), end, point)
+    agree = int(np.sum(values <= values[best] * (1.0 + AGREEMENT)))
+    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(point.tolist()))
+
+
+def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
+    design = plan.design(topology)
+    found = optimise(design, plan.index, plan.method, subject_to=plan.limits, seed=plan.seed, starts=plan.starts)
+    if not np.isfinite(found.value):
+        return SearchedNetwork(topology, found.n_starts, reason=found.status.message or "the index is infinite")
+    names = topology.names(plan.taken)
+    others = {name: value for name, value in found.parameters.items() if name not in names}
+    reason = "" if found.status.ok else str(found.status)
+    return SearchedNetwork(
+        topology,
+        found.n_starts,
+        found.n_converged,
+        found.value,
+        tuple(found.parameters[name] for name in names),
+        others,
+        reason,
+    )

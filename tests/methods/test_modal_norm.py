@@ -1,0 +1,88 @@
+"""Norms by modes against covariances with states for filters and coherence, and where modes must not serve."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from strategies import paper_half_car
+
+import inerter as it
+from inerter import Damper, Inerter, Spring, free
+from inerter.kernels import h2
+from inerter.methods.compiled_norm import CompiledNorm
+from inerter.methods.modal_norm import modal_arguments
+
+ROAD, TWO_TRACKS = it.Road(5e-7, 25.0), it.Road(5e-7, 25.0, it.Coherence.first_order(0.2))
+
+
+def strut(end):
+    inner = Inerter(free(1.0, 1e4, f"b{end}")) | Damper(free(10.0, 1e5, f"d{end}"))
+    return Spring(free(1e4, 1e6, f"k{end}")) | Damper(free(10.0, 1e5, f"c{end}")) - inner
+
+
+HALF = it.HalfCar(700.0, 900.0, 40.0, 40.0, 1.5e5, 1.5e5, 1.2, 1.4, strut("f"), strut("r"))
+FULL = it.FullCar(
+    1400, 2400, 520, 45, 40, 220e3, 220e3, 1.2, 1.5, 1.52, 1.5, front=strut("f"), rear=strut("r"),
+    anti_roll_front=Spring(8e3), anti_roll_rear=Spring(8e3),
+)  # fmt: skip
+QUESTIONS = {
+    "half J3": (HALF, it.TyreLoad(ROAD)),
+    "half Wk": (HALF, it.RideComfort(ROAD, weighting="Wk")),
+    "full J3": (FULL, it.TyreLoad(TWO_TRACKS)),
+    "full Wk": (FULL, it.RideComfort(TWO_TRACKS, weighting="Wk")),
+}
+
+
+def draw(car, count, seed):
+    bounds = np.log([(value.lower, value.upper) for value in car.free_values().values()])
+    return np.exp(np.random.default_rng(seed).uniform(bounds[:, 0], bounds[:, 1], (count, len(bounds))))
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_they_are_the_norms_with_states_for_filters(name):
+    car, index = QUESTIONS[name]
+    objective, points = it.Norm().objective(car, index), draw(car, 60, len(name))
+    for seen, one in objective.per_source_definitions:
+        own, weights = np.ascontiguousarray(points[:, objective._columns(one)]), np.ones(int(seen.sum()))
+        norms, gradients, errors = one._by_modes(own, weights)
+        expected, slopes, unsure = h2.norms(own, *one.arguments, weights)
+        known, both = np.isfinite(errors), np.isfinite(errors) & np.isfinite(unsure)
+        assert known.mean() > 0.9
+        assert norms[both] == pytest.approx(expected[both], rel=1e-9)
+        sure = both & (unsure < 1e-10)
+        scale = expected[sure].sum(axis=1)[:, None] / own[sure]
+        assert np.all(np.abs(gradients[sure] - slopes[sure]) <= 1e-8 * scale)
+
+
+@pytest.mark.parametrize("name", ["half J3", "half Wk"])
+def test_they_are_right_to_a_billionth_where_damping_is_light(name):
+    car, index = QUESTIONS[name]
+    objective, points = it.Norm().objective(car, index), draw(car, 12, 7)
+    points[:, [i for i, n in enumerate(car.free_values()) if n[0] in "cd"]] *= 1e-2
+    norms, _, errors = objective._by_modes(points, np.empty(0))
+    known = np.flatnonzero(np.isfinite(errors))
+    assert known.size >= 9
+    for i in known[:6]:
+        assert norms[i] == pytest.approx(objective._exact_norms(points[i]), rel=1e-9)
+
+
+def test_a_filter_behind_isotropic_tracks_is_not_lost():
+    road, shape = it.Road(5e-7, 25.0, it.Coherence.isotropic(1.5)), it.Filter([20.0], [1.0, 20.0])
+    index, point = it.TyreLoad(it.FilteredExcitation(road, shape)), draw(FULL, 1, 3)[0]
+    values = dict(zip(FULL.free_values(), point.tolist(), strict=True))
+    (found,) = it.evaluate_many(FULL, index, {name: np.array([v]) for name, v in values.items()}, it.Norm())[:, 0]
+    assert found == pytest.approx(it.evaluate(FULL.with_values(values), index, it.Norm()).value, rel=1e-6)
+
+
+def test_where_modes_cannot_serve_covariances_do():
+    objective = it.Norm(conventions="paper2008").objective(HALF, it.TyreLoad(ROAD))
+    assert modal_arguments(objective.problem) is None  # an approximant of the delay
+    twice = it.Filter([1.0], [1.0, 2.0, 1.0])
+    problem = it.Norm().objective(HALF, it.TyreLoad(ROAD)).problem
+    definition = dataclasses.replace(problem.definition, filter=(twice, twice))
+    assert modal_arguments(dataclasses.replace(problem, definition=definition)) is None
+    even = it.Norm().objective(paper_half_car(strut("f"), strut("f")), it.TyreLoad(ROAD))
+    points = draw(paper_half_car(strut("f"), strut("f")), 8, 1)
+    refused = CompiledNorm(even.problem)
+    refused.__dict__["_modal_arguments"] = None
+    assert even._compiled_norms(points) == pytest.approx(refused._compiled_norms(points), rel=1e-9)

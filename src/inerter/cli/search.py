@@ -65,4 +65,5 @@ def _text(found: StudySearch) -> str:
     """Tables, notes and conclusions for a terminal."""
     notes = [line for note in search_notes(found) for line in wrap_text(f"Note: {note}.", subsequent_indent="      ")]
     told = [line for text in search_sentences(found) for line in wrap_text(text, subsequent_indent="  ")]
-    return "\n".join([*wrap_text(found.study.title), "", section_text(search_sections(found)), *notes, "", *told])
+    sections = section_text(search_sections(found))
+    return "\n".join([*wrap_text(found.study.title), "", sections, *([""] if notes else []), *notes, "", *told])

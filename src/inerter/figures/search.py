@@ -34,7 +34,9 @@ def draw_search(found: StudySearch, folder: Path) -> list[Path]:
     with style_context():
         files = save(_frontier_figure(found, searches), folder, FRONTIER)
     for one in searches:
-        files += draw_networks(dict(_best_networks(found, one)), folder, best_networks_figure(one), values=True, alone=True)
+        files += draw_networks(
+            dict(_best_networks(found, one)), folder, best_networks_figure(one), values=True, alone=True
+        )
     return files
 
 

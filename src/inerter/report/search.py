@@ -14,13 +14,15 @@ from inerter.figures.search import FRONTIER, best_networks_figure
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
+    agreement_remark,
     at_bound_notes,
+    fixed_table,
     frontier_table,
     improvement,
     networks_table,
     ranking_table,
 )
-from inerter.files.study.searching import LayoutSearch, StudySearch
+from inerter.files.study.searching import StudySearch
 from inerter.formatting import format_percent, format_quantity
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import words_of
@@ -39,7 +41,10 @@ def search_sections(found: StudySearch) -> Iterator[Section]:
     for one in found.searches:
         if one.result.ranking:
             tables = [frontier_table(found.study, one), ranking_table(found.study, one)]
-            yield Section(capital(one.heading), tables, remarks=[f"{capital(note)}." for note in at_bound_notes(one)])
+            remarks = [agreement_remark(one), *(f"{note}." for note in at_bound_notes(one))]
+            yield Section(capital(one.heading), tables, remarks=[remark for remark in remarks if remark])
+    if (fixed := fixed_table(found)) is not None:
+        yield Section("Layouts without a free network", [fixed])
 
 
 def search_sentences(found: StudySearch) -> Iterator[str]:
@@ -48,17 +53,21 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
         if not one.result.ranking:
             yield f"{capital(one.heading)}: no network has a value."
             continue
-        best = one.result.ranking[0]
+        best, smaller = one.result.ranking[0], one.result.near_optimal(_NEAR)[0]
         gain = improvement(best.value, one.baseline)
         against = f", {format_percent(gain)} on {found.study.baseline}" if isfinite(gain) else ""
+        near = ""
+        if smaller.n_elements < best.n_elements:
+            behind = format_percent(-improvement(smaller.value, best.value))
+            near = f"; with {_elements(smaller.n_elements)}, {smaller.layout} is {behind} from that"
         yield (
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
-            f"{format_quantity(best.value, best.unit)}{against}."
+            f"{format_quantity(best.value, best.unit)}{against}{near}."
         )
-        smaller = one.result.near_optimal(_NEAR)[0]
-        if smaller.n_elements < best.n_elements:
-            more = format_percent(-improvement(smaller.value, best.value))
-            yield f"With {smaller.n_elements} elements only, {smaller.layout} is {more} from that."
+
+
+def _elements(count: int) -> str:
+    return f"{count} element{'' if count == 1 else 's'}"
 
 
 def search_notes(found: StudySearch) -> list[str]:
@@ -71,24 +80,29 @@ def search_notes(found: StudySearch) -> list[str]:
         for reason, networks in reasons.items():
             more = f" and {len(networks) - _MOST_FAILED} more" * (len(networks) > _MOST_FAILED)
             named = ", ".join(networks[:_MOST_FAILED])
-            notes.append(f"{one.heading}: {len(networks)} networks failed ({named}{more}): {reason.rstrip('.')}")
+            notes.append(f"{one.heading}: {len(networks)} networks have no value ({named}{more}): {reason.rstrip('.')}")
     return notes
 
 
 def search_data(found: StudySearch) -> dict[str, Any]:
     """The results as JSON holds them: every network, with the numbers of search.csv."""
-    return json_data(
+    data: dict[str, Any] = json_data(
         {
             "title": found.study.title,
             "seed": found.study.seed,
             "baselines": {one.index: one.baseline for one in found.searches if isfinite(one.baseline)},
             "frontiers": [
-                {"layout": one.layout, "index": one.index, "networks": [network.layout for network in one.result.frontier]}
+                {
+                    "layout": one.layout,
+                    "index": one.index,
+                    "networks": [network.layout for network in one.result.frontier],
+                }
                 for one in found.searches
             ],
             "networks": records(networks_table(found)),
         }
     )
+    return data
 
 
 def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
@@ -108,7 +122,7 @@ def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
             further=further_rows(study),
             layouts=layout_rows(study),
             drawings={},
-            indices=f"The {'index is' if len(study.indices) == 1 else 'indices are'} {format_list(_index_names(found))}.",
+            indices=_indices_asked(found),
             sections=list(search_sections(found)),
             further_sections=[],
             conditions=condition_rows(study),
@@ -122,8 +136,9 @@ def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
     return path
 
 
-def _index_names(found: StudySearch) -> list[str]:
-    return [f"{found.study.index(name).title} ({name})" for name in found.study.indices]
+def _indices_asked(found: StudySearch) -> str:
+    names = [f"{found.study.index(name).title} ({name})" for name in found.study.indices]
+    return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
 
 
 def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
@@ -144,9 +159,7 @@ def _computation(found: StudySearch) -> Iterator[str]:
     method = study.optimise or ""
     yield f"Values are {words_of(method)}."
     for one in found.searches:
-        yield (
-            f"{capital(one.heading)}: {len(one.result.ranking)} of {one.result.n_networks} networks have a value."
-        )
+        yield (f"{capital(one.heading)}: {len(one.result.ranking)} of {one.result.n_networks} networks have a value.")
     yield (
         "The values of each network were optimised by local searches from many starting points (sampled with seed "
         f"{study.seed}), within bounds. Agreement is the number of searches that converged to the best value."

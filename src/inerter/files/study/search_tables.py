@@ -38,26 +38,50 @@ def frontier_table(study: Study, one: LayoutSearch) -> Table:
         texts = [None if gain != gain else format_percent(gain) for gain in gains]
         rows.append(Row(cells(f"{found.n_elements}", Quantity(found.value, found.unit), *texts, found.layout)))
         before = found.value
-    return Table(f"{one.heading}: best network for each number of elements", heads, rows)
+    return Table(f"{_capital(one.heading)}: best network for each number of elements", heads, rows)
 
 
 def ranking_table(study: Study, one: LayoutSearch) -> Table:
     """The best networks with their values; an asterisk marks a value at a bound."""
-    heads = [
-        *columns("Rank", one.index, "Agreement"),
-        Column("Network", listed="Network and values"),
-        *(Column(name, listed="Network and values") for name in _parameters(one.result.ranking[:RANKED])),
-    ]
     names = _parameters(one.result.ranking[:RANKED])
+    heads = [
+        *columns("Rank", one.index, "Network"),
+        *(Column(name, listed="Values") for name in names),
+        Column("Agreement", only_on_pages=True),
+    ]
     rows = []
     for rank, found in enumerate(one.result.ranking[:RANKED], 1):
         values = [_value_text(study, found, name) if name in found.parameters else None for name in names]
         agreement = f"{found.n_converged} of {found.n_starts}"
-        content = cells(f"{rank}", Quantity(found.value, found.unit), agreement, found.layout, *values)
+        content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, *values, agreement)
         rows.append(Row(content, status=_doubt(found)))
     count = len(one.result.ranking)
-    what = f"{one.heading}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
+    what = f"{_capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
     return Table(f"{what} (* at a bound)" if _any_at_bound(one.result.ranking[:RANKED]) else what, heads, rows)
+
+
+def fixed_table(found: StudySearch) -> Table | None:
+    """The layouts without a free network, with their index; None if there are none."""
+    rows = []
+    units = {one.index: one.result.unit for one in found.searches}
+    for layout in dict.fromkeys(one.layout for one in found.fixed):
+        own = {one.index: one for one in found.fixed if one.layout == layout}
+        values = [
+            Quantity(own[index].values.get(found.study.evaluate[0], {}).get(index, nan), units[index]) for index in own
+        ]
+        doubts = [f"{index}: {one.status_text}" for index, one in own.items() if not one.ok]
+        rows.append(Row(cells(layout, *values), status="; ".join(doubts)))
+    return Table("Layouts without a free network", columns("Layout", *units), rows) if rows else None
+
+
+def agreement_remark(one: LayoutSearch) -> str:
+    """Sentence on how many starts of the best networks found the best value."""
+    searched = [found for found in one.result.ranking[:RANKED] if found.n_converged]
+    if not searched:
+        return ""
+    least = min(searched, key=lambda found: found.n_converged / found.n_starts)
+    share = f"{least.n_converged} of {least.n_starts}"
+    return f"Of the starts of each of these networks, {share} or more found its best value."
 
 
 def networks_table(found: StudySearch) -> Table:
@@ -86,7 +110,7 @@ def _rows(one: LayoutSearch, names: list[str]) -> Iterator[list[str | int | floa
 
 
 def parameter_unit(study: Study, name: str) -> str:
-    """Unit of a free value: of one that the file names, or of an element of a network found, by the kind in its name."""
+    """Unit of a free value: one that the file names, or an element of a found network, whose name has its kind."""
     kinds = {kind.symbol: kind.unit for kind in ELEMENT_TYPES}
     return study.free_units.get(name) or kinds.get(name.rstrip("0123456789"), "")
 
@@ -122,3 +146,7 @@ def _doubt(found: FoundNetwork) -> str:
 
 def _any_at_bound(found: tuple[FoundNetwork, ...]) -> bool:
     return any(network.active_bounds for network in found)
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
 
 from inerter.atomic_io import write_text
-from inerter.errors import OK, InerterError, Status, StatusKind, WorkError
+from inerter.errors import OK, Status, StatusKind, WorkError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
-from inerter.files.common.problem import at
-from inerter.files.common.problems import refusal
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
-from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.limits import limits_in
+from inerter.files.study.checking import fixed_part, kernels, search_plans
 from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED, VERSIONS, Progress, origins
@@ -27,7 +24,7 @@ from inerter.files.study.search_tables import networks_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.network_search.results import SearchResult, collect_results
-from inerter.network_search.search import SearchPlan, plan_search, search_group
+from inerter.network_search.search import SearchPlan, search_group
 from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import names
@@ -37,7 +34,6 @@ from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 
 TABLE = "search.csv"
-_NOT_SEARCHED = {"sweeps": "sweep", "trade_off": "trade_off", "budgets": "break_even", "tolerance": "tolerance"}
 
 
 @dataclass(frozen=True)
@@ -88,7 +84,6 @@ class GroupResult(PartResult):
     def kind(self) -> str:
         """Kind of status: `failed` if the group as a whole has no result."""
         return (StatusKind.FAILED if self.message else StatusKind.OK).value
-
 
     def searched(self) -> Iterator[SearchedNetwork]:
         """The networks with what was found for each."""
@@ -170,51 +165,13 @@ def search_study(
     return found
 
 
-def search_plans(study: Study) -> dict[tuple[str, str], SearchPlan]:
-    """Plan of the search by layout and index, once every layout was checked.
-
-    Raises `StudyError` with a line for every problem.
-    """
-    searched, problems = searched_layouts(study), []
-    if not searched:
-        example = 'any = { network = 4, springs = { from = "1 kN/m", to = "10 MN/m" } } in [elements]'
-        problems.append(at(("layouts",), fault="no layout has a free network to search", expected=example))
-    for attribute, key in _NOT_SEARCHED.items():
-        if getattr(study, attribute):
-            problems.append(at(("study", key), fault="a search over networks does not use it", expected=f"no {key}"))
-    plans: dict[tuple[str, str], SearchPlan] = {}
-    if not problems:
-        check_study(_fixed_part(study))
-        for layout in searched:
-            try:
-                plans |= {(layout, index): _plan(study, layout, index) for index in study.indices}
-            except InerterError as error:
-                problems.append(at(("layouts", layout), str(error)))
-    if problems:
-        raise refusal(study.path, problems)
-    return plans
-
-
 def _result_names() -> tuple[str, ...]:
     return (journals.NAME, RESOLVED, TABLE, VERSIONS, f"{FIGURES}/", REPORT)
 
 
-def _fixed_part(study: Study) -> Study:
-    """The study with the layouts alone that have no free network."""
-    searched = searched_layouts(study)
-    return replace(study, layouts={name: one for name, one in study.layouts.items() if name not in searched})
-
-
-def _plan(study: Study, layout: str, index: str) -> SearchPlan:
-    assert study.optimise is not None
-    limits = [limit for several in limits_in(study) for limit in several]
-    vehicle, method = study.design(layout), study.method(study.optimise)
-    return plan_search(vehicle, study.resolve_index(index, layout), method, limits, study.seed)
-
-
 def _parts(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Case | NetworkGroup]:
     """Layouts without a free network, then groups of networks, for each index."""
-    fixed = [Case(layout, index) for layout in _fixed_part(study).layouts for index in study.indices]
+    fixed = [Case(layout, index) for layout in fixed_part(study).layouts for index in study.indices]
     groups = [
         NetworkGroup(layout, index, number, topologies, plan)
         for (layout, index), plan in plans.items()
@@ -270,7 +227,7 @@ def _read(journal: Journal) -> Iterator[PartResult]:
 
 def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Any]:
     """The compiled code that the work calls."""
-    fixed = _fixed_part(study)
+    fixed = fixed_part(study)
     own = [kernel for plan in plans.values() for kernel in plan.kernels()]
     return list(dict.fromkeys([*own, *(kernels(fixed) if fixed.layouts else ())]))
 
@@ -281,7 +238,9 @@ def _searches(
     """What was found for each layout and index."""
     several = len(searched_layouts(study)) > 1
     for (layout, index), plan in plans.items():
-        own = [one for one in done.values() if isinstance(one, GroupResult) and (one.layout, one.index) == (layout, index)]
+        own = [
+            one for one in done.values() if isinstance(one, GroupResult) and (one.layout, one.index) == (layout, index)
+        ]
         base = done.get(Case(study.baseline or "", index))
         baseline = base.values[study.evaluate[0]].get(index, nan) if isinstance(base, Outcome) and base.values else nan
         heading = f"{study.index(index).title} ({index}){f', {layout}' if several else ''}"

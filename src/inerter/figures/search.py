@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from inerter.figures.labels import axis_label
+from inerter.figures.labels import axis_label, capital
 from inerter.figures.networks import draw_networks
 from inerter.figures.style import add_legend, colour, marker, new_figure, save, style_context
 from inerter.files.study.searching import LayoutSearch, StudySearch, searched_mounts
-from inerter.formatting import choose_scale, format_quantity
+from inerter.formatting import choose_scale, typeset_quantity
 from inerter.networks.elements import Network
 
 FRONTIER = "frontier"
@@ -58,7 +58,7 @@ def frontier_steps(one: LayoutSearch, baseline: str, ax: Axes) -> Axes:
     if isfinite(one.baseline):
         ax.axhline(scale.factor * one.baseline, color="black", linestyle="--", linewidth=1.0, label=baseline)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    ax.set(xlabel="Number of elements", ylabel=axis_label(one.heading, scale.unit))
+    ax.set(xlabel="Number of elements", ylabel=axis_label(capital(one.heading), scale.unit))
     return ax
 
 
@@ -66,7 +66,8 @@ def _best_networks(found: StudySearch, one: LayoutSearch) -> Iterator[tuple[str,
     """Struts of the best network for each number of elements, by their titles."""
     mounts = searched_mounts(found.study, one.layout)
     for network in one.result.frontier:
-        title = f"{network.n_elements}: {format_quantity(network.value, network.unit)}"
+        count = f"{network.n_elements} element{'' if network.n_elements == 1 else 's'}"
+        title = f"{count}: {typeset_quantity(network.value, network.unit)}"
         struts = [strut for strut in network.design.mechanism().struts if strut.name in mounts]
         for strut in struts:
             yield (title if len(struts) == 1 else f"{title}\n{strut.name.replace('_', ' ')}"), strut.network

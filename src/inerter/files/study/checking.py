@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.files.common.problem import Problem, at
+from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import limited_definitions, limits_in
-from inerter.files.study.loading import load_study
+from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
 from inerter.files.study.study import Study, elements_used, searched_layouts
@@ -88,8 +88,7 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     global _sound  # noqa: PLW0603
     if study is _sound:
         return
-    searched = searched_layouts(study)
-    problems = [_unchosen(study, layout, names) for layout, names in searched.items()]
+    problems = list(unchosen_problems(study))
     every = cases(study)
     tried = () if problems else _points_to_check(every)
     for number, layout in enumerate(study.layouts):
@@ -103,12 +102,6 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     if problems:
         raise refusal(study.path, problems)
     _sound = study
-
-
-def _unchosen(study: Study, layout: str, names: Sequence[str]) -> Problem:
-    what = f"{some(names)} is a free network" if len(names) == 1 else f"{some(names)} are free networks"
-    search = f"Find the best network with: inerter search {study.path.name}"
-    return at(("layouts", layout), fault=f"{what}, not a design yet", expected="elements", hint=f"{search}.")
 
 
 def search_plans(study: Study) -> dict[tuple[str, str], SearchPlan]:

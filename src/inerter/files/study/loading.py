@@ -23,7 +23,7 @@ from inerter.files.study.quantity_texts import texts_of
 from inerter.files.study.reference_checks import name_problems
 from inerter.files.study.scatter import tolerance_of
 from inerter.files.study.sections import ROAD_EXAMPLE, study_codec
-from inerter.files.study.study import Study, elements_used
+from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tasks import tasks
 from inerter.methods.registry import methods_that, searches
@@ -84,6 +84,14 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     if problems:
         raise refusal(path, problems)
     return study
+
+
+def unchosen_problems(study: Study) -> Iterator[Problem]:
+    """Problems of layouts with free networks, which are not designs and only for a search."""
+    for layout, names in searched_layouts(study).items():
+        what = f"{some(names)} is a free network" if len(names) == 1 else f"{some(names)} are free networks"
+        hint = f"Find the best network with: inerter search {study.path.name}."
+        yield at(("layouts", layout), fault=f"{what}, not a design yet", expected="elements", hint=hint)
 
 
 def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element], line: MeasuredLine | None) -> Study:

@@ -45,15 +45,16 @@ def ranking_table(study: Study, one: LayoutSearch) -> Table:
     """The best networks with their values; an asterisk marks a value at a bound."""
     names = _parameters(one.result.ranking[:RANKED])
     heads = [
-        *columns("Rank", one.index, "Network"),
-        *(Column(name, listed="Values") for name in names),
+        *columns("Rank", one.index),
+        Column("Network", words=True),
         Column("Agreement", only_on_pages=True),
+        *(Column(name, listed="Values") for name in names),
     ]
     rows = []
     for rank, found in enumerate(one.result.ranking[:RANKED], 1):
         values = [_value_text(study, found, name) if name in found.parameters else None for name in names]
-        agreement = f"{found.n_converged} of {found.n_starts}"
-        content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, *values, agreement)
+        agreement = f"{found.n_converged} of {found.n_starts}" if found.n_converged else None
+        content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, agreement, *values)
         rows.append(Row(content, status=_doubt(found)))
     count = len(one.result.ranking)
     what = f"{_capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"

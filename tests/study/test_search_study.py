@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from inerter.files.study.searching import GroupResult, NetworkGroup, StudySearch
 from inerter.files.study.study import Study
 from inerter.networks.enumeration import enumerate_networks
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = (
     'springs = { from = "1 kN/m", to = "10 MN/m" }, dampers = { from = "10 N s/m", to = "1 MN s/m" }, '
     'inerters = { from = "10 g", to = "100 t" }'
@@ -156,3 +158,17 @@ def test_the_command_writes_tables_drawings_and_a_page(tmp_path: Path, capsys: p
     data = json.loads(capsys.readouterr().out)
     assert len(data["networks"]) == 18
     assert data["frontiers"][0] == {"layout": "S", "index": "J1", "networks": ["c1", "c1 - b1"]}
+
+
+@pytest.mark.parametrize(
+    ("name", "layout", "network"), [("quarter_car", "S3", "c1 - b1"), ("absorber", "TMD", "k1 | c1")]
+)
+def test_networks_of_two_elements_in_the_examples(name: str, layout: str, network: str, tmp_path: Path) -> None:
+    """The network that a layout spells out has the value that the optimiser finds for the layout."""
+    written = (EXAMPLES / f"search_{name}.toml").read_text(encoding="utf-8")
+    study = load_text(tmp_path, re.sub(r"\nnetwork = \d", "\nnetwork = 2", written))
+    found = search_study(study, tmp_path / "out")
+    for one in found.searches:
+        (alike,) = [each for each in one.result.ranking if each.layout == network]
+        (fixed,) = [each for each in found.fixed if (each.layout, each.index) == (layout, one.index)]
+        assert alike.value == pytest.approx(fixed.values["norm"][one.index], rel=1e-6)

@@ -19,6 +19,7 @@ from inerter.files.study.search_tables import (
     fixed_table,
     frontier_table,
     improvement,
+    inerters_table,
     networks_table,
     ranking_table,
 )
@@ -40,9 +41,10 @@ def search_sections(found: StudySearch) -> Iterator[Section]:
     """A section for each layout and index: frontier, ranking, and remarks."""
     for one in found.searches:
         if one.result.ranking:
-            tables = [frontier_table(found.study, one), ranking_table(found.study, one)]
+            tables = [make(found.study, one) for make in (frontier_table, inerters_table, ranking_table)]
+            brief = [tables[0], tables[-1]]
             remarks = [agreement_remark(one), *(f"{note}." for note in at_bound_notes(one))]
-            yield Section(capital(one.heading), tables, remarks=[remark for remark in remarks if remark])
+            yield Section(capital(one.heading), tables, remarks=[remark for remark in remarks if remark], brief=brief)
     if (fixed := fixed_table(found)) is not None:
         yield Section("Layouts without a free network", [fixed])
 

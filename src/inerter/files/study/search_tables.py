@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import isfinite, nan
+from collections.abc import Iterator, Sequence
+from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from inerter.errors import StatusKind
 from inerter.formatting import format_percent, format_quantity, label_with_unit
-from inerter.networks.elements import ELEMENT_TYPES
+from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Quantity, Row, Table, cells, columns
 
 if TYPE_CHECKING:
@@ -28,17 +28,30 @@ def improvement(value: float, reference: float) -> float:
 
 def frontier_table(study: Study, one: LayoutSearch) -> Table:
     """The best network for each number of elements, with what it gains on the one before and on the baseline."""
+    found = [(network.n_elements, network) for network in one.result.frontier]
+    return _frontier(study, one, "elements", found)
+
+
+def inerters_table(study: Study, one: LayoutSearch) -> Table:
+    """The best network for each number of inerters, as `frontier_table`."""
+    symbol = Inerter.symbol
+    found = [(network.topology.counts[symbol], network) for network in one.result.frontier_of_inerters]
+    return _frontier(study, one, "inerters", found)
+
+
+def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tuple[int, FoundNetwork]]) -> Table:
+    is_compared = isfinite(one.baseline)
     heads = [
-        *columns("Elements", one.index, "Gain", *([f"On {study.baseline}"] if isfinite(one.baseline) else [])),
+        *columns(_capital(counted), one.index, "Gain", *([f"On {study.baseline}"] if is_compared else [])),
         Column("Network", prose=True),
     ]
     rows, before = [], nan
-    for found in one.result.frontier:
-        gains = [improvement(found.value, before), *([improvement(found.value, one.baseline)] * isfinite(one.baseline))]
-        texts = [None if gain != gain else format_percent(gain) for gain in gains]
-        rows.append(Row(cells(f"{found.n_elements}", Quantity(found.value, found.unit), *texts, found.layout)))
-        before = found.value
-    return Table(f"{_capital(one.heading)}: best network for each number of elements", heads, rows)
+    for count, network in found:
+        gains = [improvement(network.value, before), *([improvement(network.value, one.baseline)] * is_compared)]
+        texts = [None if isnan(gain) else format_percent(gain) for gain in gains]
+        rows.append(Row(cells(f"{count}", Quantity(network.value, network.unit), *texts, network.layout)))
+        before = network.value
+    return Table(f"{_capital(one.heading)}: best network for each number of {counted}", heads, rows)
 
 
 def ranking_table(study: Study, one: LayoutSearch) -> Table:
@@ -91,7 +104,7 @@ def networks_table(found: StudySearch) -> Table:
     names = _parameters([network for one in searches for network in one.result.ranking])
     keys = ("layout", "index", "rank", "network", "elements", "value", "unit", "improvement_percent", "status")
     units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
-    heads = [Column(key=key) for key in (*keys, *units, "at_bound", "starts", "agreed")]
+    heads = [Column(key=key) for key in (*keys, *units, "at_bound", "starts", "agreed", "as_good", "equal_networks")]
     return Table("Networks", heads, [Row(cells(*row)) for one in searches for row in _rows(one, names)])
 
 
@@ -102,12 +115,28 @@ def _rows(one: LayoutSearch, names: list[str]) -> Iterator[list[str | int | floa
             *(improvement(found.value, one.baseline), str(found.status)),
             *(found.parameters.get(name) for name in names),
             ";".join(f"{name}:{end}" for name, end in found.active_bounds.items()),
-            *(found.n_starts, found.n_converged),
+            *(found.n_starts, found.n_converged, found.simpler, "; ".join(found.like)),
         ]
     nothing = [None] * len(names)
     for layout, reason in one.result.failed:
         status = f"{StatusKind.FAILED.value}: {reason}"
-        yield [one.layout, one.index, None, layout, None, None, one.result.unit, None, status, *nothing, "", None, None]
+        yield [
+            one.layout,
+            one.index,
+            None,
+            layout,
+            None,
+            None,
+            one.result.unit,
+            None,
+            status,
+            *nothing,
+            "",
+            None,
+            None,
+            "",
+            "",
+        ]
 
 
 def parameter_unit(study: Study, name: str) -> str:

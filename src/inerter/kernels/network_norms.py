@@ -116,7 +116,7 @@ def _add_products(
     q_low: Array,
     of: int,
 ) -> None:
-    """Add s^first p q to `result`, whose highest power comes first and is that of its last index; see `_fraction`."""
+    """Add s^first p q to `result`, whose highest power comes first; see `fill_fraction`."""
     for i in range(degree + 1):
         for j in range(of + 1):
             k = first - i - j
@@ -130,7 +130,7 @@ def _add_products(
 
 
 @part(borrowing=True)
-def _fraction(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> None:
+def fill_fraction(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> None:
     """Fill the coefficients of the fraction of function k, the highest power first."""
     network, fraction = space.network, space.fraction
     last = program.parts.shape[0] - 1
@@ -158,7 +158,7 @@ def _fraction(k: int, program: Program, port: Port, space: NormSpace, fine: bool
 
 
 @part(borrowing=True)
-def _shares(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> float:
+def fill_shares(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> float:
     """Fill the adjoints of N and D for function k, and give the error of its squared norm by roundings of a and b."""
     network, fraction = space.network, space.fraction
     last = program.parts.shape[0] - 1
@@ -206,12 +206,12 @@ def _squares(program: Program, port: Port, space: NormSpace, fine: bool) -> floa
     for g in range(space.sums.size):
         space.sums[g], space.errors[g] = 0.0, 0.0
     for k in range(functions):
-        _fraction(k, program, port, space, fine)
+        fill_fraction(k, program, port, space, fine)
         n = port.forms[k, DEGREE]
         square = fine_forward(n, space.fraction) if fine else forward(n, space.fraction)
         if not square >= 0.0:
             return np.inf
-        error = backward(n, space.fraction, fine) + _shares(k, program, port, space, fine)
+        error = backward(n, space.fraction, fine) + fill_shares(k, program, port, space, fine)
         space.squares[k] = square
         g = int(port.groups[k])
         space.sums[g] += port.weights[k] * square

@@ -211,12 +211,12 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
 
 @kernel("search of a network", typed=True)
 def search_network(
-    samples: Matrix, tried: int, variables: Variables, program: Program, port: Port, points: Matrix, slopes: Floats
+    samples: Matrix, tried: int, variables: Variables, program: Program, port: Port, points: Matrix, counts: Ints
 ) -> Floats:
     """Minima of the index from the best of each `tried` rows of `samples`, which lie in the unit cube.
 
-    `points` (starts, variables) and `slopes` (starts,) are filled with the optima, as element values, and with their
-    largest relative slope; the result has the values, infinite where all samples of a start are.
+    `points` (starts, variables) and `counts` (starts,) are filled with the optima, as element values, and the numbers
+    of evaluations; the result has the values, infinite where all samples of a start are.
     """
     k, starts = samples.shape[1], points.shape[0]
     leaves = variables.of_leaf.size
@@ -243,13 +243,12 @@ def search_network(
             if f < best:
                 best, chosen = f, row
         if chosen < 0:
-            result[start], slopes[start] = np.inf, np.inf
+            result[start] = np.inf
             continue
         for i in range(k):
             space.point[i] = variables.lower[i] + samples[chosen, i] * (variables.upper[i] - variables.lower[i])
-        f, _ = descend(variables, program, port, space)
-        result[start] = np.exp(f)
-        slopes[start] = _projected_slope(space.point, space.gradient, variables)
+        f, count = descend(variables, program, port, space)
+        result[start], counts[start] = np.exp(f), tried + count
         for i in range(k):
             points[start, i] = np.exp(space.point[i])
     return result

@@ -6,15 +6,14 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.indices.definition import Combination, IndexDefinition
 from inerter.kernels.network_norms import Port
+from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
     ARMS,
     BRIDGE,
@@ -25,13 +24,15 @@ from inerter.kernels.network_polynomials import (
     TREES,
     Program,
 )
+from inerter.kernels.network_search import Variables, search_network
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.networks.elements import Bridge, Element, Network, Parallel
+from inerter.networks.elements import Bridge, Element, Free, Network, Parallel, Tied
 from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.systems.network_port import PortFunction, port_functions
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
+TRIED = 32  # samples of which each start is the best
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +102,17 @@ def network_program(network: Network) -> NetworkProgram:
 
 
 @dataclass(frozen=True, eq=False)
+class CompiledSearch:
+    """Optima that many starts find, in compiled code: element values (starts, variables), values, and evaluations."""
+
+    points: Array
+    values: Array
+    evaluations: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
 class NetworkIndex:
-    """An index of r.m.s. values of a vehicle over the admittance of one network in it."""
+    """An index of a vehicle, of r.m.s. values or a peak gain, over the admittance of one network in it."""
 
     definition: IndexDefinition
     functions: tuple[PortFunction, ...]
@@ -134,6 +144,39 @@ class NetworkIndex:
             self.groups[kept],
         )
 
+    @property
+    def is_peak(self) -> bool:
+        """Whether the index is a peak gain."""
+        return self.definition.is_peak
+
+    def search(self, network: Network, lower: Array, upper: Array, samples: Array) -> CompiledSearch | None:
+        """Optima over the free values of a network, in the order in which they first occur, between these bounds.
+
+        One start for each `TRIED` rows of `samples` (rows, values) in the unit cube. None if the index is infinite for
+        all values, and for values that are tied.
+        """
+        program = network_program(network)
+        port, leaves = self.port(program), [element.value for element in network.elements()]
+        if port is None or port.weights.size == 0 or any(isinstance(value, Tied) for value in leaves):
+            return None
+        names = list(dict.fromkeys(value.name for value in leaves if isinstance(value, Free)))
+        of_leaf = [names.index(value.name) if isinstance(value, Free) else -1 for value in leaves]
+        gains = [element.gain for element in network.elements()]
+        if any(gain != 1.0 for gain in gains):
+            return None
+        numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
+        variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
+        assert samples.shape[1] == lower.size == upper.size == len(names), "each free value has a name of its own"
+        starts = samples.shape[0] // TRIED
+        points, counts = np.zeros((starts, len(names))), np.zeros(starts, np.int64)
+        given = samples, TRIED, variables, program.program, port, points, counts
+        values = np.asarray(search_network_peak(*given) if self.is_peak else search_network(*given))
+        if self.is_peak:
+            values = values * np.sqrt(port.weights[0])
+        for end in (lower, upper):  # which logarithms miss by a rounding
+            points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
+        return CompiledSearch(points, values, counts)
+
 
 def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | None:
     """A row of `Port.forms`; empty for a function that is zero, None for one whose norm is infinite."""
@@ -158,25 +201,18 @@ def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | 
 def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str) -> NetworkIndex | None:
     """The index over the admittance of the network at `place`, which is a damper of that free value in `mechanism`.
 
-    None where compiled code cannot give it: for a peak gain, several delays, or a spectrum that is no fraction.
+    None where compiled code cannot give it: for several delays, or a spectrum that is no fraction.
     """
     problem = linear_problem(mechanism, definition, CONVENTIONS["exact"])
-    if (
-        definition.is_peak
-        or problem.excesses
-        or np.ptp(problem.delays) > 0.0
-        or set(problem.descriptor.free) != {place}
-    ):
+    several = np.ptp(problem.delays) > 0.0 or len(set(problem.sources)) < len(problem.sources)
+    if several or problem.excesses or set(problem.descriptor.free) != {place}:
         return None
     outputs, inputs = problem.descriptor.outputs, problem.descriptor.inputs
     functions = port_functions(problem.descriptor, place, inputs, outputs)
     squares = problem.weights**2
     together = definition.combination is Combination.ROOT_OF_SQUARES
-    merged = _merge_inputs(functions, problem.sources)
-    if merged is None:
-        return None
     rows: list[tuple[PortFunction, float, int]] = [
-        (function, float(squares[k]), 0 if together else k) for k, row in enumerate(merged) for function in row
+        (function, float(squares[k]), 0 if together else k) for k, row in enumerate(functions) for function in row
     ]
     return NetworkIndex(
         definition,
@@ -184,8 +220,3 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
         np.array([weight for _, weight, _ in rows]),
         np.array([float(group) for *_, group in rows]),
     )
-
-
-def _merge_inputs(functions: Sequence[Sequence[PortFunction]], sources: Sequence[str]) -> Any:
-    """Functions of each output by source; None where several inputs share a source."""
-    return functions if len(set(sources)) == len(sources) else None

@@ -16,15 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError
-from inerter.kernels.network_search import Variables, search_network
+from inerter.kernels.network_peaks import search_network_peak
+from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.composite_index import IndexLike, is_composite
+from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import NetworkIndex, network_index, network_program
+from inerter.methods.network_norm import TRIED, NetworkIndex, network_index
 from inerter.methods.norm import Norm
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.searched import SearchedNetwork
-from inerter.networks.elements import Damper, Element, Free, Network, free
+from inerter.networks.elements import Damper, Element, Network, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
@@ -35,8 +36,9 @@ from inerter.work.pool import worker_pool
 from inerter.work.progress import report
 
 Array = NDArray[np.float64]
-_STARTS, _TRIED = 8, 32  # searches for each value, and samples of which each starts from the best
+_STARTS = 8  # searches for each value
 _GROUP = 24  # networks that are handed out together
+_CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 _PLACE = "free_network_admittance"
 
@@ -102,7 +104,9 @@ class SearchPlan:
 
     def kernels(self) -> list[object]:
         """Compiled code that the search calls."""
-        return [search_network] if self.compiled is not None else []
+        if self.compiled is None:
+            return []
+        return [search_network_peak if self.compiled.is_peak else search_network]
 
 
 def search(
@@ -221,26 +225,30 @@ def _samples(count: int, size: int, seed: int) -> Array:
 def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     assert plan.compiled is not None
     network = plan.network(topology)
-    ends = [element.value for element in network.elements() if isinstance(element.value, Free)]
-    program = network_program(network)
-    port = plan.compiled.port(program)
-    if port is None:
+    lower, upper = np.array(plan.ends(topology)).T
+    starts = plan.starts or _STARTS * topology.size
+    found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
+    if found is None:
         return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
-    size = len(ends)
-    starts = plan.starts or _STARTS * size
-    lower, upper = (np.array([getattr(end, name) for end in ends]) for name in ("lower", "upper"))
-    variables = Variables(np.ones(size), np.arange(size), np.log(lower), np.log(upper))
-    points, slopes = np.zeros((starts, size)), np.zeros(starts)
-    samples = _samples(starts * _TRIED, size, plan.seed)
-    values = np.asarray(search_network(samples, _TRIED, variables, program.program, port, points, slopes))
-    best = int(np.argmin(values))
-    if not np.isfinite(values[best]):
+    values, points = found.values, found.points
+    if not np.isfinite(values.min()):
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
-    point = points[best]
-    for end in (lower, upper):  # which logarithms miss by a rounding
-        point = np.where(np.isclose(point, end, rtol=1e-12, atol=0.0), end, point)
-    agree = int(np.sum(values <= values[best] * (1.0 + AGREEMENT)))
-    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(point.tolist()))
+    best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
+    if best is None:
+        return _search_by_optimise(plan, topology)
+    agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))
+    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(points[best].tolist()))
+
+
+def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:
+    """The best of some optima whose value is that of the method itself, since a search may miss a sharp peak."""
+    design, names = plan.design(topology), topology.names(plan.taken)
+    for number in np.argsort(values, kind="stable")[:_CONFIRMED].tolist():
+        values_of = dict(zip(names, points[number].tolist(), strict=True))
+        estimate = estimate_of(design.with_values(values_of), plan.index, plan.method)
+        if estimate.status.ok and abs(estimate.value - values[number]) <= _EQUAL * values[number]:
+            return int(number)
+    return None
 
 
 def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork:

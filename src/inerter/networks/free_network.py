@@ -88,7 +88,7 @@ class FreeNetwork(Network):
         by_symbol = {kind.symbol: kind for kind in self.bounds}
         return topology.network(
             [
-                by_symbol[symbol].of(free(*self.bounds[by_symbol[symbol]]), name)
+                by_symbol[symbol].of(free(*self.bounds[by_symbol[symbol]], name), name)
                 for symbol, name in zip(topology.kinds, names, strict=True)
             ]
         )

@@ -1,0 +1,85 @@
+"""What is left of a gain where every inerter of a network is a real one: elastic, and with friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from inerter.methods.composite_index import estimate_of
+from inerter.methods.method import Estimate, Method
+from inerter.methods.norm import Norm
+from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.network_search.results import FoundNetwork
+from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
+from inerter.networks.transform import map_elements
+from inerter.vehicle.replace_values import with_networks
+from inerter.vehicle.vehicle import Vehicle
+
+
+@dataclass(frozen=True)
+class RealInerter:
+    """Shaft of a ball-screw inerter: stiffness [N/m] and damping [N s/m] in series with inertance and friction.
+
+    Source: Wang and Su (2008), Figure 6b, without backlash. The default values are those of their Table 3.
+    """
+
+    stiffness: float = 1e6
+    damping: float = 3200.0
+
+    def network(self, inerter: Inerter, friction: float) -> Network:
+        """The network of a real inerter of the same inertance; without friction [N] if that is zero."""
+        name = inerter.label
+        moved = inerter | Friction(friction, f"{name}_f") if friction > 0.0 else inerter
+        return (Spring(self.stiffness, f"{name}_k") | Damper(self.damping, f"{name}_c")) - moved
+
+
+@dataclass(frozen=True, eq=False)
+class RealNetwork:
+    """Values of a network with its best values: ideal, elastic, and with friction [N] in every inerter."""
+
+    found: FoundNetwork
+    elastic: Estimate
+    with_friction: dict[float, Estimate]
+
+    @property
+    def ideal(self) -> float:
+        """Value with ideal inerters."""
+        return self.found.value
+
+
+def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float = 0.0) -> Vehicle:
+    """The design of a network with real inerters in it; inerters elsewhere in the vehicle stay as they are."""
+    names = set(found.parameters)
+
+    def change(element: Element) -> Network:
+        own = isinstance(element, Inerter) and element.label in names
+        return real.network(element, friction) if own else element  # type: ignore[arg-type]
+
+    return with_networks(found.design, lambda network: map_elements(network, change))
+
+
+def with_friction_and_elasticity(
+    networks: Iterable[FoundNetwork],
+    *,
+    frictions: Sequence[float] = (10.0, 100.0),
+    real: RealInerter | None = None,
+    method: Method | None = None,
+) -> list[RealNetwork]:
+    """The index of some networks of a search with real inerters, their values as they are.
+
+    `method` (default: `StatisticalLinearisation`) evaluates the designs with friction, `Norm` those without.
+
+    Raises what `evaluate` raises, such as `DesignError` for a negative friction.
+    """
+    shaft, decisive = real or RealInerter(), method or StatisticalLinearisation()
+    return [
+        RealNetwork(
+            found,
+            estimate_of(with_real_inerters(found, shaft), found.plan.index, Norm()),
+            {
+                friction: estimate_of(with_real_inerters(found, shaft, friction), found.plan.index, decisive)
+                for friction in frictions
+            },
+        )
+        for found in networks
+    ]

@@ -30,6 +30,7 @@ from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
+from inerter.vehicle.vehicle import Vehicle
 
 _MOST_TRIED = 200  # swept values
 _NOT_SEARCHED = {"sweeps": "sweep", "trade_off": "trade_off", "budgets": "break_even", "tolerance": "tolerance"}
@@ -191,10 +192,13 @@ def study_notes(study: Study) -> list[str]:
     ]
 
 
-def kernels(study: Study) -> list[Any]:
-    """The compiled code that the work calls, what takes longest to compile first."""
+def kernels(study: Study, design: Vehicle | None = None) -> list[Any]:
+    """The compiled code that the work calls, what takes longest to compile first.
+
+    `design` is any of its designs; default: that of the first layout.
+    """
     found: list[Any] = []
-    design = study.design(next(iter(study.layouts)))
+    design = study.design(next(iter(study.layouts))) if design is None else design
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, MethodWithKernels):

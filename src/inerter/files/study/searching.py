@@ -227,9 +227,13 @@ def _read(journal: Journal) -> Iterator[PartResult]:
 
 def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Any]:
     """The compiled code that the work calls."""
+    found = [kernel for plan in plans.values() for kernel in plan.kernels()]
     fixed = fixed_part(study)
-    own = [kernel for plan in plans.values() for kernel in plan.kernels()]
-    return list(dict.fromkeys([*own, *(kernels(fixed) if fixed.layouts else ())]))
+    if fixed.layouts:
+        found += kernels(fixed)
+    elif others := [plan for plan in plans.values() if plan.compiled is None]:
+        found += kernels(study, others[0].design(others[0].topologies[-1]))
+    return list(dict.fromkeys(found))
 
 
 def _searches(

@@ -82,7 +82,8 @@ def search_notes(found: StudySearch) -> list[str]:
         for reason, networks in reasons.items():
             more = f" and {len(networks) - _MOST_FAILED} more" * (len(networks) > _MOST_FAILED)
             named = ", ".join(networks[:_MOST_FAILED])
-            notes.append(f"{one.heading}: {len(networks)} networks have no value ({named}{more}): {reason.rstrip('.')}")
+            have = "1 network has" if len(networks) == 1 else f"{len(networks)} networks have"
+            notes.append(f"{one.heading}: {have} no value ({named}{more}): {reason.rstrip('.')}")
     return notes
 
 

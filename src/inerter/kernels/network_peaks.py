@@ -24,6 +24,7 @@ from inerter.kernels.network_search import Variables
 Array = Any
 _PER_DECADE, _BEYOND = 14, 0.7  # points of the grid, and decades that it goes beyond the moduli of the poles
 _ALIKE, _DEEPEST = 1e-3, 9  # difference of the gain and its slopes up to which an interval is not halved; halvings
+_ROUGHLY = 3e-2  # the same of a sample from which a search may start
 _MOST = 8  # peaks that a search sees, the highest
 _ITERATIONS, _HALVINGS, _PAIRS = 200, 12, 300
 _STEP, _CONVERGED = 1.0, 1e-12  # longest step of one value, in its logarithm; expected fall of an optimum
@@ -173,6 +174,7 @@ def _peaks_at(
     count = 0
     if space.b[n - 1] != 0.0:
         count = _add_peak(count, 0.0, np.log(abs(space.b[n - 1] / space.a[n])), omegas, heights)
+    alike = _ALIKE if refined else _ROUGHLY
     left, depth = low, 0
     left_height, left_slope = 0.5 * np.log(_gain(n, space, np.exp(low))), _slope(n, space, np.exp(low))
     interval, part_of = 0, 0  # of the grid, and which of its 2^depth parts
@@ -181,7 +183,7 @@ def _peaks_at(
         omega = np.exp(right)
         right_height, right_slope = 0.5 * np.log(_gain(n, space, omega)), _slope(n, space, omega)
         change = 0.5 * (left_slope + right_slope) * (right - left)
-        if abs(right_height - left_height - change) > _ALIKE and depth < _DEEPEST:
+        if abs(right_height - left_height - change) > alike and depth < _DEEPEST:
             depth += 1
             part_of *= 2
             continue

@@ -6,12 +6,13 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.indices.definition import Combination, IndexDefinition
+from inerter.errors import InerterError
+from inerter.indices.definition import Combination, Index, IndexDefinition
 from inerter.kernels.network_norms import Port
 from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
@@ -26,12 +27,15 @@ from inerter.kernels.network_polynomials import (
 )
 from inerter.kernels.network_search import Variables, search_network
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.networks.elements import Bridge, Element, Free, Network, Parallel, Tied
+from inerter.networks.elements import Bridge, Damper, Element, Free, Inerter, Network, Parallel, Spring, Tied, free
 from inerter.networks.elements.algebra import CombinedNetwork
+from inerter.networks.transform import linearise
 from inerter.systems.network_port import PortFunction, port_functions
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+PLACE = "admittance_in_question"
 TRIED = 32  # samples of which each start is the best
 
 
@@ -220,3 +224,28 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
         np.array([weight for _, weight, _ in rows]),
         np.array([float(group) for *_, group in rows]),
     )
+
+
+def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] | None:
+    """The linearised network of the strut that has all free values, and the index over its admittance.
+
+    None where there is no such strut, and where compiled code cannot give the index.
+    """
+    mechanism = vehicle.mechanism()
+    mounts = [m for m in mechanism.struts if any(isinstance(e.value, Free | Tied) for e in m.network.elements())]
+    if len(mounts) != 1:
+        return None
+    (mount,) = mounts
+    network = linearise(mount.network).network
+    if network is None or not all(type(element) in (Spring, Damper, Inerter) for element in network.elements()):
+        return None
+    values = [e.value for e in network.elements() if isinstance(e.value, Free)]
+    if {str(value.name) for value in values} != set(mechanism.free_values()):
+        return None
+    probe = replace(mount, network=Damper(free(1.0, 2.0, PLACE), PLACE))
+    probed = replace(mechanism, struts=tuple(probe if strut is mount else strut for strut in mechanism.struts))
+    try:
+        found = network_index(probed, index.definition(probed), PLACE)
+    except InerterError:  # for an output of an element of the strut
+        return None
+    return None if found is None else (found, network)

@@ -81,3 +81,8 @@ class Norm(FormerMethodNames):
     def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
         return kernels_of(definition) if search else ()
+
+
+def is_exact_norm(method: object) -> bool:
+    """Whether a method is `Norm` under exact conventions, which other code may compute in its place."""
+    return method == Norm()

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
-from inerter.methods.norm import Norm
-from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
 from inerter.networks.transform import map_elements
@@ -60,24 +58,24 @@ def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float =
 
 def with_friction_and_elasticity(
     networks: Iterable[FoundNetwork],
+    method: Method,
     *,
     frictions: Sequence[float] = (10.0, 100.0),
     real: RealInerter | None = None,
-    method: Method | None = None,
 ) -> list[RealNetwork]:
     """The index of some networks of a search with real inerters, their values as they are.
 
-    `method` (default: `StatisticalLinearisation`) evaluates the designs with friction, `Norm` those without.
+    `method` evaluates the designs with friction [N], the method of the search those without.
 
     Raises what `evaluate` raises, such as `DesignError` for a negative friction.
     """
-    shaft, decisive = real or RealInerter(), method or StatisticalLinearisation()
+    shaft = real or RealInerter()
     return [
         RealNetwork(
             found,
-            estimate_of(with_real_inerters(found, shaft), found.plan.index, Norm()),
+            estimate_of(with_real_inerters(found, shaft), found.plan.index, found.plan.method),
             {
-                friction: estimate_of(with_real_inerters(found, shaft, friction), found.plan.index, decisive)
+                friction: estimate_of(with_real_inerters(found, shaft, friction), found.plan.index, method)
                 for friction in frictions
             },
         )

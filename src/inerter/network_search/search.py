@@ -21,8 +21,8 @@ from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import TRIED, NetworkIndex, network_index
-from inerter.methods.norm import Norm
+from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index
+from inerter.methods.norm import is_exact_norm
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.elements import Damper, Element, Network, free
@@ -40,7 +40,6 @@ _STARTS = 8  # searches for each value
 _GROUP = 24  # networks that are handed out together
 _CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
-_PLACE = "free_network_admittance"
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ class SearchPlan:
 def search(
     vehicle: Vehicle,
     index: IndexLike,
-    method: Method | None = None,
+    method: Method,
     *,
     subject_to: Sequence[Limit] = (),
     seed: int = 0,
@@ -137,7 +136,7 @@ def search(
     >>> found.ranking[0].layout, round(found.ranking[0].value, 4)
     ('c1 - b1', 2.4281)
     """
-    plan = plan_search(vehicle, index, Norm() if method is None else method, subject_to, seed, starts)
+    plan = plan_search(vehicle, index, method, subject_to, seed, starts)
     if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs < 1:
         raise DesignError(f"`jobs` must be a positive integer, got {jobs!r}.")
     groups = plan.groups()
@@ -173,14 +172,14 @@ def plan_search(
     place, limits = places[0], check_limits(subject_to)
     check_request(with_chosen_network(vehicle, place, _probe(place)), index, method)
     plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
-    alone = len(places) == 1 and not limits and method == Norm() and not is_composite(index)
+    alone = len(places) == 1 and not limits and is_exact_norm(method) and not is_composite(index)
     if not alone:
         return plan
-    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, _PLACE), _PLACE))
-    if set(probe.free_values()) != {_PLACE}:
+    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, PLACE), PLACE))
+    if set(probe.free_values()) != {PLACE}:
         return plan
     mechanism = probe.mechanism()
-    return replace(plan, compiled=network_index(mechanism, index.definition(mechanism), _PLACE))  # type: ignore[union-attr]
+    return replace(plan, compiled=network_index(mechanism, index.definition(mechanism), PLACE))  # type: ignore[union-attr]
 
 
 def places_of(vehicle: Vehicle) -> list[FreeNetwork]:
@@ -202,7 +201,7 @@ def with_chosen_network(vehicle: Vehicle, place: FreeNetwork, network: Network) 
 
 def _probe(place: FreeNetwork) -> Element:
     kind, ends = next(iter(place.bounds.items()))
-    return kind.of(free(*ends), _PLACE)
+    return kind.of(free(*ends), PLACE)
 
 
 def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:

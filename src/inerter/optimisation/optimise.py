@@ -17,9 +17,11 @@ from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.formatting import format_alike
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
+from inerter.methods.compiled_norm import CompiledNorm
+from inerter.methods.composite_index import IndexLike, estimate_of, is_composite, objective_of
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
-from inerter.methods.norm import Norm
+from inerter.methods.network_norm import TRIED, free_strut
+from inerter.methods.norm import Norm, is_exact_norm
 from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
@@ -42,6 +44,7 @@ _APART = 0.05  # logarithmic distance above which two starts of such searches ar
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is converged fully
 _SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
+_CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
 
@@ -170,7 +173,11 @@ def _best(
     if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
         with within("best linear design", 0.0, 0.5 * _QUICK):
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
-    if quick:
+    first: list[Array] = []
+    compiled = _compiled_searches(vehicle, index, method, problem, starts, seed)
+    if compiled is not None:
+        found, evaluations = compiled, 0
+    elif quick:
         first, evaluations = _starting_points(problem if limits else objective, lower, upper, starts, seed)
         found = _searches(problem, first)
     else:
@@ -218,6 +225,40 @@ def _best(
         gain_over_linear=over_linear,
         limits=held,
     )
+
+
+def _compiled_searches(
+    vehicle: Vehicle, index: IndexLike, method: Method, problem: ConstrainedProblem, starts: int, seed: int
+) -> list[LocalOptimum] | None:
+    """Local optima in compiled code, where all free values are in one strut and norms need no delay.
+
+    None elsewhere, and where the best value is not that of other code: a sharp peak or a rounding may be missed.
+    """
+    objective = problem.objective
+    if problem.bounds or not isinstance(objective, CompiledNorm) or not is_exact_norm(method) or is_composite(index):
+        return None
+    strut = free_strut(vehicle, index)
+    if strut is None:
+        return None
+    over, network = strut
+    names = dict.fromkeys(str(e.value.name) for e in network.elements() if isinstance(e.value, Free))
+    order = [list(objective.problem.descriptor.free).index(name) for name in names]
+    samples = quasi_random_points(starts * TRIED, len(order), seed)
+    report("starts", 0, starts, share=0.0)
+    found = over.search(network, problem.lower[order], problem.upper[order], samples)
+    if found is None or not np.isfinite(found.values.min()):
+        return None
+    points = np.empty_like(found.points)
+    points[:, order] = found.points
+    values = objective.evaluate_points(points)
+    best = int(np.argmin(found.values))
+    if not abs(values[best] - found.values[best]) <= _CONFIRMED * found.values[best]:
+        return None
+    report("starts", starts, starts, best=float(np.nanmin(values)), share=1.0)
+    return [
+        LocalOptimum(point, value if np.isfinite(value) else np.inf, evaluations)
+        for point, value, evaluations in zip(points, values.tolist(), found.evaluations.tolist(), strict=True)
+    ]
 
 
 def _closest_design(problem: ConstrainedProblem, first: list[Array]) -> LocalOptimum:

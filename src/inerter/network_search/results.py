@@ -8,7 +8,7 @@ from functools import cached_property
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from inerter.errors import OK, Status, StatusKind
+from inerter.errors import OK, NetworkError, Status, StatusKind
 from inerter.formatting import format_alike
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate
@@ -164,7 +164,10 @@ def _share_within_classes(
             own = known[topology]
             if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
                 continue
-            values = transformed(best, known[best].values, topology)
+            try:
+                values = transformed(best, known[best].values, topology)
+            except NetworkError:  # fewer elements have the admittance of the best, as those at equal bounds
+                continue
             if plan.keeps_bounds(topology, values):
                 value = known[best].value
                 known[topology] = replace(own, value=value, values=tuple(values), n_converged=0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
+from math import nan
 
 from inerter.deprecation import warn_renamed
 from inerter.statements import Severity, Statement
@@ -34,7 +35,7 @@ class NotPositiveRealError(SynthesisError):
     `admittance` is its value at `s` [N s/m].
     """
 
-    def __init__(self, text: str, s: complex, admittance: complex) -> None:
+    def __init__(self, text: str, s: complex = nan, admittance: complex = nan) -> None:
         super().__init__(text, s, admittance)
         self.s = s
         self.admittance = admittance

@@ -94,6 +94,7 @@ WHOLE = "inerter reproduce wang-su-2008 -o paper"
 SERVES = "inerter serve examples/quarter-car.toml"  # until it is stopped: see tests/app and tests/page
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
+    "inerter search examples/search_quarter_car.toml": nothing,
     "inerter new half-car": nothing,
     "inerter explain road.speed": nothing,
     "inerter simulate examples/backlash_rattle.toml": nothing,

@@ -39,6 +39,11 @@ index = {index}
 norms = it.evaluate_many(it.QuarterCar(181.75, 25, 120e3, k | c | b), index, {{"c": [2e3, 3e3]}}, it.Norm())
 print(json.dumps([norms.tolist(), "numba" in sys.modules]))
 """
+SEARCH = """
+car = it.QuarterCar(181.75, 25, 120e3, k | it.any_network(2, dampers=(10.0, 1e6), inerters=(0.01, 1e5)))
+found = it.search(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm(), starts=1)
+print(json.dumps([[[one.layout, one.value] for one in found.ranking], found.failed, "numba" in sys.modules]))
+"""
 
 
 def result(program: str, way: str) -> Any:
@@ -93,6 +98,14 @@ def test_norms_do_not_depend_on_how_kernels_are_compiled(way: str, index: str) -
     else:
         assert not compiler
         assert other[0] + other[1] == pytest.approx(norms[0] + norms[1], rel=1e-12)
+
+
+def test_a_search_does_not_depend_on_how_kernels_are_compiled() -> None:
+    (ranking, failed, _), (other, without, compiler) = result(SEARCH, "tuned"), result(SEARCH, "none")
+    assert not compiler
+    assert without == failed
+    assert [layout for layout, _ in other] == [layout for layout, _ in ranking]
+    assert [value for _, value in other] == pytest.approx([value for _, value in ranking], rel=1e-10)
 
 
 def test_another_way_is_refused() -> None:

@@ -25,7 +25,7 @@ from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study.loading import load_study, study_of
 from inerter.files.study.place import Sweep, place_of
 from inerter.files.study.quantity_texts import write_resolved
-from inerter.files.study.study import Study
+from inerter.files.study.study import Study, searched_layouts
 from inerter.indices.registry import INDICES as INDICES_TABLE
 from inerter.indices.registry import index_settings
 from inerter.methods.registry import METHODS
@@ -255,9 +255,8 @@ def test_a_byte_order_mark_and_windows_lines_are_read(load):
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_load_build_and_survive_being_written(path, tmp_path):
     study = load_study(path)
-    assert {layout: bool(study.design(layout).free_values()) for layout in study.layouts} == dict.fromkeys(
-        study.layouts, True
-    )
+    for layout in study.layouts:
+        assert bool(study.design(layout).free_values()) or layout in searched_layouts(study)
     assert_survives(study, tmp_path)
 
 

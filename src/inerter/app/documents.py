@@ -12,7 +12,7 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import FileError, refusal
 from inerter.files.common.toml import tables_of
-from inerter.files.study.loading import WHAT, study_of
+from inerter.files.study.loading import WHAT, study_of, unchosen_problems
 from inerter.files.study.study import Study
 from inerter.report.json_data import json_data
 from inerter.units import quote_value
@@ -54,7 +54,10 @@ def study_from(document: object) -> Study:
 
 @lru_cache(_KEPT)
 def _study(document: str, stamp: _Stamp) -> Study:
-    return study_of(json.loads(document), PATH)
+    study = study_of(json.loads(document), PATH)
+    if unchosen := list(unchosen_problems(study)):
+        raise refusal(PATH, unchosen)
+    return study
 
 
 def _stamp(document: Document) -> _Stamp:

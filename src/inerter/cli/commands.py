@@ -51,14 +51,14 @@ def run(
     """Run a study file into a folder; returns its status."""
     loaded = load_study(study)
     folder = output or Path(f"{study.stem}-results")
-    processes = _processes(jobs)
+    own = processes(jobs)
 
     def show(result: StudyResult, into: Path) -> None:
         draw_study(result.data, into / FIGURES)
         draw_layouts(loaded, into / FIGURES)
         write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
 
-    kept = _continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
+    kept = continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
@@ -68,7 +68,7 @@ def run(
         result = run_study(
             loaded,
             folder,
-            jobs=processes,
+            jobs=own,
             executor=executor,
             resume=resume,
             force=force,
@@ -125,10 +125,10 @@ def reproduce(
     """Reproduce the paper of that name, or some parts of it; returns the statuses of its studies."""
     paper = PAPERS[name]
     folder = output or Path(f"{name}-results")
-    processes = _processes(jobs)
+    own = processes(jobs)
     parts = (word for part in only for word in ("--only", part))
-    kept = _continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
-    settings = {"jobs": processes, "resume": resume, "force": force}
+    kept = continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
+    settings = {"jobs": own, "resume": resume, "force": force}
     with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps() as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     _say(f"report: {folder / REPORT}")
@@ -138,7 +138,7 @@ def reproduce(
     return tuple(result.status for result in found.studies.values())
 
 
-def _continuation_clause(
+def continuation_clause(
     command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool
 ) -> str:
     """Clause on results kept at an interruption, with the complete command that continues the work."""
@@ -147,7 +147,7 @@ def _continuation_clause(
     return f"; what was computed is kept. Continue with: {again}"
 
 
-def _processes(jobs: int | None) -> int:
+def processes(jobs: int | None) -> int:
     if jobs is not None and jobs < 1:
         raise StudyError(f"--jobs must be 1 or more processes, got {jobs}. Leave it out to use all cores.")
     return jobs or os.cpu_count() or 1

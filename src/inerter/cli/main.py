@@ -29,6 +29,7 @@ from inerter.statements import INTERRUPTED, Statement, exit_code
 EXAMPLES = """Examples:
   inerter run examples/quarter-car.toml
   inerter run examples/stiffness-sweep.toml -o sweep -j 2
+  inerter search examples/search_quarter_car.toml
   inerter check my-study.toml
   inerter simulate examples/stick_slip.toml
   inerter rig examples/rig_fit.toml -o fit.csv
@@ -80,6 +81,38 @@ def run(
         The study file (TOML). examples/quarter-car.toml is a commented example.
     """
     from inerter.cli.commands import run as command
+
+    return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter search examples/search_quarter_car.toml
+  inerter search examples/search_absorber.toml -o absorber -j 2
+  inerter search examples/search_absorber.toml -o absorber --resume    after an interruption"""
+)
+def search(
+    study: Path,
+    /,
+    *,
+    output: Output = None,
+    jobs: Jobs = None,
+    cluster: ClusterOptions = OWN,
+    resume: Resume = False,
+    force: Force = False,
+    json: Json = False,
+) -> tuple[Statement, ...]:
+    """Find the best network: optimise every network that the free networks of a study file may be, and rank them.
+
+    The folder, by default STUDY-search, then holds report.html, search.csv with
+    all networks, and figures. An interrupted search keeps what was computed.
+
+    Parameters
+    ----------
+    study
+        The study file (TOML) with a free network in a layout. examples/search_quarter_car.toml is one.
+    """
+    from inerter.cli.search import search as command
 
     return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
 

@@ -43,7 +43,7 @@ TO_MODES_TRANSPOSED = (0.5 + 0j, 0.5 + 0j, -0.5j, 0.5j)
 NOISE = "Tuple((float64[::1], int64[::1], int64[::1], complex128[::1], complex128[::1], float64[::1], float64[::1]))"
 
 
-class Noise(NamedTuple):
+class FilteredNoise(NamedTuple):
     """Autocorrelation d delta(t) + sum_f r_f exp(m_f |t|) of the excitation for each group of outputs."""
 
     delays: Array  # (inputs,) [s] in rising order
@@ -55,7 +55,7 @@ class Noise(NamedTuple):
     direct: Array  # (groups,) d
 
 
-class Modes(NamedTuple):
+class VehicleModes(NamedTuple):
     """Modes of a design."""
 
     pole: Array  # (n,) lambda
@@ -75,10 +75,10 @@ class CorrectedValues(NamedTuple):
     error: Array
 
 
-class Room(NamedTuple):
+class ModalRoom(NamedTuple):
     """Work space for one design."""
 
-    modes: Modes
+    modes: VehicleModes
     inputs: CorrectedValues  # (inputs, n) V^-1 b_j
     outputs: CorrectedValues  # (outputs, n) c V
     past: CorrectedValues  # (inputs, n) V^-1 n_j
@@ -111,11 +111,11 @@ def values_space(rows: int, columns: int) -> Any:
 def modal_room(n: int, m: int, o: int, poles: int) -> Any:
     """Room for a design of n states, m inputs and o outputs."""
     square, real, pairs = np.zeros((4, n, n), np.complex128), np.zeros((7, n, n)), 1 + m * (m - 1) // 2
-    modes = Modes(
+    modes = VehicleModes(
         np.zeros(n, np.complex128), np.zeros(n, np.int64), real[0], real[1], square[0], real[2], square[1]
     )  # fmt: skip
     theta = np.zeros((4, pairs, n), np.complex128)
-    return Room(
+    return ModalRoom(
         modes,
         values_space(m, n),
         values_space(o, n),
@@ -712,11 +712,11 @@ def gradient_of(p: Array, descriptor: Array, closing: Array, room: Array, slopes
 def norms_by_modes(points: Array, descriptor: Array, extended: Array, given: Array, weights: Array) -> Any:
     """Norms, gradients and error estimates as `inerter.kernels.h2.norms` has them, by modes.
 
-    `given` has the fields of `Noise` in their order. Where the modes do not suffice, the error estimate is infinite,
+    `given` has the fields of `FilteredNoise` in order. Where the modes do not suffice, the error estimate is infinite,
     and norms and gradient are nan. Behind a filter with d > 0, D counts as zero: else the norm would be infinite.
     """
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    noise = Noise(given[0], given[1], given[2], given[3], given[4], given[5], given[6])
+    noise = FilteredNoise(given[0], given[1], given[2], given[3], given[4], given[5], given[6])
     groups, direct = noise.groups, noise.direct
     closing, room = extended_space(descriptor), modal_room(n, m, o, noise.poles.size)
     slopes = Slopes(

@@ -166,7 +166,7 @@ def _share_within_classes(
                 continue
             try:
                 values = transformed(best, known[best].values, topology)
-            except NetworkError:  # only in a limit, as where the best one has elements without effect
+            except NetworkError:  # fewer elements have the admittance of the best, as those at equal bounds
                 continue
             if plan.keeps_bounds(topology, values):
                 value = known[best].value

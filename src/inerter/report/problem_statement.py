@@ -24,6 +24,7 @@ from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
 from inerter.networks.elements import Free, Tied
+from inerter.networks.free_network import FreeNetwork
 from inerter.signals.road import Road
 
 if TYPE_CHECKING:
@@ -108,7 +109,18 @@ def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
 
 def element_rows(study: Study) -> list[tuple[str, str, str]]:
     """The elements: name, kind, and value or bounds."""
-    return [(name, element.key, _number_text(study, name)) for name, element in study.elements.items()]
+    networks = [(name, "free network", free_network_text(study, one)) for name, one in study.free_networks.items()]
+    return [*((name, element.key, _number_text(study, name)) for name, element in study.elements.items()), *networks]
+
+
+def free_network_text(study: Study, network: FreeNetwork) -> str:
+    """Numbers of elements of a free network, and the bounds of each kind."""
+    least = f"{network.min_elements} to " if network.min_elements > 1 else "up to "
+    kinds = [
+        f"{kind.key}s of {' to '.join(_value_text(study, end, kind.unit) for end in ends)}"
+        for kind, ends in network.bounds.items()
+    ]
+    return f"{least}{network.max_elements} elements: {', '.join([*kinds, *['bridges'] * network.bridges])}"
 
 
 def further_rows(study: Study) -> list[tuple[str, str]]:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from inerter.errors import SynthesisError
+from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.synthesis.realise import realise
 from inerter.validation import check_positive, is_number
@@ -89,7 +90,8 @@ def best_admittance(
     if not np.isfinite(least):
         raise SynthesisError(
             f"The index exists for none of {len(found) * _SAMPLES} admittances up to degree {degree} around "
-            f"{damping:g} N s/m and {omega:g} rad/s. Give other typical values, or a higher degree."
+            f"{format_quantity(damping, 'N s/m')} and {format_quantity(omega, 'rad/s')}. Give other typical values, "
+            "or a higher degree."
         )
     equal = [each for each in found if each.value <= least + _EQUAL * abs(least)]
     best = min(equal, key=lambda each: each.family.size)  # which saves elements

@@ -70,8 +70,8 @@ def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network
         raise violation.to_error()
     reached = f"; the closest one deviates by {format_number(closest, 2)}" if np.isfinite(closest) else ""
     raise SynthesisError(
-        f"No network with double-precision values has this admittance to {ACCURACY:g}{reached}. Reduce the ratio "
-        f"between its largest and smallest frequencies, or move it away from Re Y = 0 by a damper in parallel."
+        f"No network with double-precision values has this admittance to {format_number(ACCURACY, 1)}{reached}. "
+        f"Reduce the ratio between its largest and smallest frequencies, or move it away from Re Y = 0 by a damper in parallel."
     )
 
 

@@ -19,6 +19,7 @@ from inerter.errors import MechanismError
 from inerter.kernels.arrays import FRICTION, GAP
 from inerter.networks.elements import CombinedNetwork, Element, Network
 from inerter.networks.elements.roles import GuardRole, LinearRole
+from inerter.networks.free_network import check_chosen
 from inerter.systems.coordinates import clean, complete, null_space, pseudo_inverse
 from inerter.systems.graph import Branch, Graph, full_graph
 from inerter.systems.incidence import incidence_rows, inertia_values, inertias, ports
@@ -87,7 +88,8 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
     mounts = []
     for mount in mechanism.mounts():
         ends = (mount.upper, mount.lower) if isinstance(mount, Strut) else (mount.port, {mount.road: None})
-        mounts.append((type(mount), mount.name, _network_shape(mount.network), *(tuple(end.items()) for end in ends)))
+        network = _network_shape(check_chosen(mount.network))
+        mounts.append((type(mount), mount.name, network, *(tuple(end.items()) for end in ends)))
     return (
         tuple((c.name, c.angle, c.is_massless) for c in mechanism.coordinates),
         tuple(mounts),

@@ -140,7 +140,7 @@ def progress(callback: Callable[[ProgressStep], object]) -> Iterator[None]:
     >>> with it.progress(seen.append):
     ...     found = it.optimise(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm())
     >>> str(seen[0])
-    'samples 0 of 128'
+    'starts 0 of 8'
     """
     with listening(Listener(callback)):
         yield

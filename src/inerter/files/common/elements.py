@@ -22,6 +22,7 @@ from inerter.files.common.entries import (
     text_of,
     with_bounds,
 )
+from inerter.files.common.free_networks import FREE_NETWORK, is_free_network
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem
 from inerter.files.common.schema import or_range_schema, quantity_schema
@@ -30,6 +31,7 @@ from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
 from inerter.networks.elements import NAME, Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
+from inerter.networks.free_network import FreeNetwork
 from inerter.networks.parser import rename_in_expression
 from inerter.units import parse_quantity, quote_value
 
@@ -62,19 +64,24 @@ RANGE = TableCodec(
 class ElementCodec(Codec):
     """An element, which has the name of its key; its value may be a range if `free`, and `tied` to others.
 
-    One that is tied is read as its expression, since the others may come later.
+    One that is tied is read as its expression, since the others may come later. With `networks`, an entry may be a free
+    network.
     """
 
     is_number: ClassVar[bool] = True
 
     free: bool = True
     tied: bool = False
+    networks: bool = False
 
-    def load(self, raw: Any, context: LoadContext) -> Element | TieEntry:
-        """Element of the entry, or the expression of a tied element."""
+    def load(self, raw: Any, context: LoadContext) -> Element | TieEntry | FreeNetwork:
+        """Element of the entry, the expression of a tied element, or a free network."""
         name = context.place[-1] if NAME.fullmatch(context.place[-1]) else "unnamed"  # which is refused with the key
         if self.tied and is_tie(raw):
             return tie_entry(raw)
+        if self.networks and is_free_network(raw):
+            found = FREE_NETWORK.load(raw, context)
+            return found if found is INVALID else replace(found, name=name)  # type: ignore[no-any-return]
         if _names_kind(raw):
             return _of_kind(raw, name, free=self.free)
         if not isinstance(raw, dict):
@@ -88,8 +95,10 @@ class ElementCodec(Codec):
             return INVALID  # type: ignore[no-any-return]
         return kinds_by_unit()[found.lower.unit].of(Free(found.lower.value, found.upper.value, name), name)
 
-    def dump(self, value: Element) -> str | dict[str, Any]:
-        """Value or range alone where the unit determines the kind of element; else a table with the kind."""
+    def dump(self, value: Element | FreeNetwork) -> str | dict[str, Any]:
+        """Value or range alone where the unit determines the kind of element; else a table."""
+        if isinstance(value, FreeNetwork):
+            return FREE_NETWORK.dump(value)
         number, unit = value.value, value.unit
         if isinstance(number, Tied):
             return {TIED: tie_text(number)}
@@ -103,10 +112,13 @@ class ElementCodec(Codec):
         """The JSON Schema of all forms."""
         ties = [tie_schema()] if self.tied else []
         ranges = [RANGE.schema()] if self.free else []
-        return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties])
+        networks = [FREE_NETWORK.schema()] if self.networks else []
+        return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties, *networks])
 
-    def numbers(self, value: Element | TieEntry, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """Value of the element with its bounds, and its further numbers, by their keys."""
+    def numbers(self, value: Element | TieEntry | FreeNetwork, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """Value of the element with its bounds, and its further numbers, by their keys; none of a free network."""
+        if isinstance(value, FreeNetwork):
+            return
         if isinstance(value, TieEntry):
             yield (), Number("", words, None)
             return
@@ -153,6 +165,8 @@ class ElementCodec(Codec):
         """The table of a range."""
         if self.free:
             yield place, RANGE
+        if self.networks:
+            yield from FREE_NETWORK.table_codecs(place)
 
 
 class ElementsCodec(NamesCodec):
@@ -164,16 +178,24 @@ class ElementsCodec(NamesCodec):
         return {names.get(name, name): entry for name, entry in raw.items()} if isinstance(raw, Mapping) else raw
 
 
-def elements_codec(*, free: bool, tied: bool = False, least: int = 1) -> ElementsCodec:
+def elements_codec(*, free: bool, tied: bool = False, networks: bool = False, least: int = 1) -> ElementsCodec:
     """The section [elements], with at least as many of them."""
-    return ElementsCodec(ElementCodec(free, tied), element_name, least)
+    return ElementsCodec(ElementCodec(free, tied, networks), element_name, least)
 
 
-def with_tied_values(entries: Mapping[str, Element | TieEntry]) -> tuple[dict[str, Element], list[Problem]]:
-    """Elements in their order, and the problems of tied elements."""
-    own = {name: entry for name, entry in entries.items() if not isinstance(entry, TieEntry)}
+def free_networks_in(entries: Mapping[str, Any]) -> dict[str, FreeNetwork]:
+    """The free networks among the entries of the section [elements]."""
+    return {name: entry for name, entry in entries.items() if isinstance(entry, FreeNetwork)}
+
+
+def with_tied_values(
+    entries: Mapping[str, Element | TieEntry | FreeNetwork],
+) -> tuple[dict[str, Element], list[Problem]]:
+    """Elements in their order, and the problems of tied elements; without free networks."""
+    every = {name: entry for name, entry in entries.items() if not isinstance(entry, FreeNetwork)}
+    own = {name: entry for name, entry in every.items() if not isinstance(entry, TieEntry)}
     found, problems = {}, []
-    for name, entry in entries.items():
+    for name, entry in every.items():
         try:
             found[name] = tied_element(name, entry, own) if isinstance(entry, TieEntry) else entry
         except EntryError as error:

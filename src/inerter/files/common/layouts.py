@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from inerter.errors import NetworkError
@@ -25,7 +26,7 @@ from inerter.files.common.suggest import nearest, some
 from inerter.files.common.ties import with_known_values
 from inerter.files.common.vehicle_tables import SEAT
 from inerter.files.common.vehicles import MountEntry, build_vehicle, mounts, parts_of
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Network
 from inerter.networks.parser import names, network
 from inerter.units import quote_value
 from inerter.vehicle.registry import VEHICLES
@@ -38,9 +39,15 @@ class StrutLayout:
 
     struts: dict[str, str]
 
-    def design(self, model: str, vehicle: Mapping[str, Any], elements: Mapping[str, Element]) -> Vehicle:
-        """The vehicle with these struts, made of `elements`."""
-        known = with_known_values(elements)
+    def design(
+        self,
+        model: str,
+        vehicle: Mapping[str, Any],
+        elements: Mapping[str, Element],
+        networks: Mapping[str, Network] = MappingProxyType({}),
+    ) -> Vehicle:
+        """The vehicle with these struts, made of `elements` and `networks`."""
+        known = {**with_known_values(elements), **networks}
         return build_vehicle(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
 
 
@@ -123,7 +130,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
     )
 
 
-def layout_problems(elements: Mapping[str, Element], layouts: Mapping[str, StrutLayout]) -> Iterator[Problem]:
+def layout_problems(elements: Mapping[str, Network], layouts: Mapping[str, StrutLayout]) -> Iterator[Problem]:
     """Problems of layouts: invalid networks and unknown elements."""
     for name, layout in layouts.items():
         alike = len(set(layout.struts.values())) == 1
@@ -132,7 +139,7 @@ def layout_problems(elements: Mapping[str, Element], layouts: Mapping[str, Strut
             yield from network_problems(place, expression, elements)
 
 
-def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Element]) -> Iterator[Problem]:
+def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[str, Network]) -> Iterator[Problem]:
     """Problems of the network at one place: its syntax, or unknown elements."""
     try:
         unknown = [name for name in names(expression) if name not in elements]

@@ -16,21 +16,24 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import limited_definitions, limits_in
-from inerter.files.study.loading import load_study
+from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentence
-from inerter.files.study.study import Study, elements_used
+from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.tasks import tasks
 from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import MethodWithChecks, MethodWithKernels, constituents_of
 from inerter.methods.registry import is_blind
+from inerter.network_search.search import SearchPlan, plan_search
 from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
+from inerter.vehicle.vehicle import Vehicle
 
 _MOST_TRIED = 200  # swept values
+_NOT_SEARCHED = {"sweeps": "sweep", "trade_off": "trade_off", "budgets": "break_even", "tolerance": "tolerance"}
 
 
 _sound: Study | None = None  # the last one without problems: who checks before a run may tell how far that is
@@ -42,6 +45,9 @@ def check_lines(path: Path) -> Iterator[str]:
     Raises `StudyError` as `load_study` and `check_study` do.
     """
     study = load_study(path)
+    if searched_layouts(study):
+        yield from _search_lines(study)
+        return
     check_study(study)
     counts = {task.items or task.key: len(task.parts(study)) for task in tasks()}
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
@@ -56,6 +62,21 @@ def check_lines(path: Path) -> Iterator[str]:
     yield from (f"Note: {note}." for note in study_notes(study))
 
 
+def _search_lines(study: Study) -> Iterator[str]:
+    """Sentences about a study with free networks: how many networks a search compares, roads, warnings and notes."""
+    plans = search_plans(study)
+    counts = {layout: len(plan.topologies) for (layout, _), plan in plans.items()}
+    networks = ", ".join(f"{count} networks of {layout}" for layout, count in counts.items())
+    yield (
+        f"{study.path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}: "
+        f"{networks} to search for each index."
+    )
+    if road := roads_sentence(study):
+        yield f"{road}."
+    yield from input_warnings(study)
+    yield from (f"Note: {note}." for note in road_notes(study))
+
+
 def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, total: None) -> None:
     """Assemble every layout for every index over the swept values, so that what is ill-posed shows before any work.
 
@@ -63,13 +84,14 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     way it is joined rather than on its numbers, and one that cannot has a status that says so. `tell` is called before
     each, with how many are assembled and how many there are. A study that was checked just before is not again.
 
-    Raises `StudyError` with a line for every layout that cannot be analysed.
+    Raises `StudyError` with a line for every layout that cannot be analysed, or has a free network.
     """
     global _sound  # noqa: PLW0603
     if study is _sound:
         return
-    problems, every = [], cases(study)
-    tried = _points_to_check(every)
+    problems = list(unchosen_problems(study))
+    every = cases(study)
+    tried = () if problems else _points_to_check(every)
     for number, layout in enumerate(study.layouts):
         for done, point in enumerate(tried, start=number * len(tried)):
             tell(done, len(tried) * len(study.layouts))
@@ -81,6 +103,44 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     if problems:
         raise refusal(study.path, problems)
     _sound = study
+
+
+def search_plans(study: Study) -> dict[tuple[str, str], SearchPlan]:
+    """Plan of the search by layout and index, once every layout was checked.
+
+    Raises `StudyError` with a line for every problem.
+    """
+    searched, problems = searched_layouts(study), []
+    if not searched:
+        example = 'any = { network = 4, springs = { from = "1 kN/m", to = "10 MN/m" } } in [elements]'
+        problems.append(at(("layouts",), fault="no layout has a free network to search", expected=example))
+    for attribute, key in _NOT_SEARCHED.items():
+        if getattr(study, attribute):
+            problems.append(at(("study", key), fault="a search over networks does not use it", expected=f"no {key}"))
+    plans: dict[tuple[str, str], SearchPlan] = {}
+    if not problems:
+        check_study(fixed_part(study))
+        for layout in searched:
+            try:
+                plans |= {(layout, index): _plan(study, layout, index) for index in study.indices}
+            except InerterError as error:
+                problems.append(at(("layouts", layout), str(error)))
+    if problems:
+        raise refusal(study.path, problems)
+    return plans
+
+
+def fixed_part(study: Study) -> Study:
+    """The study with the layouts alone that have no free network."""
+    searched = searched_layouts(study)
+    return replace(study, layouts={name: one for name, one in study.layouts.items() if name not in searched})
+
+
+def _plan(study: Study, layout: str, index: str) -> SearchPlan:
+    assert study.optimise is not None
+    limits = [limit for several in limits_in(study) for limit in several]
+    vehicle, method = study.design(layout), study.method(study.optimise)
+    return plan_search(vehicle, study.resolve_index(index, layout), method, limits, study.seed)
 
 
 def _points_to_check(every: Cases) -> list[int]:
@@ -132,10 +192,13 @@ def study_notes(study: Study) -> list[str]:
     ]
 
 
-def kernels(study: Study) -> list[Any]:
-    """The compiled code that the work calls, what takes longest to compile first."""
+def kernels(study: Study, design: Vehicle | None = None) -> list[Any]:
+    """The compiled code that the work calls, what takes longest to compile first.
+
+    `design` is any of its designs; default: that of the first layout.
+    """
     found: list[Any] = []
-    design = study.design(next(iter(study.layouts)))
+    design = study.design(next(iter(study.layouts))) if design is None else design
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, MethodWithKernels):

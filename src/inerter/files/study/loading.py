@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.atomic_io import escape_surrogates
-from inerter.files.common.elements import with_tied_values
+from inerter.files.common.elements import free_networks_in, with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
@@ -23,7 +23,7 @@ from inerter.files.study.quantity_texts import texts_of
 from inerter.files.study.reference_checks import name_problems
 from inerter.files.study.scatter import tolerance_of
 from inerter.files.study.sections import ROAD_EXAMPLE, study_codec
-from inerter.files.study.study import Study, elements_used
+from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.sweeps import conditions_of, sweeps_of
 from inerter.files.study.tasks import tasks
 from inerter.methods.registry import methods_that, searches
@@ -55,7 +55,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     problems = [
         *element_problems,
         *vehicle_problems(study.model, study.vehicle),
-        *layout_problems(study.elements, study.layouts),
+        *layout_problems({**study.elements, **study.free_networks}, study.layouts),
         *line_problems,
         *_road_problems(study),
     ]
@@ -86,6 +86,14 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     return study
 
 
+def unchosen_problems(study: Study) -> Iterator[Problem]:
+    """Problems of layouts with free networks, which are not designs and only for a search."""
+    for layout, names in searched_layouts(study).items():
+        what = f"{some(names)} is a free network" if len(names) == 1 else f"{some(names)} are free networks"
+        hint = f"Find the best network with: inerter search {study.path.name}."
+        yield at(("layouts", layout), fault=f"{what}, not a design yet", expected="elements", hint=hint)
+
+
 def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element], line: MeasuredLine | None) -> Study:
     """The study, but for what is said by places of it."""
     model, vehicle = parts_of(found["vehicle"])
@@ -102,6 +110,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
         coherence=(road and road["coherence"]) or {},
         line=line,
         elements=elements,
+        free_networks=free_networks_in(found["elements"]),
         layouts=found["layouts"],
         own_indices=dict(found["indices"]),
         method_settings={name: table for name, table in found.get("methods", {}).items() if table},
@@ -137,7 +146,8 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
 
 
 def _free_value_problems(study: Study) -> Iterator[Problem]:
-    used = [name for name in elements_used(study) if isinstance(study.elements[name].value, Free)]
+    named = elements_used(study)
+    used = [name for name in named if name in study.free_networks or isinstance(study.elements[name].value, Free)]
     used += [name for name, value in study.vehicle.items() if isinstance(value, Free)]
     if used and study.optimise is None:
         method = quote_value(methods_that(searches)[0])

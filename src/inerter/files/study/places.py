@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from inerter.files.common.codec import Codec
+from inerter.files.common.elements import free_networks_in
 from inerter.files.common.number import Number
 from inerter.files.common.roads import road_of, road_values
 from inerter.files.common.vehicles import parts_of
@@ -77,6 +78,11 @@ def _of_road(study: Study, values: Mapping[str, Any]) -> dict[str, Any]:
     return {"road": road_of(values, study.road.shape), "coherence": values["coherence"] or {}}
 
 
+def _elements(found: Mapping[str, Any]) -> dict[str, Any]:
+    networks = free_networks_in(found)
+    return {"elements": {n: e for n, e in found.items() if n not in networks}, "free_networks": networks}
+
+
 def _methods_in(study: Study) -> dict[str, dict[str, float]]:
     return {**{name: {} for name in study.methods}, **study.method_settings}
 
@@ -86,7 +92,7 @@ _SECTIONS = {
         lambda study: {"model": study.model, **study.vehicle}, lambda study, found: {"vehicle": parts_of(found)[1]}
     ),
     "road": _Section(lambda study: study.road and road_values(study.road, study.coherence), _of_road),
-    ELEMENTS: _Section(lambda study: study.elements, lambda study, found: {"elements": found}),
+    ELEMENTS: _Section(lambda study: {**study.elements, **study.free_networks}, lambda study, found: _elements(found)),
     "indices": _Section(lambda study: study.own_indices, lambda study, found: {"own_indices": found}),
     "study": _Section(lambda study: study, lambda study, found: found),
     "methods": _Section(

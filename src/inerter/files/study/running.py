@@ -122,7 +122,7 @@ def run_study(
         answers = tuple(done[part] for part in parts_of(study))
         data = gathered.dataset()
         write_text(results.draft / RESOLVED, write_resolved(study))
-        write_text(results.draft / VERSIONS, json.dumps(_origins(study), indent=2) + "\n")
+        write_text(results.draft / VERSIONS, json.dumps(origins(study), indent=2) + "\n")
         for task, own in by_task(answers).items():
             data = task.add_to_dataset(study, data, own)
             table = task.table(TaskResults(study, data, own))
@@ -148,7 +148,7 @@ def result_names() -> tuple[str, ...]:
     return (journals.NAME, RESOLVED, SUMMARY, DATASET, *tables, VERSIONS, f"{FIGURES}/", REPORT)
 
 
-def _origins(study: Study) -> dict[str, Any]:
+def origins(study: Study) -> dict[str, Any]:
     """Provenance of the results: versions, seed, and SHA-256 of a measured profile."""
     measured = {} if study.line is None else {"inputs": {study.line.path.name: study.line.digest}}
     return {**versions(), "seed": study.seed, **measured}

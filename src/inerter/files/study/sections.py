@@ -335,9 +335,9 @@ def study_codec() -> TableCodec:
         section("road", road_codec(), "Road and speed.", ROAD_EXAMPLE, None),
         section(
             "elements",
-            elements_codec(free=True, tied=True),
+            elements_codec(free=True, tied=True, networks=True),
             f"Elements of the struts, by names that you choose. The unit determines the kind: {format_unit_kinds()}. "
-            "A value is fixed, or a design variable between two bounds.",
+            "A value is fixed, or a design variable between two bounds. A free network is found by inerter search.",
             'a section [elements] with lines such as k = "120 kN/m"',
         ),
         section(

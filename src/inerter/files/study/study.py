@@ -29,6 +29,7 @@ from inerter.methods.conditions import Conditions
 from inerter.methods.method import Method
 from inerter.methods.registry import make_method
 from inerter.networks.elements import Element, Free, Tied
+from inerter.networks.free_network import FreeNetwork
 from inerter.networks.parser import names
 from inerter.signals.road import Road
 from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
@@ -54,6 +55,7 @@ class Study(Settings):
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
     conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
     texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities
+    free_networks: dict[str, FreeNetwork] = field(default_factory=dict)  # among the elements of the file, by name
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
 
@@ -166,7 +168,7 @@ class Study(Settings):
             hint = nearest(layout, self.layouts)
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
         here = self.at(swept) if swept else self
-        return here.layouts[layout].design(here.model, here.vehicle, here.elements)
+        return here.layouts[layout].design(here.model, here.vehicle, here.elements, here.free_networks)
 
     @cached_property
     def free_units(self) -> dict[str, str]:
@@ -199,6 +201,15 @@ def elements_used(study: Study) -> dict[str, list[str]]:
         for element in dict.fromkeys([*named, *(other for name in named for other in _tied_names(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
+
+
+def searched_layouts(study: Study) -> dict[str, list[str]]:
+    """Layouts with free networks, which `search` chooses, and the names of those."""
+    found: dict[str, list[str]] = {}
+    for name, layouts in elements_used(study).items():
+        for layout in layouts if name in study.free_networks else ():
+            found.setdefault(layout, []).append(name)
+    return found
 
 
 def scattering(study: Study, layout: str) -> set[str]:

@@ -71,6 +71,10 @@ def number_of(study: Study, place: Place) -> Number:
 
 def unknown_place(study: Study, place: Place) -> EntryError:
     """Error for a place without a number, with the nearest known place as a hint."""
+    if element_at(place) in study.free_networks:
+        return EntryError(
+            got=quote_value(place.label), fault="a free network has no value", expected="an element or another number"
+        )
     if element_at(place) == place.key:
         missing = f"{quote_value(place.key)} is not in [elements], where there are {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))

@@ -1,0 +1,69 @@
+"""Implementation of `inerter search`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from inerter.cli.cluster import workers
+from inerter.cli.commands import continuation_clause, processes
+from inerter.cli.interrupts import interruptible
+from inerter.cli.options import OWN, Cluster
+from inerter.cli.progress import progress
+from inerter.figures.search import draw_search
+from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.study.loading import load_study
+from inerter.files.study.searching import StudySearch, search_study
+from inerter.report.search import search_data, search_notes, search_sections, search_sentences, write_search_report
+from inerter.report.text import section_text, wrap_text
+from inerter.statements import Statement
+
+
+def search(
+    study: Path,
+    output: Path | None,
+    jobs: int | None,
+    cluster: Cluster = OWN,
+    *,
+    resume: bool,
+    force: bool,
+    as_json: bool,
+) -> tuple[Statement, ...]:
+    """Search the networks of a study file into a folder; returns its status."""
+    loaded = load_study(study)
+    folder = output or Path(f"{study.stem}-search")
+    own = processes(jobs)
+
+    def show(found: StudySearch, into: Path) -> None:
+        draw_search(found, into / FIGURES)
+        write_search_report(found, into / FIGURES, into / REPORT)
+
+    kept = continuation_clause(("search", str(study)), folder, jobs, cluster, as_json=as_json)
+    with (
+        interruptible(lambda: kept),
+        workers(cluster, jobs) as executor,
+        progress("networks", executor) as shown,
+    ):
+        found = search_study(
+            loaded,
+            folder,
+            jobs=own,
+            executor=executor,
+            resume=resume,
+            force=force,
+            progress=shown.cases,
+            compiling=shown.kernels,
+            finish=show,
+        )
+    print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
+    print(json.dumps(search_data(found), indent=2) if as_json else _text(found))
+    return (found.status,)
+
+
+def _text(found: StudySearch) -> str:
+    """Tables, notes and conclusions for a terminal."""
+    notes = [line for note in search_notes(found) for line in wrap_text(f"Note: {note}.", subsequent_indent="      ")]
+    told = [line for text in search_sentences(found) for line in wrap_text(text, subsequent_indent="  ")]
+    sections = section_text(search_sections(found))
+    return "\n".join([*wrap_text(found.study.title), "", sections, *([""] if notes else []), *notes, "", *told])

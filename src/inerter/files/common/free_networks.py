@@ -1,0 +1,101 @@
+"""Free networks in files: `{ network = 4, springs = { from = "1 kN/m", to = "1 MN/m" } }` among the elements."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from inerter.files.common.codec import Declaration, TableCodec, attributes, section
+from inerter.files.common.entries import (
+    LOWER,
+    UPPER,
+    YES_OR_NO,
+    Amount,
+    check_order,
+    positive,
+    whole,
+)
+from inerter.files.common.problem import EntryError
+from inerter.networks.elements import Damper, Element, Inerter, Spring
+from inerter.networks.free_network import FreeNetwork
+
+NETWORK = "network"
+_MOST = 7  # elements
+_KINDS: dict[str, tuple[type[Element], str, str]] = {
+    "springs": (Spring, "1 kN/m", "10 MN/m"),
+    "dampers": (Damper, "10 N s/m", "1 MN s/m"),
+    "inerters": (Inerter, "10 g", "100 t"),
+}
+
+
+def is_free_network(raw: Any) -> bool:
+    """Whether an entry of a file is one of a free network."""
+    return isinstance(raw, dict) and NETWORK in raw
+
+
+def _bounds_codec(kinds: str) -> TableCodec:
+    """The least and the largest value of the elements of a kind."""
+    kind, lower, upper = _KINDS[kinds]
+    ends = ((LOWER, "lower", "Lower", lower), (UPPER, "upper", "Upper", upper))
+
+    def bounds(lower: float, upper: float) -> tuple[float, float]:
+        check_order(Amount(kind.unit, lower), Amount(kind.unit, upper))
+        return lower, upper
+
+    return TableCodec(
+        tuple(
+            Declaration(positive(kind.unit), f"{word} bound of each.", f'{name} = "{text}"', name=name, attribute=end)
+            for name, end, word, text in ends
+        ),
+        bounds,
+        lambda value: dict(zip(("lower", "upper"), value, strict=True)),
+    )
+
+
+def _kind_keys() -> list[Declaration]:
+    bounds = [
+        section(
+            name,
+            _bounds_codec(name),
+            f"Bounds of each of the {name} of a free network; no {name} if left out.",
+            f'{name} = {{ from = "{lower}", to = "{upper}" }}',
+            None,
+        )
+        for name, (_, lower, upper) in _KINDS.items()
+    ]
+    counts = [
+        section(f"{name}_at_most", whole(0, _MOST), f"Largest number of {name}.", f"{name}_at_most = 2", None)
+        for name in _KINDS
+    ]
+    return bounds + counts
+
+
+def _free_network(**values: Any) -> FreeNetwork:
+    if all(values[name] is None for name in _KINDS):
+        name, (_, lower, upper) = next(iter(_KINDS.items()))
+        expected = f'bounds of one or more kinds, such as {name} = {{ from = "{lower}", to = "{upper}" }}'
+        raise EntryError(got="a free network without elements", expected=expected)
+    if values["min_elements"] > values["max_elements"]:
+        given = f"at_least = {values['min_elements']}, network = {values['max_elements']}"
+        raise EntryError(got=given, expected="at_least no more than network")
+    return FreeNetwork(**values)
+
+
+FREE_NETWORK = TableCodec(
+    (
+        Declaration(
+            whole(1, _MOST),
+            "Largest number of elements of a free network, all of whose networks inerter search compares.",
+            "network = 4",
+            name=NETWORK,
+            attribute="max_elements",
+        ),
+        Declaration(
+            whole(1, _MOST), "Least number of elements.", "at_least = 2", 1, name="at_least", attribute="min_elements"
+        ),
+        *_kind_keys(),
+        section("bridges", YES_OR_NO, "Whether bridges of five arms are networks too.", "bridges = true", False),
+    ),
+    _free_network,
+    attributes,
+    about="A free network: inerter search finds the best one of all that some elements can form.",
+)

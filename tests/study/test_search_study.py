@@ -1,0 +1,177 @@
+"""Searching a study over networks: every network is in the table, whatever shares or interrupts the work."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import pytest
+from study_text import assert_refused, load_text, study_text
+
+import inerter as it
+from inerter.cli.main import call
+from inerter.errors import StudyError
+from inerter.files.study.checking import check_lines, search_plans
+from inerter.files.study.searching import GroupResult, NetworkGroup, StudySearch, search_study
+from inerter.files.study.study import Study
+from inerter.networks.enumeration import enumerate_networks
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+KINDS = (
+    'springs = { from = "1 kN/m", to = "10 MN/m" }, dampers = { from = "10 N s/m", to = "1 MN s/m" }, '
+    'inerters = { from = "10 g", to = "100 t" }'
+)
+ELEMENTS = f'k = "120 kN/m"\nc = {{ from = "100 N s/m", to = "100 kN s/m" }}\nany = {{ network = 2, {KINDS} }}'
+LAYOUTS = 'S1 = "k | c"\nS = "k | any"'
+ASK = 'indices = ["J1", "J3"]\noptimise = "norm"'
+
+
+def text(settings: str = ASK, elements: str = ELEMENTS, layouts: str = LAYOUTS) -> str:
+    return study_text(settings, elements=elements, layouts=layouts)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    return load_text(tmp_path_factory.mktemp("study"), text())
+
+
+@pytest.fixture(scope="module")
+def found(study: Study, tmp_path_factory: pytest.TempPathFactory) -> StudySearch:
+    return search_study(study, tmp_path_factory.mktemp("found") / "out")
+
+
+def rows_of(folder: Path) -> list[dict[str, str]]:
+    with (folder / "search.csv").open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_every_network_is_in_the_table_once(found: StudySearch) -> None:
+    networks = sorted(each.format_expression(each.names({"k"})) for n in (1, 2) for each in enumerate_networks(n))
+    for index in ("J1", "J3"):
+        assert sorted(row["network"] for row in rows_of(found.folder) if row["index"] == index) == networks
+    for row in rows_of(found.folder):
+        assert bool(row["value"]) != row["status"].startswith("failed: "), row
+
+
+def test_values_are_those_of_the_design_and_of_the_library(found: StudySearch, study: Study) -> None:
+    for one in found.searches:
+        index, method = study.index(one.index), it.Norm()
+        direct = it.search(study.design("S"), index, method, seed=study.seed)
+        assert [(each.layout, each.value) for each in direct.ranking] == [
+            (each.layout, each.value) for each in one.result.ranking
+        ]
+        for each in one.result.ranking[:3]:
+            assert it.evaluate(each.design, index, method).value == pytest.approx(each.value, rel=1e-9)
+
+
+def test_one_damper_beside_the_spring_is_the_baseline(found: StudySearch) -> None:
+    for one in found.searches:
+        (alone,) = [each for each in one.result.ranking if each.layout == "c1"]
+        assert one.baseline == pytest.approx(alone.value, rel=1e-9)
+
+
+def test_a_search_cut_short_resumes_to_the_same_bytes(study: Study, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    whole = search_study(study, folder)
+    assert whole.computed == 20  # nine networks and one layout for each index
+    before, journal = (folder / "search.csv").read_bytes(), folder / "journal.jsonl"
+    journal.write_bytes(journal.read_bytes()[:-50])
+    assert search_study(study, folder, resume=True).computed == 9
+    assert (folder / "search.csv").read_bytes() == before
+    assert search_study(study, folder, resume=True).computed == 0
+    assert (folder / "search.csv").read_bytes() == before
+    with pytest.raises(StudyError, match=r"not empty.*--resume.*--force"):
+        search_study(study, folder)
+
+
+def test_two_processes_write_the_same_bytes(found: StudySearch, study: Study, tmp_path: Path) -> None:
+    search_study(study, tmp_path / "two", jobs=2)
+    assert (tmp_path / "two" / "search.csv").read_bytes() == (found.folder / "search.csv").read_bytes()
+
+
+def test_a_group_that_kills_its_processes_is_not_dropped(study: Study) -> None:
+    plan = search_plans(study)["S", "J1"]
+    group = NetworkGroup("S", "J1", 0, plan.groups()[0], plan)
+    result = group.failed_result(study, "out of memory")
+    again = GroupResult(**json.loads(json.dumps(result.to_json())))
+    assert not again.ok
+    assert again.part == group
+    assert [(one.topology, one.reason) for one in again.searched()] == [(t, "out of memory") for t in group.topologies]
+
+
+def test_results_survive_the_journal(study: Study) -> None:
+    plan = search_plans(study)["S", "J3"]
+    result = NetworkGroup("S", "J3", 0, plan.groups()[0], plan).compute(study, {}, 1)
+    again = GroupResult(**json.loads(json.dumps(result.to_json())))
+    assert list(again.searched()) == list(result.searched())
+
+
+def test_an_index_without_compiled_search(tmp_path: Path) -> None:
+    """With a limit each network is searched by itself; none is left out."""
+    elements = f'k = "120 kN/m"\nany = {{ network = 2, dampers_at_most = 1, springs_at_most = 0, {KINDS} }}'
+    study = load_text(
+        tmp_path, text(f'{ASK}\nsubject_to = {{ J3 = {{ at_most = "650 N" }} }}', elements, 'S = "k | any"')
+    )
+    assert {plan.compiled for plan in search_plans(study).values()} == {None}
+    one, _ = search_study(study, tmp_path / "out").searches
+    assert one.result.n_networks == 4  # c, b, c | b, c - b
+    assert [each.layout for each in one.result.frontier][-1] == one.result.ranking[0].layout
+
+
+@pytest.mark.parametrize(
+    ("settings", "layouts", "place", "words"),
+    [
+        (ASK, 'S1 = "k | c"', "layouts", ["no layout has a free network", "network = 4"]),
+        (f'{ASK}\ntrade_off = ["J1", "J3"]', LAYOUTS, "study.trade_off", ["does not use it"]),
+        (f'{ASK}\nsweep = {{ k = ["100 kN/m", "120 kN/m"] }}', LAYOUTS, "study.sweep", ["does not use it"]),
+    ],
+)
+def test_what_a_search_refuses(tmp_path: Path, settings: str, layouts: str, place: str, words: list[str]) -> None:
+    study = load_text(tmp_path, text(settings, layouts=layouts))
+    assert_refused(lambda: search_plans(study), place, words)
+
+
+def test_two_free_networks_are_refused(tmp_path: Path) -> None:
+    elements = f"{ELEMENTS}\nmore = {{ network = 1, {KINDS} }}"
+    study = load_text(tmp_path, text(elements=elements, layouts='S = "k | any | more"'))
+    assert_refused(lambda: search_plans(study), "layouts.S", ["2 different free networks"])
+
+
+def test_check_counts_the_networks(study: Study) -> None:
+    (line, *_) = check_lines(study.path)
+    assert "ok." in line
+    assert "9 networks of S to search for each index" in line
+
+
+def test_the_command_writes_tables_drawings_and_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    load_text(tmp_path, text())
+    command = ["search", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "-j", "1"]
+    assert call(command) == 0
+    told = capsys.readouterr().out
+    assert max(map(len, told.splitlines())) <= 80
+    for words in ("best network for each number of elements", "c1 - b1", "have no value", "On S1"):
+        assert words in told
+    names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
+    assert names >= {"search.csv", "report.html", "figures/frontier.svg", "figures/networks-S-J1.svg"}
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count("<svg") == 3
+    assert call([*command, "--resume", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert len(data["networks"]) == 18
+    assert data["frontiers"][0] == {"layout": "S", "index": "J1", "networks": ["c1", "c1 - b1"]}
+
+
+@pytest.mark.parametrize(
+    ("name", "layout", "network"), [("quarter_car", "S3", "c1 - b1"), ("absorber", "TMD", "k1 | c1")]
+)
+def test_networks_of_two_elements_in_the_examples(name: str, layout: str, network: str, tmp_path: Path) -> None:
+    """The network that a layout spells out has the value that the optimiser finds for the layout."""
+    written = (EXAMPLES / f"search_{name}.toml").read_text(encoding="utf-8")
+    study = load_text(tmp_path, re.sub(r"\nnetwork = \d", "\nnetwork = 2", written))
+    found = search_study(study, tmp_path / "out")
+    for one in found.searches:
+        (alike,) = [each for each in one.result.ranking if each.layout == network]
+        (fixed,) = [each for each in found.fixed if (each.layout, each.index) == (layout, one.index)]
+        assert alike.value == pytest.approx(fixed.values["norm"][one.index], rel=1e-6)

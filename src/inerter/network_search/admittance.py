@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,8 @@ from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 _DAMPERS = np.geomspace(1e-3, 1e9, 241)  # of which the best one is typical [N s/m]
+_MOST = 10  # degree
+_STARTS = 25  # of degree 0
 _AGREES = 1e-6  # relative difference between the index of the admittance and that of the network
 
 
@@ -89,20 +92,20 @@ class BestAdmittanceResult:
 
 
 def optimise_admittance(
-    vehicle: Vehicle, index: IndexLike, degree: int = 2, *, seed: int = 0, starts: int = 100
+    vehicle: Vehicle, index: IndexLike, degree: int = 2, *, seed: int = 0, starts: int | None = None
 ) -> BestAdmittanceResult:
     """The best positive-real admittance up to a degree in the place of the free network in `vehicle`.
 
     The degree is the McMillan degree, the least number of springs and inerters of a network with this admittance, if
     transformers (levers) are allowed; so networks with that many springs and inerters, and any number of dampers, are
-    not better. The bounds of `any_network(...)` do not matter. Each degree up to this one is searched from `starts`
-    admittances; the same seed gives the same result.
+    not better. The bounds of `any_network(...)` do not matter. The search starts from `starts` admittances of this
+    degree (default: 25 for degree 0, twice as many for each degree more), and from half as many of each degree below.
+    The same seed gives the same result.
 
     The index is one of r.m.s. values that `Norm()` computes, and the network is in one place.
 
     Raises `DesignError` without exactly one free network in one place, for other free values, for an index of another
-    kind, or if `seed` or `starts` are not valid; `SynthesisError` if `degree` is not, or if the index is infinite for
-    all starts.
+    kind, or if `degree`, `seed` or `starts` are not valid; `SynthesisError` if the index is infinite for all starts.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.any_network(1, dampers=(10, 1e6))
@@ -112,15 +115,17 @@ def optimise_admittance(
     (2.4281, ['Damper', 'Inerter'])
     """
     plan = plan_search(vehicle, index, Norm(), (), seed, starts)
+    if isinstance(degree, bool) or not isinstance(degree, Integral) or not 0 <= degree <= _MOST:
+        raise DesignError(f"`degree` must be an integer from 0 to {_MOST}, got {degree!r}.")
     objective = _AdmittanceIndex(_compiled(plan))
     damping, omega = objective.scales()
     found = best_admittance(
         objective.value,
-        degree,
+        int(degree),
         damping=damping,
         omega=omega,
         seed=plan.seed,
-        starts=int(starts),
+        starts=plan.starts or _STARTS * 2 ** int(degree),
         gradient=objective.value_and_gradients,
     )
     return BestAdmittanceResult(

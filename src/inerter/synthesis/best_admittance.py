@@ -14,9 +14,9 @@ infinity, k / s and b s, are limits of such functions and are searched on their 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -71,8 +71,9 @@ def best_admittance(
 
     `index(numerator, denominator)` is the index to minimise, nan or infinite where it does not exist. The starts have
     sizes around `damping` [N s/m] and corner frequencies around `omega` [rad/s], over some two decades; every other one
-    is a minimum of the degree below with a further state. `gradient` gives the index and its gradients over numerator
-    and denominator; without it, differences are taken.
+    is a minimum of the degree below with a further state. The highest degree has `starts` of them, each one below half
+    as many, and at least one of each form. `gradient` gives the index and its gradients over numerator and denominator;
+    without it, differences are taken.
 
     Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
     """
@@ -89,7 +90,7 @@ def best_admittance(
     latest: list[_Minimum] = []
     with np.errstate(over="ignore", invalid="ignore"):
         for order in range(degree + 1):
-            latest = _search(objective, order, starts, rng, latest)
+            latest = _search(objective, order, max(starts >> degree - order, 1), rng, latest)
             found += latest
     least = min(each.value for each in found)
     if not np.isfinite(least):
@@ -99,9 +100,24 @@ def best_admittance(
         )
     equal = [each for each in found if each.value <= least + _EQUAL * abs(least)]
     best = min(equal, key=lambda each: each.family.size)  # which saves elements
-    numerator, denominator = best.family.polynomials(best.x, damping, omega, exact=True)
+    numerator, denominator = _without_idle(index, *best.family.polynomials(best.x, damping, omega, exact=True))
     converged = sum(each.value <= least + _AGREEMENT * abs(least) for each in latest)
     return BestAdmittance(best.value, tuple(numerator.tolist()), tuple(denominator.tolist()), len(latest), converged)
+
+
+def _without_idle(index: Index, numerator: Floats, denominator: Floats) -> tuple[Floats, Floats]:
+    """The polynomials with coefficients of zero where that changes nothing, which saves elements."""
+    n, least = len(numerator), index(numerator, denominator)
+    both = np.concatenate([numerator, denominator])
+    for i in np.flatnonzero(both):
+        changed = np.where(np.arange(both.size) == i, 0.0, both)
+        if not (changed[:n].any() and changed[n:].any()):
+            continue
+        if index(changed[:n], changed[n:]) <= least + _IDLE * abs(least):
+            with suppress(SynthesisError):
+                realise(changed[:n], changed[n:])  # which also takes what is positive real but for its rounding
+                both = changed
+    return np.trim_zeros(both[:n], "f"), np.trim_zeros(both[n:], "f")
 
 
 @dataclass(frozen=True)
@@ -146,10 +162,11 @@ class _Family:
             top, bottom = bottom, top
         return damping * _stretch(top, omega), _stretch(bottom, omega)
 
-    def slopes(self, x: Floats, damping: float, omega: float) -> tuple[Floats, Floats]:
-        """Derivatives (size, coefficients) of numerator and denominator over the variables, by complex steps."""
-        top, bottom = self.polynomials(x + 1j * _STEP * np.eye(self.size), damping, omega)
-        return top.imag / _STEP, bottom.imag / _STEP
+    def with_slopes(self, x: Floats, damping: float, omega: float) -> tuple[Floats, Floats, Floats, Floats]:
+        """Numerator, denominator and their derivatives (size, coefficients) over the variables, by complex steps."""
+        steps = np.eye(self.size + 1, self.size, -1) * _STEP
+        top, bottom = self.polynomials(x + 1j * steps, damping, omega)
+        return top[0].real, bottom[0].real, top[1:].imag / _STEP, bottom[1:].imag / _STEP
 
 
 def _families(degree: int) -> list[_Family]:
@@ -178,7 +195,9 @@ def _to_polynomials(A: Floats, B: Floats, C: Floats, D: Floats) -> tuple[Floats,
 
 def _pad(p: Floats, before: int = 0, after: int = 0) -> Floats:
     """Coefficients with zeros before them, or after them."""
-    return np.pad(p, [(0, 0)] * (p.ndim - 1) + [(before, after)])
+    result = np.zeros((*p.shape[:-1], before + p.shape[-1] + after), p.dtype)
+    result[..., before : before + p.shape[-1]] = p
+    return result
 
 
 def _stretch(p: Floats, omega: float) -> Floats:
@@ -195,17 +214,23 @@ class _Objective:
     damping: float
     omega: float
 
+    def values(self, family: _Family, points: Floats) -> list[float]:
+        """Values at rows of search variables."""
+        several = zip(*family.polynomials(points, self.damping, self.omega), strict=True)
+        values = [self.index(numerator, denominator) for numerator, denominator in several]
+        return [float(value) if is_number(value) else np.inf for value in values]
+
     def value(self, family: _Family, x: Floats) -> float:
-        value = self.index(*family.polynomials(x, self.damping, self.omega))
-        return float(value) if is_number(value) else np.inf
+        """The value at search variables."""
+        return self.values(family, x[None])[0]
 
     def with_slopes(self, family: _Family, x: Floats) -> tuple[float, Floats]:
         """The value and its gradient over the variables, which is zero where the value is infinite."""
         assert self.gradient is not None
-        value, top, bottom = self.gradient(*family.polynomials(x, self.damping, self.omega))
+        numerator, denominator, top_slopes, bottom_slopes = family.with_slopes(x, self.damping, self.omega)
+        value, top, bottom = self.gradient(numerator, denominator)
         if not is_number(value):
             return np.inf, np.zeros(family.size)
-        top_slopes, bottom_slopes = family.slopes(x, self.damping, self.omega)
         return float(value), top_slopes @ top + bottom_slopes @ bottom
 
 
@@ -230,7 +255,8 @@ def _search(
             known.sort(key=lambda each: each.value)
             x = family.extend(known[turn // 2 % len(known)].x, rng)
         else:
-            x = min(_SPREAD * rng.standard_normal((_SAMPLES, family.size)), key=partial(objective.value, family))
+            samples = _SPREAD * rng.standard_normal((_SAMPLES, family.size))
+            x = samples[np.argmin(objective.values(family, samples))]
         found.append(_minimise(objective, family, x))
     return found
 

@@ -105,6 +105,12 @@ def network_program(network: Network) -> NetworkProgram:
     return NetworkProgram(Program(table, more), powers[last], rows[last][-2], rows[last][-1])
 
 
+def admittance_program(power: int, top: int, bottom: int) -> NetworkProgram:
+    """The program of an admittance s^power N(s) / D(s) of given degrees, for the kernel `admittance_indices`."""
+    parts = np.array([[LEAF, 0, 0, 0, 0, top, bottom]], np.int64)
+    return NetworkProgram(Program(parts, np.zeros((0, ARMS + 16), np.int64)), power, top, bottom)
+
+
 @dataclass(frozen=True, eq=False)
 class CompiledSearch:
     """Optima that many starts find, in compiled code: element values (starts, variables), values, and evaluations."""

@@ -83,7 +83,7 @@ def test_slopes_of_the_coefficients_are_those_of_differences(family):
 
 def lowest(index, max_elements, degree, **options):
     """The lowest index of all networks with at most so many springs and inerters."""
-    found = it.search(car(it.Spring(120e3) | it.any_network(max_elements, **KINDS, **options)), index, seed=1)
+    found = it.search(car(it.Spring(120e3) | it.any_network(max_elements, **KINDS, **options)), index, it.Norm(), seed=1)
     return min(one.value for one in found.ranking if one.topology.counts["k"] + one.topology.counts["b"] <= degree)
 
 
@@ -138,6 +138,19 @@ def test_a_value_that_is_not_that_of_the_network_is_told():
 
 
 FREE = it.Spring(it.free(1e4, 1e6, "k")) | ANY
+USES = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 30.0})])
+HALF_CAR = it.HalfCar(
+    sprung_mass=600.0,
+    pitch_inertia=900.0,
+    unsprung_mass_front=40.0,
+    unsprung_mass_rear=40.0,
+    tyre_stiffness_front=2e5,
+    tyre_stiffness_rear=2e5,
+    distance_front=1.2,
+    distance_rear=1.4,
+    front=it.Spring(2e4) | ANY,
+    rear=it.Spring(4e4) | it.Damper(1500.0),
+)
 REFUSED = {
     "no free network": (car(it.Spring(120e3)), INDICES["J1"], {}, "with one free network"),
     "two places": (car(it.Spring(120e3) | ANY | it.Damper(1.0) - ANY), INDICES["J1"], {}, "is in 2 places"),
@@ -148,6 +161,13 @@ REFUSED = {
         {},
         "is a peak gain",
     ),
+<<<<<<< HEAD
+=======
+    "conditions": (car(it.Spring(120e3) | ANY), USES.mean(INDICES["J1"]), {}, "computed from several indices"),
+    "two axles": (HALF_CAR, INDICES["J1"], {}, "a road that reaches several axles"),
+    "rigid link": (car(it.Spring(120e3) | ANY), it.SuspensionTravel(ROAD), {"degree": 1}, "with a rigid link"),
+    "no network": (car(ANY), INDICES["J1"], {"degree": 1}, "with no network"),
+>>>>>>> h7
     "degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": -1}, "from 0 to 10, got -1"),
     "half a degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": 1.5}, "got 1.5"),
     "starts": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"starts": 0}, "`starts` must be"),

@@ -33,11 +33,13 @@ Array = NDArray[np.float64]
 _DAMPERS = np.geomspace(1e-3, 1e9, 241)  # of which the best one is typical [N s/m]
 _MOST = 10  # degree
 _STARTS = 25  # of degree 0
+_LIMITS = {1e-12: "no network", 1e12: "a rigid link"}  # by the factor of an admittance that comes close to it
+_SAME = 1e-9  # relative difference of values
 _AGREES = 1e-6  # relative difference between the index of the admittance and that of the network
 
 
 @dataclass(frozen=True, eq=False)
-class BestAdmittanceResult:
+class AdmittanceResult:
     """The best admittance numerator / denominator [N s/m], highest power of s first, and the index with it.
 
     `n_converged` of `n_starts` searches at the highest degree ended at this value; it is the best one found, which is
@@ -93,7 +95,7 @@ class BestAdmittanceResult:
 
 def optimise_admittance(
     vehicle: Vehicle, index: IndexLike, degree: int = 2, *, seed: int = 0, starts: int | None = None
-) -> BestAdmittanceResult:
+) -> AdmittanceResult:
     """The best positive-real admittance up to a degree in the place of the free network in `vehicle`.
 
     The degree is the McMillan degree, the least number of springs and inerters of a network with this admittance, if
@@ -105,7 +107,8 @@ def optimise_admittance(
     The index is one of r.m.s. values that `Norm()` computes, and the network is in one place.
 
     Raises `DesignError` without exactly one free network in one place, for other free values, for an index of another
-    kind, or if `degree`, `seed` or `starts` are not valid; `SynthesisError` if the index is infinite for all starts.
+    kind or one that is lowest without a network or with a rigid link, or if `degree`, `seed` or `starts` are not valid;
+    `SynthesisError` if the index is infinite for all starts.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.any_network(1, dampers=(10, 1e6))
@@ -128,7 +131,14 @@ def optimise_admittance(
         starts=plan.starts or _STARTS * 2 ** int(degree),
         gradient=objective.value_and_gradients,
     )
-    return BestAdmittanceResult(
+    numerator, denominator = np.array(found.numerator), np.array(found.denominator)
+    for factor, limit in _LIMITS.items():
+        if objective.value(factor * numerator, denominator) <= found.value * (1.0 + _SAME):
+            raise DesignError(
+                f"No admittance is the best one: {plan.index.symbol} is at least as low with {limit} in the place of "
+                f"the free network. Give another index, or use search(...), whose bounds exclude that."
+            )
+    return AdmittanceResult(
         found.value,
         str(plan.index.unit),
         found.numerator,
@@ -152,8 +162,8 @@ def _compiled(plan: SearchPlan) -> NetworkIndex:
         reason = f"{plan.index.symbol} is computed from several indices; give one of them"
     elif plan.compiled is None:
         reason = (
-            f"{plan.index.symbol} has a road spectrum that is no fraction in s, or one source that reaches several "
-            f"inputs with delays; give a standard road and a vehicle with one such input"
+            f"{plan.index.symbol} has a road spectrum that is no fraction in s, or a road that reaches several axles "
+            f"one after the other; give a standard road and a vehicle with one axle"
         )
     elif plan.compiled.definition.is_peak:
         reason = f"{plan.index.symbol} is a peak gain; give an index of r.m.s. values"

@@ -276,11 +276,9 @@ def _minimise(objective: _Objective, family: _Family, x: Floats) -> _Minimum:
             value, slopes = objective.with_slopes(family, x)
             return value / size, slopes / size
 
-        options = {"gtol": 1e-9, "maxiter": 500}
-        if objective.gradient is None:
-            result = minimize(scaled, x, method="BFGS", options=options)
-        else:
-            result = minimize(scaled_with_slopes, x, method="BFGS", jac=True, options=options)
+        exact: Any = objective.gradient is not None
+        searched: Any = scaled_with_slopes if exact else scaled
+        result = minimize(searched, x, method="BFGS", jac=exact, options={"gtol": 1e-9, "maxiter": 500})
         if objective.value(family, result.x) < least:
             least, x = objective.value(family, result.x), result.x
         for i in range(len(x)):

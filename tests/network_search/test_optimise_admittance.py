@@ -161,13 +161,10 @@ REFUSED = {
         {},
         "is a peak gain",
     ),
-<<<<<<< HEAD
-=======
     "conditions": (car(it.Spring(120e3) | ANY), USES.mean(INDICES["J1"]), {}, "computed from several indices"),
     "two axles": (HALF_CAR, INDICES["J1"], {}, "a road that reaches several axles"),
     "rigid link": (car(it.Spring(120e3) | ANY), it.SuspensionTravel(ROAD), {"degree": 1}, "with a rigid link"),
     "no network": (car(ANY), INDICES["J1"], {"degree": 1}, "with no network"),
->>>>>>> h7
     "degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": -1}, "from 0 to 10, got -1"),
     "half a degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": 1.5}, "got 1.5"),
     "starts": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"starts": 0}, "`starts` must be"),

@@ -83,7 +83,9 @@ def test_slopes_of_the_coefficients_are_those_of_differences(family):
 
 def lowest(index, max_elements, degree, **options):
     """The lowest index of all networks with at most so many springs and inerters."""
-    found = it.search(car(it.Spring(120e3) | it.any_network(max_elements, **KINDS, **options)), index, it.Norm(), seed=1)
+    found = it.search(
+        car(it.Spring(120e3) | it.any_network(max_elements, **KINDS, **options)), index, it.Norm(), seed=1
+    )
     return min(one.value for one in found.ranking if one.topology.counts["k"] + one.topology.counts["b"] <= degree)
 
 

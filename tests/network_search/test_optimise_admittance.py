@@ -23,6 +23,22 @@ STRUTS = {
 }
 
 
+USES = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 30.0})])
+PUSH = it.WhiteForce("sprung_force", 1.0)
+HALF_CAR = it.HalfCar(
+    sprung_mass=600.0,
+    pitch_inertia=900.0,
+    unsprung_mass_front=40.0,
+    unsprung_mass_rear=40.0,
+    tyre_stiffness_front=2e5,
+    tyre_stiffness_rear=2e5,
+    distance_front=1.2,
+    distance_rear=1.4,
+    front=it.Spring(2e4) | ANY,
+    rear=it.Spring(4e4) | it.Damper(1500.0),
+)
+
+
 def car(strut):
     return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25.0, tyre_stiffness=120e3, strut=strut)
 
@@ -133,6 +149,14 @@ def test_the_design_has_the_realised_network():
     assert best.unit == "m/s^2"
 
 
+def test_a_half_car_under_a_random_force():
+    index = it.RandomResponse({"sprung_velocity": 1.0, "pitch_velocity": 0.5}, PUSH)
+    best = it.optimise_admittance(HALF_CAR, index, 1, starts=10)
+    assert best.status.ok
+    front = it.Spring(2e4) | it.Damper(it.free(1.0, 1e6, "c"))
+    assert best.value <= it.optimise(replace(HALF_CAR, front=front), index, it.Norm(), seed=0).value * (1.0 + 1e-9)
+
+
 def test_a_value_that_is_not_that_of_the_network_is_told():
     best = it.optimise_admittance(car(it.Spring(120e3) | ANY), INDICES["J1"], 1, starts=10)
     assert "differs from that of the network" in str(replace(best, value=best.value * 1.01).status)
@@ -140,19 +164,6 @@ def test_a_value_that_is_not_that_of_the_network_is_told():
 
 
 FREE = it.Spring(it.free(1e4, 1e6, "k")) | ANY
-USES = it.Conditions([it.Condition(0.3), it.Condition(0.7, road={"speed": 30.0})])
-HALF_CAR = it.HalfCar(
-    sprung_mass=600.0,
-    pitch_inertia=900.0,
-    unsprung_mass_front=40.0,
-    unsprung_mass_rear=40.0,
-    tyre_stiffness_front=2e5,
-    tyre_stiffness_rear=2e5,
-    distance_front=1.2,
-    distance_rear=1.4,
-    front=it.Spring(2e4) | ANY,
-    rear=it.Spring(4e4) | it.Damper(1500.0),
-)
 REFUSED = {
     "no free network": (car(it.Spring(120e3)), INDICES["J1"], {}, "with one free network"),
     "two places": (car(it.Spring(120e3) | ANY | it.Damper(1.0) - ANY), INDICES["J1"], {}, "is in 2 places"),
@@ -167,6 +178,7 @@ REFUSED = {
     "two axles": (HALF_CAR, INDICES["J1"], {}, "a road that reaches several axles"),
     "rigid link": (car(it.Spring(120e3) | ANY), it.SuspensionTravel(ROAD), {"degree": 1}, "with a rigid link"),
     "no network": (car(ANY), INDICES["J1"], {"degree": 1}, "with no network"),
+    "infinite": (HALF_CAR, it.RandomResponse({"sprung_acceleration": 1.0}, PUSH), {"degree": 1}, "is infinite for all"),
     "degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": -1}, "from 0 to 10, got -1"),
     "half a degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": 1.5}, "got 1.5"),
     "starts": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"starts": 0}, "`starts` must be"),

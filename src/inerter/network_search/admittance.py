@@ -107,8 +107,8 @@ def optimise_admittance(
     The index is one of r.m.s. values that `Norm()` computes, and the network is in one place.
 
     Raises `DesignError` without exactly one free network in one place, for other free values, for an index of another
-    kind or one that is lowest without a network or with a rigid link, or if `degree`, `seed` or `starts` are not valid;
-    `SynthesisError` if the index is infinite for all starts.
+    kind, for one that is infinite for all starts or lowest without a network or with a rigid link, or if `degree`,
+    `seed` or `starts` are not valid.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.any_network(1, dampers=(10, 1e6))
@@ -122,15 +122,21 @@ def optimise_admittance(
         raise DesignError(f"`degree` must be an integer from 0 to {_MOST}, got {degree!r}.")
     objective = _AdmittanceIndex(_compiled(plan))
     damping, omega = objective.scales()
-    found = best_admittance(
-        objective.value,
-        int(degree),
-        damping=damping,
-        omega=omega,
-        seed=plan.seed,
-        starts=plan.starts or _STARTS * 2 ** int(degree),
-        gradient=objective.value_and_gradients,
-    )
+    try:
+        found = best_admittance(
+            objective.value,
+            int(degree),
+            damping=damping,
+            omega=omega,
+            seed=plan.seed,
+            starts=plan.starts or _STARTS * 2 ** int(degree),
+            gradient=objective.value_and_gradients,
+        )
+    except SynthesisError:  # the one that a valid request can have
+        raise DesignError(
+            f"{plan.index.symbol} is infinite for all admittances up to degree {degree} that were tried. Evaluate the "
+            f"design with a damper in the place of the free network, which says why, or give another index."
+        ) from None
     numerator, denominator = np.array(found.numerator), np.array(found.denominator)
     for factor, limit in _LIMITS.items():
         if objective.value(factor * numerator, denominator) <= found.value * (1.0 + _SAME):
@@ -211,7 +217,8 @@ class _AdmittanceIndex:
     def scales(self) -> tuple[float, float]:
         """The best damper [N s/m], and the geometric mean of the natural frequencies with it [rad/s]."""
         values = [self.value(np.array([c]), np.ones(1)) for c in _DAMPERS]
-        damping = float(_DAMPERS[int(np.argmin(values))])
+        best = int(np.argmin(values)) if np.isfinite(values).any() else _DAMPERS.size // 2
+        damping = float(_DAMPERS[best])
         sizes = []
         for function in self.compiled.functions:
             high, _ = function.rounded()

@@ -28,6 +28,7 @@ from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.synthesis.realise import realise
 from inerter.validation import check_positive, is_number
+from inerter.work.progress import report
 
 Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
 Index = Callable[[Floats, Floats], float]  # of numerator and denominator, highest power of s first
@@ -249,8 +250,10 @@ def _search(
     objective: _Objective, degree: int, starts: int, rng: np.random.Generator, lower: Sequence[_Minimum]
 ) -> list[_Minimum]:
     """Local minima of a degree, from random samples and in turn from the minima of the degree below."""
-    families, found = _families(degree), []
-    for i in range(max(starts, len(families))):
+    families = _families(degree)
+    found: list[_Minimum] = []
+    count = max(starts, len(families))
+    for i in range(count):
         turn, family = i // len(families), families[i % len(families)]
         known = [each for each in lower if replace(each.family, degree=each.family.degree + 1) == family]
         if turn % 2 and known:
@@ -260,6 +263,8 @@ def _search(
             samples = _SPREAD * rng.standard_normal((_SAMPLES, family.size))
             x = samples[np.argmin(objective.values(family, samples))]
         found.append(_minimise(objective, family, x))
+        best = min(each.value for each in found)
+        report(f"admittances of degree {degree}", i + 1, count, best=best if np.isfinite(best) else None)
     return found
 
 

@@ -115,7 +115,7 @@ FIXED, TWO = Spring(1e5) | Damper(1e3), it.any_network(2, **SPRINGS)
         ),
         (
             lambda: search(paper_quarter_car(FIXED | it.any_network(2, **SPRINGS, min_elements=2)), COMFORT),
-            "No network is left to search",
+            "There is no network to search",
         ),
     ],
 )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import inerter as it
-from inerter.network_search.admittance import _AdmittanceIndex, _compiled
+from inerter.network_search.admittance import _AdmittanceIndex, _compile_index
 from inerter.network_search.search import plan_search
 from inerter.synthesis.best_admittance import _families
 
@@ -45,7 +45,7 @@ def car(strut):
 
 def of_car(index, strut=STRUTS["beside a spring"]):
     """The compiled index over the admittance of the free network."""
-    return _AdmittanceIndex(_compiled(plan_search(car(strut(ANY)), index, it.Norm())))
+    return _AdmittanceIndex(_compile_index(plan_search(car(strut(ANY)), index, it.Norm())))
 
 
 @pytest.mark.parametrize("strut", STRUTS.values(), ids=STRUTS)

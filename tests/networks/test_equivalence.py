@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.networks.enumeration import Topology
-from inerter.networks.equivalence import equivalence_classes, transformed
+from inerter.networks.equivalence import equivalence_classes, transform_values
 
 POWERS = {"k": -1, "c": 0, "b": 1}  # of s in the admittance
 POINTS = np.logspace(-1.5, 1.5, 14)  # real s, at which nothing cancels
@@ -50,7 +50,7 @@ def admittance(topology, values):
 
 def assert_equal_admittances(one, other, rng):
     values = 10.0 ** rng.uniform(-3, 3, one.size)
-    found = transformed(one, values, other)
+    found = transform_values(one, values, other)
     assert len(found) == other.size
     assert min(found) > 0.0
     np.testing.assert_allclose(admittance(other, found), admittance(one, values), rtol=1e-12)
@@ -83,7 +83,7 @@ def test_like_neighbours_and_other_kinds_are_transformed():
     one, other = Topology(("|", "k", "k", ("-", "b", "b", "c"))), Topology(("|", "k", ("-", "c", "b")))
     assert_equal_admittances(one, other, rng)
     assert_equal_admittances(other, one, rng)
-    assert transformed(other, [3.0, 2.0, 5.0], other) == (3.0, 2.0, 5.0)
+    assert transform_values(other, [3.0, 2.0, 5.0], other) == (3.0, 2.0, 5.0)
     friction = [Topology(("|", "f", ("-", "f", "k"))), Topology(("-", "f", ("|", "f", "k")))]
     assert equivalence_classes(friction) == [(each,) for each in sorted(friction)]
 
@@ -97,7 +97,7 @@ def test_admittance_at_complex_frequencies():
             values = 10.0 ** rng.uniform(-1, 1, one.size)
             Y, Z = (
                 topology.network([kinds[k](v) for k, v in zip(topology.kinds, numbers, strict=True)]).admittance(s)
-                for topology, numbers in ((one, values), (other, transformed(one, values, other)))
+                for topology, numbers in ((one, values), (other, transform_values(one, values, other)))
             )
             np.testing.assert_allclose(Z, Y, rtol=1e-10)
 
@@ -188,10 +188,10 @@ def test_fits_find_equal_networks():
 def test_refusals():
     one, other = Topology(("|", ("-", "k", "c"), ("-", "k", "c"))), Topology(("-", "k", ("|", "c", ("-", "k", "c"))))
     with pytest.raises(it.InerterError, match="requires 4 positive values"):
-        transformed(one, [1.0, 2.0, 3.0], other)
+        transform_values(one, [1.0, 2.0, 3.0], other)
     with pytest.raises(it.InerterError, match="requires 4 positive values"):
-        transformed(one, [1.0, 2.0, 3.0, -1.0], other)
+        transform_values(one, [1.0, 2.0, 3.0, -1.0], other)
     with pytest.raises(it.InerterError, match="Change a value slightly"):
-        transformed(one, [1.0, 2.0, 2.0, 4.0], other)
+        transform_values(one, [1.0, 2.0, 2.0, 4.0], other)
     with pytest.raises(it.InerterError, match="No transformation"):
-        transformed(one, [1.0, 2.0, 3.0, 4.0], Topology(("|", "k", "c")))
+        transform_values(one, [1.0, 2.0, 3.0, 4.0], Topology(("|", "k", "c")))

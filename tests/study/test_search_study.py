@@ -98,14 +98,14 @@ def test_a_group_that_kills_its_processes_is_not_dropped(study: Study) -> None:
     again = GroupResult(**json.loads(json.dumps(result.to_json())))
     assert not again.ok
     assert again.part == group
-    assert [(one.topology, one.reason) for one in again.searched()] == [(t, "out of memory") for t in group.topologies]
+    assert [(one.topology, one.reason) for one in again.optima()] == [(t, "out of memory") for t in group.topologies]
 
 
 def test_results_survive_the_journal(study: Study) -> None:
     plan = search_plans(study)["S", "J3"]
     result = NetworkGroup("S", "J3", 0, plan.groups()[0], plan).compute(study, {}, 1)
     again = GroupResult(**json.loads(json.dumps(result.to_json())))
-    assert list(again.searched()) == list(result.searched())
+    assert list(again.optima()) == list(result.optima())
 
 
 def test_an_index_without_compiled_search(tmp_path: Path) -> None:

@@ -21,9 +21,9 @@ from inerter.files.study.parts import PartResult
 from inerter.files.study.search_tables import RANKED, improvement
 from inerter.files.study.searching import GroupResult, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
+from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.results import rank_networks
 from inerter.network_search.search import SearchPlan
-from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.elements import ELEMENT_TYPES
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import replace_in_expression
@@ -42,7 +42,7 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
     done = [0]
 
     def on_groups(groups: list[GroupResult]) -> None:
-        ranking.add([network for group in groups for network in group.searched()])
+        ranking.add([network for group in groups for network in group.optima()])
 
     def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
         done[0] = count
@@ -116,7 +116,7 @@ class _Ranking:
         (one,) = found.searches
         rows = []
         for network in one.result.ranking[:RANKED]:
-            own = network.topology.names(self.plan.taken)
+            own = network.topology.names(self.plan.taken_names)
             values = [network.parameters[name] for name in own]
             others = {name: value for name, value in network.parameters.items() if name not in own}
             rows.append(
@@ -140,8 +140,8 @@ class _Ranking:
 
     def _row(self, topology: Topology, values: Sequence[float], others: Mapping[str, float]) -> dict[str, Any]:
         """A network with its values, and the entries of a study document that has it in place of the free one."""
-        names = topology.names(self.plan.taken | set(self.document["elements"]))
-        new_names = dict(zip(topology.names(self.plan.taken), names, strict=True))
+        names = topology.names(self.plan.taken_names | set(self.document["elements"]))
+        new_names = dict(zip(topology.names(self.plan.taken_names), names, strict=True))
         expression = topology.format_expression(names)
         chosen = dict.fromkeys(searched_layouts(self.study)[self.layout], expression)
         entry = self.document["layouts"][self.layout]

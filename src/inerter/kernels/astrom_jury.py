@@ -57,7 +57,7 @@ def forward(n: int, space: Recursion) -> float:
 
 @part(borrowing=True)
 def fine_forward(n: int, space: Recursion) -> float:
-    """As `forward`, in twice the precision."""
+    """Squared norm in twice the precision; see `forward`."""
     a, b, a_low, b_low, steps, before = space.a, space.b, space.a_low, space.b_low, space.steps, space.before
     total, rest = 0.0, 0.0
     for j in range(n):

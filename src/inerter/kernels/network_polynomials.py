@@ -192,7 +192,7 @@ def _bridge_adjoint(program: Program, room: Polynomials, k: int, adjoint: Array,
 def _add_fine_convolution(
     result: Array, low: Array, shift: int, p: Array, p_low: Array, p_degree: int, q: Array, q_low: Array, q_degree: int
 ) -> None:
-    """As `_add_convolution`, in twice the precision."""
+    """Add s^shift p q to `result` in twice the precision."""
     for i in range(p_degree + 1):
         for j in range(q_degree + 1):
             k = shift + i + j
@@ -236,7 +236,7 @@ def _add_fine(result: Array, low: Array, shift: int, p: Array, p_low: Array, deg
 
 @part(borrowing=True)
 def fine_admittance(values: Array, program: Program, room: Polynomials) -> None:
-    """As `admittance`, in twice the precision."""
+    """Fill `room` with the polynomials of every part in twice the precision; see `admittance`."""
     parts, bridges = program
     for k in range(parts.shape[0]):
         top, bottom, top_low, bottom_low = room.top[k], room.bottom[k], room.top_low[k], room.bottom_low[k]

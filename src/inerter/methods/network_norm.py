@@ -140,7 +140,7 @@ class NetworkIndex:
             if form:
                 kept.append(k)
                 forms.append(form)
-        arrays = [self.functions[k].rounded() for k in kept]
+        arrays = [self.functions[k].round_coefficients() for k in kept]
         size = max((high.shape[1] for high, _ in arrays), default=1)
         coefficients, low = np.zeros((2, len(kept), 4, size))
         for k, (high, rest) in enumerate(arrays):

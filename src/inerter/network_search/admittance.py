@@ -120,7 +120,7 @@ def optimise_admittance(
     plan = plan_search(vehicle, index, Norm(), (), seed, starts)
     if isinstance(degree, bool) or not isinstance(degree, Integral) or not 0 <= degree <= _MOST:
         raise DesignError(f"`degree` must be an integer from 0 to {_MOST}, got {degree!r}.")
-    objective = _AdmittanceIndex(_compiled(plan))
+    objective = _AdmittanceIndex(_compile_index(plan))
     damping, omega = objective.scales()
     try:
         found = best_admittance(
@@ -157,7 +157,7 @@ def optimise_admittance(
     )
 
 
-def _compiled(plan: SearchPlan) -> NetworkIndex:
+def _compile_index(plan: SearchPlan) -> NetworkIndex:
     """The index over the admittance of the free network, or the reason why there is none."""
     places, others = places_of(plan.vehicle), with_chosen_network(plan.vehicle, plan.place, Damper(1.0)).free_values()
     if len(places) > 1:
@@ -221,7 +221,7 @@ class _AdmittanceIndex:
         damping = float(_DAMPERS[best])
         sizes = []
         for function in self.compiled.functions:
-            high, _ = function.rounded()
+            high, _ = function.round_coefficients()
             sizes += [abs(root) for root in np.roots((high[0] + damping * high[1])[::-1]) if root != 0.0]
         return damping, float(np.exp(np.mean(np.log(sizes)))) if sizes else 1.0
 

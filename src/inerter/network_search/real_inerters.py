@@ -1,4 +1,4 @@
-"""What is left of a gain where every inerter of a network is a real one: elastic, and with friction."""
+"""Values of the networks of a search with real inerters in them: elastic, and with friction."""
 
 from __future__ import annotations
 

@@ -12,9 +12,9 @@ from inerter.errors import OK, NetworkError, Status, StatusKind
 from inerter.formatting import format_alike
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate
-from inerter.network_search.searched import SearchedNetwork
+from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.networks.enumeration import BRIDGE, PARALLEL, SERIES, Topology, Tree
-from inerter.networks.equivalence import equivalence_classes, transformed
+from inerter.networks.equivalence import equivalence_classes, transform_values
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class SearchResult:
 
     @cached_property
     def frontier_of_inerters(self) -> tuple[FoundNetwork, ...]:
-        """As `frontier`, for each number of inerters."""
+        """The best network of each number of inerters that is better than all of fewer; see `frontier`."""
         counted = (one for one in self.ranking if not one.simpler)
         return tuple(_improving(counted, lambda one: one.topology.counts["b"]))
 
@@ -128,9 +128,9 @@ def collect_results(plan: SearchPlan, searched: Iterable[SearchedNetwork]) -> Se
     ordered = [by_topology[topology] for topology in plan.topologies]
     improved, like = _share_within_classes(plan, [one for one in ordered if isfinite(one.value)])
     lowest = {one.topology: one.value for one in improved}
-    found = [_found(plan, one, like[one.topology], lowest) for one in rank_networks(improved)]
+    found = [_to_found_network(plan, one, like[one.topology], lowest) for one in rank_networks(improved)]
     for i, one in enumerate(found[:_VERIFIED]):
-        found[i] = _verified(one)
+        found[i] = _verify(one)
     failed = tuple((plan.topology_text(one.topology), one.reason) for one in ordered if not isfinite(one.value))
     unit = found[0].unit if found else str(plan.index.unit)
     return SearchResult(str(plan.index.symbol), unit, tuple(found), failed, plan.seed)
@@ -165,7 +165,7 @@ def _share_within_classes(
             if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
                 continue
             try:
-                values = transformed(best, known[best].values, topology)
+                values = transform_values(best, known[best].values, topology)
             except NetworkError:  # fewer elements have the admittance of the best, as those at equal bounds
                 continue
             if plan.keeps_bounds(topology, values):
@@ -174,10 +174,10 @@ def _share_within_classes(
     return list(known.values()), like
 
 
-def _found(
+def _to_found_network(
     plan: SearchPlan, one: SearchedNetwork, like: tuple[Topology, ...], lowest: dict[Topology, float]
 ) -> FoundNetwork:
-    names = one.topology.names(plan.taken)
+    names = one.topology.names(plan.taken_names)
     parameters = dict(zip(names, one.values, strict=True)) | one.others
     active = plan.active_bounds(one.topology, one.values)
     smaller = [other for other in like if other.size < one.topology.size]
@@ -201,7 +201,7 @@ def _found(
     )
 
 
-def _verified(found: FoundNetwork) -> FoundNetwork:
+def _verify(found: FoundNetwork) -> FoundNetwork:
     """The network with the status of its value by the method itself."""
     estimate = found.estimate
     if not found.status.ok or not estimate.status.ok:
@@ -227,7 +227,7 @@ def reduced_topology(topology: Topology, at_bounds: Sequence[str]) -> Topology |
 
 
 def _reduce(tree: Tree, rest: Iterator[str]) -> Tree | bool | None:
-    """What is left of a tree; False if it is open, True if it is rigid, None if that is not known."""
+    """The tree without elements at bounds; False if it is open, True if it is rigid, None if that is not known."""
     if isinstance(tree, str):
         bound = next(rest)
         return {"lower": False, "upper": True}.get(bound, tree)

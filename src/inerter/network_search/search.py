@@ -23,8 +23,8 @@ from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
 from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index
 from inerter.methods.norm import is_exact_norm
+from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.results import SearchResult, collect_results
-from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.elements import Damper, Element, Network, Spring, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
@@ -67,13 +67,13 @@ class SearchPlan:
         return [tuple(several[i : i + size]) for i in range(0, len(several), size)]
 
     @cached_property
-    def taken(self) -> frozenset[str]:
+    def taken_names(self) -> frozenset[str]:
         """Names of the elements beside the free network."""
         return frozenset(element.label for part in mounted_elements(self.vehicle) for element in part)
 
     def network(self, topology: Topology) -> Network:
         """A network with free values."""
-        return self.place.network(topology, self.taken)
+        return self.place.network(topology, self.taken_names)
 
     def design(self, topology: Topology) -> Vehicle:
         """The vehicle with a network with free values."""
@@ -81,7 +81,7 @@ class SearchPlan:
 
     def topology_text(self, topology: Topology) -> str:
         """The expression of a network by the names that its elements have in the design."""
-        return topology.format_expression(topology.names(self.taken))
+        return topology.format_expression(topology.names(self.taken_names))
 
     def ends(self, topology: Topology) -> list[tuple[float, float]]:
         """Bounds of the elements in the order of the expression."""
@@ -95,7 +95,7 @@ class SearchPlan:
     def active_bounds(self, topology: Topology, values: Sequence[float]) -> dict[str, str]:
         """Elements at a bound, with "lower" or "upper", by name."""
         found = {}
-        for name, value, (low, high) in zip(topology.names(self.taken), values, self.ends(topology), strict=True):
+        for name, value, (low, high) in zip(topology.names(self.taken_names), values, self.ends(topology), strict=True):
             place = np.log(value / low) / np.log(high / low)
             if place < _AT_BOUND or place > 1.0 - _AT_BOUND:
                 found[name] = "lower" if place < _AT_BOUND else "upper"
@@ -174,7 +174,7 @@ def plan_search(
         check_request(with_chosen_network(vehicle, place, _probe(place)), asked, method)
     plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
     if not plan.topologies:
-        raise DesignError(f"No network is left to search: {place!r} leaves out all of them.")
+        raise DesignError(f"There is no network to search: {place!r} leaves out all of them.")
     alone = len(places) == 1 and not limits and is_exact_norm(method) and not is_composite(index)
     if not alone:
         return plan
@@ -241,7 +241,7 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
         return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
     values, points = found.values, found.points
     if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
-        middle = dict(zip(topology.names(plan.taken), np.sqrt(lower * upper).tolist(), strict=True))
+        middle = dict(zip(topology.names(plan.taken_names), np.sqrt(lower * upper).tolist(), strict=True))
         if np.isfinite(estimate_of(plan.design(topology).with_values(middle), plan.index, plan.method).value):
             return _search_by_optimise(plan, topology)
         return SearchedNetwork(topology, starts, reason="no start has a finite index")
@@ -254,7 +254,7 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
 
 def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:
     """The best of some optima whose value is that of the method itself, since a search may miss a sharp peak."""
-    design, names = plan.design(topology), topology.names(plan.taken)
+    design, names = plan.design(topology), topology.names(plan.taken_names)
     for number in np.argsort(values, kind="stable")[:_CONFIRMED].tolist():
         values_of = dict(zip(names, points[number].tolist(), strict=True))
         estimate = estimate_of(design.with_values(values_of), plan.index, plan.method)
@@ -268,7 +268,7 @@ def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork
     found = optimise(design, plan.index, plan.method, subject_to=plan.limits, seed=plan.seed, starts=plan.starts)
     if not np.isfinite(found.value):
         return SearchedNetwork(topology, found.n_starts, reason=found.status.message or "the index is infinite")
-    names = topology.names(plan.taken)
+    names = topology.names(plan.taken_names)
     others = {name: value for name, value in found.parameters.items() if name not in names}
     reason = "" if found.status.ok else str(found.status)
     return SearchedNetwork(

@@ -68,7 +68,7 @@ def equivalence_classes(topologies: Iterable[Topology]) -> list[tuple[Topology, 
     return [tuple(each) for each in classes.values()]
 
 
-def transformed(one: Topology, values: Sequence[float], other: Topology) -> tuple[float, ...]:
+def transform_values(one: Topology, values: Sequence[float], other: Topology) -> tuple[float, ...]:
     """Values of `other` with which it has the admittance of `one` with `values`, in the order of the expressions.
 
     Where `other` has more elements, like elements share a value equally.
@@ -76,7 +76,7 @@ def transformed(one: Topology, values: Sequence[float], other: Topology) -> tupl
     Raises `NetworkError` if the values do not fit `one`, the networks are of different classes, or fewer elements have
     the admittance, such as if two branches of `one` have the same pole.
 
-    >>> transformed(Topology(("|", "k", ("-", "k", "c"))), [1.0, 1.0, 1.0], Topology(("-", "k", ("|", "k", "c"))))
+    >>> transform_values(Topology(("|", "k", ("-", "k", "c"))), [1.0, 1.0, 1.0], Topology(("-", "k", ("|", "k", "c"))))
     (2.0, 2.0, 4.0)
     """
     numbers = tuple(map(float, values))

@@ -274,15 +274,15 @@ def _minimise(objective: _Objective, family: _Family, x: Floats) -> _Minimum:
     if np.isfinite(least) and least != 0.0:
         size = abs(least)
 
-        def scaled(x: Floats) -> float:
+        def relative_value(x: Floats) -> float:
             return objective.value(family, x) / size
 
-        def scaled_with_slopes(x: Floats) -> tuple[float, Floats]:
+        def relative_value_with_slopes(x: Floats) -> tuple[float, Floats]:
             value, slopes = objective.with_slopes(family, x)
             return value / size, slopes / size
 
         exact: Any = objective.gradient is not None
-        searched: Any = scaled_with_slopes if exact else scaled
+        searched: Any = relative_value_with_slopes if exact else relative_value
         result = minimize(searched, x, method="BFGS", jac=exact, options={"gtol": 1e-9, "maxiter": 500})
         if objective.value(family, result.x) < least:
             least, x = objective.value(family, result.x), result.x

@@ -36,7 +36,7 @@ class PortFunction:
         """P, Q, A, B."""
         return self.poles, self.poles_rigid, self.zeros, self.zeros_rigid
 
-    def rounded(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def round_coefficients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The polynomials (4, size) over a common power of two, and what is to be added in twice the precision."""
         bits = max(c.bit_length() for p in self.polynomials for c in p)
         high, low = np.zeros((2, 4, max(map(len, self.polynomials))))
@@ -54,7 +54,7 @@ def port_functions(
     one, two = (exact_functions(descriptor, {place: y}, inputs, outputs, reduced=False) for y in (1.0, 2.0))
     poles = _split(one.denominator, two.denominator)
     return [
-        [_reduced(*poles, *_split(*tops)) for tops in zip(*rows, strict=True)]
+        [_cancel_factors(*poles, *_split(*tops)) for tops in zip(*rows, strict=True)]
         for rows in zip(one.numerators, two.numerators, strict=True)
     ]
 
@@ -65,7 +65,7 @@ def _split(one: Polynomial, two: Polynomial) -> tuple[Polynomial, Polynomial]:
     return add(one, scale_by(slope, -1)), slope
 
 
-def _reduced(*polynomials: Polynomial) -> PortFunction:
+def _cancel_factors(*polynomials: Polynomial) -> PortFunction:
     """The polynomials without a factor that all have."""
     factor = greatest_common_divisor(*sorted((p for p in polynomials if p), key=len))
     return PortFunction(*(quotient(p, factor) if p else [] for p in polynomials))

@@ -23,9 +23,9 @@ from inerter.files.study.running import RESOLVED, VERSIONS, Progress, origins
 from inerter.files.study.search_tables import networks_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
+from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.network_search.search import SearchPlan, search_group
-from inerter.network_search.searched import SearchedNetwork
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import names
 from inerter.table import csv_rows, csv_text
@@ -85,7 +85,7 @@ class GroupResult(PartResult):
         """Kind of status: `failed` if the group as a whole has no result."""
         return (StatusKind.FAILED if self.message else StatusKind.OK).value
 
-    def searched(self) -> Iterator[SearchedNetwork]:
+    def optima(self) -> Iterator[SearchedNetwork]:
         """The networks with what was found for each."""
         for one in self.networks:
             values = {"topology": Topology(_tree(one["topology"])), "values": tuple(one["values"])}
@@ -243,7 +243,7 @@ def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[
 def _searches(
     study: Study, plans: Mapping[tuple[str, str], SearchPlan], done: Mapping[Any, PartResult]
 ) -> Iterator[LayoutSearch]:
-    """What was found for each layout and index."""
+    """Results of the search by layout and index."""
     several = len(searched_layouts(study)) > 1
     for (layout, index), plan in plans.items():
         own = [
@@ -252,5 +252,5 @@ def _searches(
         base = done.get(Case(study.baseline or "", index))
         baseline = base.values[study.evaluate[0]].get(index, nan) if isinstance(base, Outcome) and base.values else nan
         heading = f"{study.index(index).title} ({index}){f', {layout}' if several else ''}"
-        result = collect_results(plan, [network for one in own for network in one.searched()])
+        result = collect_results(plan, [network for one in own for network in one.optima()])
         yield LayoutSearch(layout, index, heading, result, baseline)

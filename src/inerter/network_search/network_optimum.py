@@ -1,4 +1,4 @@
-"""What a search has found for one network, as plain data."""
+"""The optimum of one network of a search, as plain data."""
 
 from __future__ import annotations
 

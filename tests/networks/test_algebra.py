@@ -7,6 +7,7 @@ from strategies import elements, logarithmic, networks
 
 from inerter import Damper, Friction, Gap, Inerter, InerterError, Spring, network
 from inerter.networks.elements import Element, Parallel, Series
+from inerter.networks.parser import replace_in_expression
 
 PARTS = {
     "k": Spring(1e5, "k"),
@@ -59,6 +60,20 @@ expressions = st.recursive(
 @given(expressions)
 def test_a_string_means_what_the_operators_mean(text):
     assert network(text, **PARTS) == eval(text.strip(), {"__builtins__": {}}, PARTS)
+
+
+@given(expressions, expressions)
+def test_a_network_in_place_of_a_name_is_that_network(outer, inner):
+    text = replace_in_expression(outer, {"c": inner})
+    assert network(text, **PARTS) == network(outer, **{**PARTS, "c": network(inner, **PARTS)})
+
+
+@given(expressions)
+def test_arms_of_bridges_take_networks_without_brackets(inner):
+    text = replace_in_expression("k - bridge(b, c, f - g, k | b, c)", {"c": inner})
+    chosen = network(inner, **PARTS)
+    assert network(text, **PARTS) == network("k - bridge(b, c, f - g, k | b, c)", **{**PARTS, "c": chosen})
+    assert text.startswith(f"k - bridge(b, {replace_in_expression(inner, {})}, f - g")
 
 
 def drawn(part) -> str:

@@ -10,7 +10,8 @@ import { isRange, textOf, entryAt } from "./state/document.js";
  * value: number | null, may_be_free: boolean, name: string}} NumberRow */
 /** @typedef {{path: string[], text: string, tree?: any, names?: string[], at?: [number, number], sentence?: string}}
  * NetworkRow */
-/** @typedef {{networks: NetworkRow[], layouts: {[layout: string]: {elements: string[], free: string[]}},
+/** @typedef {{networks: NetworkRow[], layouts: {[layout: string]: {elements: string[], free: string[],
+ * free_networks: string[]}},
  * elements: {[name: string]: {kind: string | null, layouts: string[]}}, numbers: NumberRow[]}} Parts */
 
 /** @type {Parts} */
@@ -44,6 +45,10 @@ const isAmount = (entry) => typeof entry === "string" || typeof entry === "numbe
 
 /** The elements in the networks of a layout. @param {State} state @param {string} layout @returns {string[]} */
 export const elementsIn = (state, layout) => at(partsOf(state).layouts, layout)?.elements ?? [];
+
+/** The layouts with a free network, which a search chooses. @param {State} state @returns {string[]} */
+export const searchedLayouts = (state) =>
+  Object.entries(partsOf(state).layouts).filter(([, { free_networks: free }]) => free.length > 0).map(([name]) => name);
 
 /** The layouts that depend on an element, null where that is not known yet. @param {State} state
  * @param {string} name */

@@ -1,7 +1,7 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost, postNow } from "./api.js";
-import { freeIn, unitOf } from "./library.js";
+import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
@@ -126,6 +126,24 @@ async function isSmall(api, study, layout) {
   return coordinates.length <= SMALL;
 }
 
+/** A network that a search found takes the place of the free network in its layout; returns what to tell.
+ * @param {Store} store @param {any} found @param {any} row */
+export function takeNetwork(store, found, row) {
+  const state = store.get();
+  const { elements: known = {}, layouts = {} } = state.history.present.study;
+  const { layout, index, free_networks: free } = found;
+  if (!(layout in layouts) || free.some((/** @type {string} */ name) => !(name in known)))
+    return `The study that is open has no layout ${layout} with ${free.join(", ")}; nothing was changed.`;
+  const used = Object.keys(row.elements).filter((name) =>
+    name in known && (layoutsWith(state, name) ?? []).some((each) => each !== layout));
+  if (used.length > 0)
+    return `Another layout has elements of the same names (${used.join(", ")}): rename them; nothing was changed.`;
+  const { entry, elements, values } = row;
+  store.change({ type: "networkTaken", layout, entry, elements, values });
+  const doubts = doubted([{ of: `${index} of ${row.network}`, status: row.status, message: row.message }]);
+  return `${doubts}The layout ${layout} has the network ${row.network}.`;
+}
+
 /** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would
  * have the name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
@@ -192,8 +210,10 @@ export async function findWork(store, api) {
 }
 
 /** @param {any} job */
-const jobOf = ({ id, kind, title, state, begun = null, total, done = 0, sentence, told }) =>
-  ({ id, kind, title, state, begun, share: total ? (done ?? 0) / total : null, sentence: sentence || told || null });
+const jobOf = ({ id, kind, title, state, begun = null, total, done = 0, sentence, told, found }) => ({
+  id, kind, title, state, begun, share: total ? (done ?? 0) / total : null, sentence: sentence || told || null,
+  ...(found ? { found } : {}),
+});
 
 let watching = false;
 
@@ -225,6 +245,12 @@ async function look(store, api) {
     if (job.state === "done" && !store.get().work[job.id].result)
       store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
   }
+}
+
+/** Continues work that was stopped. @param {Store} store @param {Api} api @param {string} id */
+export async function resume(store, api, id) {
+  store.dispatch({ type: "worked", job: jobOf(await api.post(`work/${id}/resume`, {})) });
+  void watch(store, api);
 }
 
 /** @param {Store} store @param {Api} api @param {string} id */

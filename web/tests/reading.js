@@ -62,7 +62,7 @@ export function partsOf({ vehicle = {}, elements = {}, layouts = {} }) {
     layouts: Object.fromEntries(
       Object.entries(inside).map(([layout, names]) => {
         const own = names.filter((name) => free(elements).includes(name));
-        return [layout, { elements: names, free: [...own, ...free(quantities)] }];
+        return [layout, { elements: names, free: [...own, ...free(quantities)], free_networks: [] }];
       }),
     ),
     elements: Object.fromEntries(

@@ -18,6 +18,7 @@ import { limited } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
 import { elementsIn, freeIn, numbersOf, treeOf } from "../src/library.js";
 import { comparedOf, questions, unitsIn } from "../src/questions.js";
+import { takeNetwork } from "../src/working.js";
 import { partsOf } from "./reading.js";
 
 const STUDY = {
@@ -51,6 +52,7 @@ const CHANGES = [
   { type: "fixed", place: ["elements", "c"], name: "c", text: "4 kN s/m" },
   { type: "drawn", text: "k | c | b" },
   { type: "drawn", text: "k | ", added: { f: "10 N" } },
+  { type: "networkTaken", layout: "S2", entry: "k | c1", elements: { c1: "9 N s/m" }, values: { c: "8 N s/m" } },
   { type: "selected", layout: "S1" },
   { type: "layoutAdded", name: "S3" },
   { type: "layoutRenamed", name: "other" },
@@ -368,4 +370,26 @@ test("a unit stands in brackets as a person writes it, and a ratio has none", ()
   assert.equal(withUnit("ride comfort", "m/s^2"), "ride comfort [m/s²]");
   assert.equal(withUnit("roughness", "m^3/cycle"), "roughness [m³/cycle]");
   assert.equal(withUnit("load coefficient", ""), "load coefficient");
+});
+
+test("a network of a search replaces that of its layout, and no element of another one", () => {
+  const study = { ...STUDY, elements: { ...STUDY.elements, any: { network: 3 } },
+    layouts: { ...STUDY.layouts, S9: "k | any" } };
+  const found = { layout: "S9", index: "J1", free_networks: ["any"] };
+  const row = (/** @type {string} */ name) =>
+    ({ network: name, entry: `k | ${name}`, elements: { [name]: "9 N s/m" }, values: { c: "8 N s/m" }, status: "ok" });
+  const store = createStore();
+  assert.match(takeNetwork(store, found, row("c1")), /nothing was changed/);
+  store.change({ type: "opened", study });
+  store.dispatch({ type: "parted", parts: partsOf(study) });
+  assert.match(takeNetwork(store, found, row("c")), /nothing was changed/); // it is in S1 and S2
+  assert.equal(store.get().history.present.study, study);
+  store.change({ type: "selected", layout: "S1" });
+  assert.doesNotMatch(takeNetwork(store, found, row("c1")), /nothing/);
+  const { present } = store.get().history;
+  assert.equal(textOf(present), "k | c1");
+  assert.deepEqual([present.layout, present.study.elements.c1, present.values.S9], ["S9", "9 N s/m", { c: "8 N s/m" }]);
+  assert.match(takeNetwork(store, found, { ...row("c2"), status: "failed" }), /^Unreliable/);
+  store.dispatch({ type: "undone" });
+  assert.equal(textOf(store.get().history.present), "k | c1");
 });

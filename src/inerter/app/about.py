@@ -49,7 +49,10 @@ def about() -> dict[str, Any]:
         "signals": [_signal(key) for key in SIGNALS],
         "conventions": list(CONVENTIONS),
         "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],
-        "work": [{"key": kind.key, "title": kind.title, "keys": list(kind.keys)} for kind in KINDS.values()],
+        "work": [
+            {"key": kind.key, "title": kind.title, "keys": list(kind.keys), "resumes": kind.resumes}
+            for kind in KINDS.values()
+        ],
         "models": [*MODELS, CHOOSE],
         "examples": list(examples()),
     }

@@ -85,7 +85,7 @@ def indices(study: Study, body: Body) -> Answer:
 
 def side_by_side(study: Study, body: Body) -> Answer:
     """Comparison of two to four designs with the first of them; each may belong to another study."""
-    return compare_designs(study, body, lambda done, total, told: None)
+    return compare_designs(study, body, lambda done, total, told, found=None: None)
 
 
 def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:

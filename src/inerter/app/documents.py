@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -43,7 +44,19 @@ def problems(document: object) -> list[dict[str, Any]]:
 
 
 def study_from(document: object) -> Study:
-    """Study of a document; raises `StudyError` with a problem for every entry that does not fit."""
+    """Study of a document; raises `StudyError` with a problem for every entry that does not fit.
+
+    A layout with a free network is a problem too.
+    """
+    study = searched_study_from(document)
+    here = "In the workbench: Work, Search for the best network."
+    if unchosen := [replace(problem, hint=f"{problem.hint} {here}") for problem in unchosen_problems(study)]:
+        raise refusal(PATH, unchosen)
+    return study
+
+
+def searched_study_from(document: object) -> Study:
+    """Study of a document, which may have free networks; raises `StudyError` as `study_from`."""
     if not isinstance(document, dict):
         raise refusal(PATH, [Problem(fault="not a study document", expected="the tables of a study file")])
     try:
@@ -54,10 +67,7 @@ def study_from(document: object) -> Study:
 
 @lru_cache(_KEPT)
 def _study(document: str, stamp: _Stamp) -> Study:
-    study = study_of(json.loads(document), PATH)
-    if unchosen := list(unchosen_problems(study)):
-        raise refusal(PATH, unchosen)
-    return study
+    return study_of(json.loads(document), PATH)
 
 
 def _stamp(document: Document) -> _Stamp:

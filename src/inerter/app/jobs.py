@@ -44,9 +44,11 @@ class Job:
         """State and progress of the job, for an answer."""
         events, _ = events_of(self.folder)
         progress = next((e for e in reversed(events) if e["event"] == "progress"), {"done": 0, "total": 0, "told": ""})
+        found = next((e["found"] for e in reversed(events) if "found" in e), None)
         return {
             **{key: getattr(self, key) for key in ("id", "kind", "title", "state", "begun", "ended", "sentence")},
             **{key: progress[key] for key in ("done", "total", "told")},
+            **({"found": found} if found is not None and self.state != "done" else {}),
         }
 
     def files(self) -> dict[str, Path]:
@@ -103,6 +105,15 @@ class Jobs:
             self._end(job, {"event": "stopped"})
         elif job.state == "running":
             (job.folder / STOP).touch()
+
+    def resume(self, job: Job) -> None:
+        """Append a job that was stopped or failed to the queue again; raises `Refusal` for any other."""
+        if job.state not in ("stopped", "failed") or not KINDS[job.kind].resumes:
+            resuming = ", ".join(kind.key for kind in KINDS.values() if kind.resumes)
+            raise Refusal(400, f"Work of the kind {job.kind} is {job.state}; only {resuming} resumes, when stopped.")
+        (job.folder / STOP).unlink(missing_ok=True)
+        job.state, job.begun, job.ended, job.sentence, job.over = "waiting", None, None, "", asyncio.Event()
+        self._queue.put_nowait(job)
 
     def forget(self, job: Job) -> None:
         """Remove a job that has ended, and its files."""

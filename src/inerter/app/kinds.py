@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
-Tell = Callable[[int, int, str], None]  # how much is done, of how much, and what; raises `JobStopped` if it is to stop
 RESULTS = "results"  # the folder of results in that of the work
 
 
@@ -13,17 +12,26 @@ class JobStopped(Exception):  # noqa: N818 -- nothing is wrong
     """Raised in a job after a request to stop it."""
 
 
+class Tell(Protocol):
+    """Report of how much is done, of how much, and what; with a result so far, if there is one."""
+
+    def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
+        """Raises `JobStopped` if the job is to stop."""
+
+
 @dataclass(frozen=True)
 class WorkKind:
     """Job type: title, keys of its request in addition to `study`, and the function that computes it.
 
-    That takes the request, the folder of the work, and how to tell how far it is.
+    That takes the request, the folder of the work, and how to tell how far it is. A job that `resumes` continues from
+    what it left in its folder.
     """
 
     key: str
     title: str
     keys: tuple[str, ...]
     home: str
+    resumes: bool = False
 
 
 _STUDIED, _DESIGNS = "inerter.app.study_jobs", ("indices", "methods")
@@ -38,6 +46,13 @@ KINDS = {
             "Trade-offs between two or three indices",
             ("layouts", "indices", "method", "points"),
             "inerter.app.fronts:front",
+        ),
+        WorkKind(
+            "search",
+            "The best of all networks that a free network may be",
+            ("layouts", "indices"),
+            "inerter.app.searches:search",
+            resumes=True,
         ),
         WorkKind("compare", "Two to four designs side by side", ("designs", *_DESIGNS), f"{_STUDIED}:compare"),
         WorkKind(

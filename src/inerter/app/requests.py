@@ -149,6 +149,12 @@ async def _stop_work(server: Server, request: Request) -> dict[str, Any]:
     return job.to_dict()
 
 
+async def _resume_work(server: Server, request: Request) -> dict[str, Any]:
+    job = _job(server, request)
+    server.jobs.resume(job)
+    return job.to_dict()
+
+
 async def _work_result(server: Server, request: Request) -> Response:
     return as_json(result_of(_job(server, request)))
 
@@ -222,6 +228,7 @@ ENDPOINTS = (
     Endpoint("GET", "/api/work/{id}", "One of them", _one_work),
     Endpoint("GET", "/api/work/{id}/events", "How far it is", _work_events, media="text/event-stream"),
     Endpoint("DELETE", "/api/work/{id}", "Stop it, or forget it", _stop_work),
+    Endpoint("POST", "/api/work/{id}/resume", "Continue it, if it was stopped", _resume_work),
     Endpoint("GET", "/api/work/{id}/result", "What it has found", _work_result),
     Endpoint("GET", "/api/work/{id}/files", "The files of its results", _work_files),
     Endpoint("GET", "/api/work/{id}/files/{name:path}", "One of them", _work_file, media="application/octet-stream"),

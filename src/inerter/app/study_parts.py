@@ -7,6 +7,7 @@ from typing import Any
 
 from inerter.app.parts import parse_network
 from inerter.app.wire import Refusal
+from inerter.files.common.free_networks import is_free_network
 from inerter.files.common.problem import EntryError
 from inerter.files.study.drafts import Draft, WrittenNumber, rename_elements
 
@@ -17,13 +18,22 @@ def parts_of_document(document: Document) -> dict[str, Any]:
     """Networks as trees, elements of layouts, kinds of elements, and numbers with their keys in the document."""
     draft = Draft(document)
     given = document.get("elements")
-    known = list(given) if isinstance(given, Mapping) else []
+    entries = given if isinstance(given, Mapping) else {}
+    known = list(entries)
     kinds = {name: element.key for name, element in draft.elements.items()}
+    free_networks = {name for name, entry in entries.items() if is_free_network(entry)}
     return {
         "networks": [
             {"path": list(keys), "text": text, **_network(text, known)} for keys, text in draft.networks.items()
         ],
-        "layouts": {name: {"elements": own, "free": draft.free[name]} for name, own in draft.layouts.items()},
+        "layouts": {
+            name: {
+                "elements": own,
+                "free": draft.free[name],
+                "free_networks": [element for element in own if element in free_networks],
+            }
+            for name, own in draft.layouts.items()
+        },
         "elements": {
             name: {
                 "kind": kinds.get(name),

@@ -26,15 +26,20 @@ class _Telling:
     folder: Path
     last: float = 0.0
     count: tuple[int, int] = (0, 0)
+    found: Any = None  # result so far that was told last
 
-    def __call__(self, done: int, total: int, told: str) -> None:
-        if (self.folder / STOP).exists():
-            raise JobStopped
+    def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
+        stop = (self.folder / STOP).exists()
         now = time.monotonic()
         self.count = done, total
-        if now - self.last > _OFTEN or done == total:
+        is_new = found is not None and found != self.found
+        if now - self.last > _OFTEN or done == total or (stop and is_new):
             self.last = now
-            write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told})
+            news = {"found": found} if is_new else {}
+            self.found = found if is_new else self.found
+            write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told, **news})
+        if stop:
+            raise JobStopped
 
     def step(self, step: ProgressStep) -> None:
         """Write the progress of the running step, at most every `_SELDOM` seconds; raises `JobStopped` on request."""

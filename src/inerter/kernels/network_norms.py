@@ -241,6 +241,33 @@ def _fill_differences(values: Array, program: Program, port: Port, space: NormSp
 
 
 @part(borrowing=True)
+def _index(space: NormSpace) -> float:
+    value = 0.0
+    for g in range(space.sums.size):
+        value += np.sqrt(space.sums[g])
+    return value
+
+
+@part(borrowing=True)
+def _fill_adjoints(program: Program, port: Port, space: NormSpace) -> None:
+    """Fill the adjoints of the network's N and D, for the index, from the shares of each function."""
+    last = program.parts.shape[0] - 1
+    N_, D_ = space.network.top_adjoint[last], space.network.bottom_adjoint[last]
+    top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
+    for i in range(top + 1):
+        N_[i] = 0.0
+    for i in range(bottom + 1):
+        D_[i] = 0.0
+    for k in range(port.weights.size):
+        root = np.sqrt(space.sums[int(port.groups[k])])
+        share = 0.5 * port.weights[k] / root if root > 0.0 else 0.0
+        for i in range(top + 1):
+            N_[i] += share * space.top_shares[k, i]
+        for i in range(bottom + 1):
+            D_[i] += share * space.bottom_shares[k, i]
+
+
+@part(borrowing=True)
 def index_in(values: Array, program: Program, port: Port, space: NormSpace, gradient: Array) -> Any:
     """The index for element values (leaves,), its gradient over them if there is room for it, and its relative error.
 
@@ -255,24 +282,9 @@ def index_in(values: Array, program: Program, port: Port, space: NormSpace, grad
         error = _squares(program, port, space, True)
     if not error <= _ACCURATE:
         return np.inf, np.inf
-    value = 0.0
-    for g in range(space.sums.size):
-        value += np.sqrt(space.sums[g])
+    value = _index(space)
     if gradient.size > 0:
-        last = program.parts.shape[0] - 1
-        N_, D_ = space.network.top_adjoint[last], space.network.bottom_adjoint[last]
-        top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
-        for i in range(top + 1):
-            N_[i] = 0.0
-        for i in range(bottom + 1):
-            D_[i] = 0.0
-        for k in range(port.weights.size):
-            root = np.sqrt(space.sums[int(port.groups[k])])
-            share = 0.5 * port.weights[k] / root if root > 0.0 else 0.0
-            for i in range(top + 1):
-                N_[i] += share * space.top_shares[k, i]
-            for i in range(bottom + 1):
-                D_[i] += share * space.bottom_shares[k, i]
+        _fill_adjoints(program, port, space)
         for i in range(gradient.size):
             gradient[i] = 0.0
         admittance_adjoint(program, space.network, gradient)
@@ -293,4 +305,34 @@ def indices(points: Matrix, program: Program, port: Port, gradients: Matrix, err
     for i in range(points.shape[0]):
         gradient = gradients[i] if gradients.shape[0] > 0 else none
         result[i], errors[i] = index_in(points[i], program, port, space, gradient)
+    return result
+
+
+@kernel("indices of an admittance", typed=True)
+def admittance_indices(
+    tops: Matrix, bottoms: Matrix, program: Program, port: Port, top_gradients: Matrix, bottom_gradients: Matrix
+) -> Floats:
+    """Index at each row of coefficients of N and D, from the constant upwards, infinite where unknown.
+
+    The program has one part with the degrees of N and D, which are taken as exact. The gradients over the coefficients
+    are filled if they have as many rows.
+    """
+    space = norm_space(program, port)
+    N, D = space.network.top[0], space.network.bottom[0]
+    result = np.zeros(tops.shape[0])
+    for row in range(tops.shape[0]):
+        for i in range(tops.shape[1]):
+            N[i] = tops[row, i]
+        for i in range(bottoms.shape[1]):
+            D[i] = bottoms[row, i]
+        error = _squares(program, port, space, False)
+        if not error <= _ACCURATE:
+            error = _squares(program, port, space, True)
+        result[row] = _index(space) if error <= _ACCURATE else np.inf
+        if row < top_gradients.shape[0] and result[row] < np.inf:
+            _fill_adjoints(program, port, space)
+            for i in range(tops.shape[1]):
+                top_gradients[row, i] = space.network.top_adjoint[0, i]
+            for i in range(bottoms.shape[1]):
+                bottom_gradients[row, i] = space.network.bottom_adjoint[0, i]
     return result

@@ -6,6 +6,7 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.indices.definition import Combination, Index, IndexDefinition
-from inerter.kernels.network_norms import Port
+from inerter.kernels.network_norms import Port, indices
 from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
     ARMS,
@@ -103,6 +104,12 @@ def network_program(network: Network) -> NetworkProgram:
     table = np.array(rows, np.int64).reshape(-1, 7)
     more = np.array(bridges, np.int64).reshape(-1, ARMS + 16)
     return NetworkProgram(Program(table, more), powers[last], rows[last][-2], rows[last][-1])
+
+
+def admittance_program(power: int, top: int, bottom: int) -> NetworkProgram:
+    """The program of an admittance s^power N(s) / D(s) of given degrees, for the kernel `admittance_indices`."""
+    parts = np.array([[LEAF, 0, 0, 0, 0, top, bottom]], np.int64)
+    return NetworkProgram(Program(parts, np.zeros((0, ARMS + 16), np.int64)), power, top, bottom)
 
 
 @dataclass(frozen=True, eq=False)
@@ -249,3 +256,23 @@ def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] |
     except InerterError:  # for an output of an element of the strut
         return None
     return None if found is None else (found, network)
+
+
+def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array | None:
+    """The index at many values of the free values, by name, which are all in one strut; nan where it is not known.
+
+    None where compiled code of networks cannot give it, and for a peak gain.
+    """
+    strut = free_strut(vehicle, index)
+    if strut is None or strut[0].is_peak:
+        return None
+    over, network = strut
+    program = network_program(network)
+    port, elements = over.port(program), list(network.elements())
+    if port is None or any(isinstance(e.value, Tied) or e.gain != 1.0 for e in elements):
+        return None
+    count = next(iter(points.values())).size
+    columns = [points[str(e.value.name)] if isinstance(e.value, Free) else np.full(count, e.value) for e in elements]
+    rows = np.ascontiguousarray(np.column_stack(columns))
+    values = np.asarray(indices(rows, program.program, port, np.zeros((0, len(columns))), np.zeros(count)))
+    return np.where(np.isfinite(values), values, np.nan)

@@ -14,10 +14,12 @@ from inerter.indices.definition import Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
+from inerter.methods.network_norm import norms_over_strut
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+_MANY = 64  # designs from which on the polynomials of the mechanism pay
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,20 @@ class Norm(FormerMethodNames):
         """The indices (designs, indices) at many values of the free values, compiled."""
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        return evaluate_problems(mechanism, [index.definition(mechanism) for index in indices], conventions, points)
+        count = next(iter(points.values())).size if points else 1
+        result: Array = np.full((count, len(indices)), np.nan)
+        if count >= _MANY and is_exact_norm(self):
+            for column, index in enumerate(indices):
+                known = norms_over_strut(vehicle, index, points)
+                if known is not None:
+                    result[:, column] = known
+        rest = np.flatnonzero(np.isnan(result).any(axis=1))
+        if rest.size:
+            left = {name: values[rest] for name, values in points.items()}
+            definitions = [index.definition(mechanism) for index in indices]
+            found = evaluate_problems(mechanism, definitions, conventions, left)
+            result[rest] = np.where(np.isnan(result[rest]), found, result[rest])
+        return result
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> float:
         """The part of many designs for which double precision does not suffice, each of which takes some 10 ms.

@@ -84,6 +84,27 @@ def rename_in_expression(expression: str, names: Mapping[str, str]) -> str:
     return _NAME.sub(lambda found: found[1] or names.get(found[0], found[0]), expression)
 
 
+def replace_in_expression(expression: str, networks: Mapping[str, str]) -> str:
+    """The expression with networks, as expressions, in place of names, and with the brackets that this requires.
+
+    Raises `ExpressionError` for a syntax error.
+
+    >>> replace_in_expression("k | any", {"any": "c - b"}), replace_in_expression("k - any", {"any": "c | b"})
+    ('k | c - b', 'k - (c | b)')
+    """
+    replaced = {name: parse_expression(each) for name, each in networks.items()}
+
+    def text(part: ExpressionPart, inside: str, others: Mapping[str, ExpressionPart]) -> str:
+        if part.name:
+            return text(others[part.name], inside, {}) if part.name in others else part.name
+        if part.sign == BRIDGE:
+            return f"{BRIDGE}({', '.join([text(arm, '', others) for arm in part.parts])})"
+        joined = f" {part.sign} ".join([text(each, part.sign, others) for each in part.parts])
+        return f"({joined})" if part.sign == "|" and inside == "-" else joined
+
+    return text(parse_expression(expression), "", replaced)
+
+
 def format_expression(network: Network, names: Iterable[str]) -> str:
     """The expression of a network whose elements have these names, in the order of the expression.
 

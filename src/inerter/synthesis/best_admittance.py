@@ -14,9 +14,9 @@ infinity, k / s and b s, are limits of such functions and are searched on their 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,10 +28,11 @@ from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.synthesis.realise import realise
 from inerter.validation import check_positive, is_number
+from inerter.work.progress import report
 
 Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
 Index = Callable[[Floats, Floats], float]  # of numerator and denominator, highest power of s first
-Objective = Callable[["_Family", Floats], float]
+Gradient = Callable[[Floats, Floats], tuple[float, Floats, Floats]]  # the index, and its gradients over both
 
 _SAMPLES = 30  # random admittances for each start, the best of which it is
 _SPREAD = 2.0  # standard deviation of the search variables; the numbers of the formula are their hyperbolic sines
@@ -39,6 +40,7 @@ _WEAK = 0.5  # standard deviation of search variables that are added to a minimu
 _LARGEST = 30.0  # search variable
 _IDLE = 1e-11  # relative change of the index by a variable that is set to zero
 _EQUAL = 1e-10  # relative difference of values between which the simpler admittance is taken
+_STEP = 1e-30  # imaginary step of a search variable
 _AGREEMENT = 1e-6  # relative difference of values of converged starts
 
 
@@ -58,13 +60,22 @@ class BestAdmittance:
 
 
 def best_admittance(
-    index: Index, degree: int, *, damping: float, omega: float, seed: int = 0, starts: int = 42
+    index: Index,
+    degree: int,
+    *,
+    damping: float,
+    omega: float,
+    seed: int = 0,
+    starts: int = 42,
+    gradient: Gradient | None = None,
 ) -> BestAdmittance:
     """Minimise an index over all positive-real admittances of at most a degree, from many starts.
 
     `index(numerator, denominator)` is the index to minimise, nan or infinite where it does not exist. The starts have
     sizes around `damping` [N s/m] and corner frequencies around `omega` [rad/s], over some two decades; every other one
-    is a minimum of the degree below with a further state.
+    is a minimum of the degree below with a further state. The highest degree has `starts` of them, each one below half
+    as many, and at least one of each form. `gradient` gives the index and its gradients over numerator and denominator;
+    without it, differences are taken.
 
     Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
     """
@@ -75,16 +86,13 @@ def best_admittance(
     check_positive(SynthesisError, "The typical damping", damping, "N s/m")
     check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
 
-    def value_of(family: _Family, x: Floats) -> float:
-        value = index(*family.polynomials(x, damping, omega))
-        return float(value) if is_number(value) else np.inf
-
+    objective = _Objective(index, gradient, damping, omega)
     rng = np.random.default_rng(seed)
     found: list[_Minimum] = []
     latest: list[_Minimum] = []
     with np.errstate(over="ignore", invalid="ignore"):
         for order in range(degree + 1):
-            latest = _search(value_of, order, starts, rng, latest)
+            latest = _search(objective, order, max(starts >> degree - order, 1), rng, latest)
             found += latest
     least = min(each.value for each in found)
     if not np.isfinite(least):
@@ -95,9 +103,24 @@ def best_admittance(
         )
     equal = [each for each in found if each.value <= least + _EQUAL * abs(least)]
     best = min(equal, key=lambda each: each.family.size)  # which saves elements
-    numerator, denominator = best.family.polynomials(best.x, damping, omega, exact=True)
+    numerator, denominator = _without_idle(index, *best.family.polynomials(best.x, damping, omega, exact=True))
     converged = sum(each.value <= least + _AGREEMENT * abs(least) for each in latest)
     return BestAdmittance(best.value, tuple(numerator.tolist()), tuple(denominator.tolist()), len(latest), converged)
+
+
+def _without_idle(index: Index, numerator: Floats, denominator: Floats) -> tuple[Floats, Floats]:
+    """The polynomials with coefficients of zero where that changes nothing, which saves elements."""
+    n, least = len(numerator), index(numerator, denominator)
+    both = np.concatenate([numerator, denominator])
+    for i in np.flatnonzero(both):
+        changed = np.where(np.arange(both.size) == i, 0.0, both)
+        if not (changed[:n].any() and changed[n:].any()):
+            continue
+        if index(changed[:n], changed[n:]) <= least + _IDLE * abs(least):
+            with suppress(SynthesisError):
+                realise(changed[:n], changed[n:])  # which also takes what is positive real but for its rounding
+                both = changed
+    return np.trim_zeros(both[:n], "f"), np.trim_zeros(both[n:], "f")
 
 
 @dataclass(frozen=True)
@@ -121,22 +144,32 @@ class _Family:
         return np.concatenate([x[:n], coupling, x[n : 2 * n], damping, x[2 * n :]])
 
     def polynomials(self, x: Floats, damping: float, omega: float, exact: bool = False) -> tuple[Floats, Floats]:
-        """Numerator and denominator from search variables; rounded at the end only if `exact`."""
-        n, numbers = self.degree, np.sinh(np.clip(x, -_LARGEST, _LARGEST))
+        """Numerators and denominators from search variables (..., size); rounded at the end only if `exact`."""
+        n, inside = self.degree, abs(x.real) <= _LARGEST
+        numbers = np.sinh(np.where(inside, x, np.clip(x.real, -_LARGEST, _LARGEST)))
         if exact:  # cancellation would cost more than the rounding of the result, and positive-realness with it
             numbers = np.array([Fraction(number) for number in numbers.tolist()])
-        J, B, L, W = np.zeros((n, n), numbers.dtype), np.zeros(n, numbers.dtype), numbers[n : 2 * n], numbers[2 * n]
-        J[range(n - 1), range(1, n)] = numbers[1:n]
-        B[:1] = numbers[:1]
-        top, bottom = _to_polynomials(J - J.T - np.outer(L, L) / 2, B, B + W * L, W**2 / 2)
-        more = list(numbers[2 * n + 1 :] ** 2)
+        J, B = np.zeros((*x.shape[:-1], n, n), numbers.dtype), np.zeros((*x.shape[:-1], n), numbers.dtype)
+        L, W = numbers[..., n : 2 * n], numbers[..., 2 * n : 2 * n + 1]
+        J[..., range(n - 1), range(1, n)] = numbers[..., 1:n]
+        B[..., :1] = numbers[..., : min(n, 1)]
+        A = J - J.swapaxes(-1, -2) - L[..., :, None] * L[..., None, :] / 2
+        top, bottom = _to_polynomials(A, B, B + W * L, W**2 / 2)
+        more = [numbers[..., i : i + 1] ** 2 for i in range(2 * n + 1, self.size)]
         if self.at_infinity:
-            top = np.polyadd(top, np.polymul([more.pop(), 0.0], bottom))
+            top = _pad(top, before=1) + more.pop() * _pad(bottom, after=1)
         if self.at_zero:
-            top, bottom = np.polyadd(np.polymul(top, [1.0, 0.0]), more.pop() * bottom), np.polymul(bottom, [1.0, 0.0])
+            top = _pad(top, after=1) + more.pop() * _pad(bottom, before=self.at_infinity + 1)
+            bottom = _pad(bottom, after=1)
         if self.is_impedance:
             top, bottom = bottom, top
         return damping * _stretch(top, omega), _stretch(bottom, omega)
+
+    def with_slopes(self, x: Floats, damping: float, omega: float) -> tuple[Floats, Floats, Floats, Floats]:
+        """Numerator, denominator and their derivatives (size, coefficients) over the variables, by complex steps."""
+        steps = np.eye(self.size + 1, self.size, -1) * _STEP
+        top, bottom = self.polynomials(x + 1j * steps, damping, omega)
+        return top[0].real, bottom[0].real, top[1:].imag / _STEP, bottom[1:].imag / _STEP
 
 
 def _families(degree: int) -> list[_Family]:
@@ -150,24 +183,58 @@ def _families(degree: int) -> list[_Family]:
     ]
 
 
-def _to_polynomials(A: Floats, B: Floats, C: Floats, D: float) -> tuple[Floats, Floats]:
-    """Numerator and denominator of D + C' (s I - A)^-1 B by the method of Leverrier and Faddeev."""
-    n = len(A)
-    top: list[Any] = [D]
-    bottom: list[Any] = [D**0]
-    adjugate: Floats = np.eye(n, dtype=int)
-    identity = adjugate
+def _to_polynomials(A: Floats, B: Floats, C: Floats, D: Floats) -> tuple[Floats, Floats]:
+    """Numerators and denominators of D + C' (s I - A)^-1 B by the method of Leverrier and Faddeev."""
+    n = A.shape[-1]
+    identity = np.eye(n, dtype=int).astype(A.dtype)
+    top, bottom, adjugate = [D], [D**0], identity
     for k in range(1, n + 1):
         turned = A @ adjugate
-        bottom.append(-turned.trace() / k)
-        top.append(C @ adjugate @ B + D * bottom[-1])
-        adjugate = turned + bottom[-1] * identity
-    return np.array(top), np.array(bottom)
+        bottom.append(-turned.diagonal(axis1=-2, axis2=-1).sum(axis=-1, keepdims=True) / k)
+        top.append((C * (adjugate @ B[..., None])[..., 0]).sum(axis=-1, keepdims=True) + D * bottom[-1])
+        adjugate = turned + bottom[-1][..., None] * identity
+    return np.concatenate(top, axis=-1), np.concatenate(bottom, axis=-1)
+
+
+def _pad(p: Floats, before: int = 0, after: int = 0) -> Floats:
+    """Coefficients with zeros before them, or after them."""
+    result = np.zeros((*p.shape[:-1], before + p.shape[-1] + after), p.dtype)
+    result[..., before : before + p.shape[-1]] = p
+    return result
 
 
 def _stretch(p: Floats, omega: float) -> Floats:
     """Polynomial p(s / omega)."""
-    return p.astype(float) / omega ** np.arange(len(p) - 1.0, -1.0, -1.0)
+    return p.astype(complex if np.iscomplexobj(p) else float) / omega ** np.arange(p.shape[-1] - 1.0, -1.0, -1.0)
+
+
+@dataclass(frozen=True)
+class _Objective:
+    """The index over the search variables of a family; infinite where it does not exist."""
+
+    index: Index
+    gradient: Gradient | None
+    damping: float
+    omega: float
+
+    def values(self, family: _Family, points: Floats) -> list[float]:
+        """Values at rows of search variables."""
+        several = zip(*family.polynomials(points, self.damping, self.omega), strict=True)
+        values = [self.index(numerator, denominator) for numerator, denominator in several]
+        return [float(value) if is_number(value) else np.inf for value in values]
+
+    def value(self, family: _Family, x: Floats) -> float:
+        """The value at search variables."""
+        return self.values(family, x[None])[0]
+
+    def with_slopes(self, family: _Family, x: Floats) -> tuple[float, Floats]:
+        """The value and its gradient over the variables, which is zero where the value is infinite."""
+        assert self.gradient is not None
+        numerator, denominator, top_slopes, bottom_slopes = family.with_slopes(x, self.damping, self.omega)
+        value, top, bottom = self.gradient(numerator, denominator)
+        if not is_number(value):
+            return np.inf, np.zeros(family.size)
+        return float(value), top_slopes @ top + bottom_slopes @ bottom
 
 
 @dataclass(frozen=True)
@@ -180,37 +247,48 @@ class _Minimum:
 
 
 def _search(
-    objective: Objective, degree: int, starts: int, rng: np.random.Generator, lower: Sequence[_Minimum]
+    objective: _Objective, degree: int, starts: int, rng: np.random.Generator, lower: Sequence[_Minimum]
 ) -> list[_Minimum]:
     """Local minima of a degree, from random samples and in turn from the minima of the degree below."""
-    families, found = _families(degree), []
-    for i in range(max(starts, len(families))):
+    families = _families(degree)
+    found: list[_Minimum] = []
+    count = max(starts, len(families))
+    for i in range(count):
         turn, family = i // len(families), families[i % len(families)]
         known = [each for each in lower if replace(each.family, degree=each.family.degree + 1) == family]
         if turn % 2 and known:
             known.sort(key=lambda each: each.value)
             x = family.extend(known[turn // 2 % len(known)].x, rng)
         else:
-            x = min(_SPREAD * rng.standard_normal((_SAMPLES, family.size)), key=partial(objective, family))
-        found.append(_minimise(partial(objective, family), family, x))
+            samples = _SPREAD * rng.standard_normal((_SAMPLES, family.size))
+            x = samples[np.argmin(objective.values(family, samples))]
+        found.append(_minimise(objective, family, x))
+        best = min(each.value for each in found)
+        report(f"admittances of degree {degree}", i + 1, count, best=best if np.isfinite(best) else None)
     return found
 
 
-def _minimise(objective: Callable[[Floats], float], family: _Family, x: Floats) -> _Minimum:
+def _minimise(objective: _Objective, family: _Family, x: Floats) -> _Minimum:
     """The local minimum below a start; variables that do not matter there are zero, which saves elements."""
-    least = objective(x)
+    least = objective.value(family, x)
     if np.isfinite(least) and least != 0.0:
         size = abs(least)
 
         def scaled(x: Floats) -> float:
-            return objective(x) / size
+            return objective.value(family, x) / size
 
-        result = minimize(scaled, x, method="BFGS", options={"gtol": 1e-9, "maxiter": 500})
-        if objective(result.x) < least:
-            least, x = objective(result.x), result.x
+        def scaled_with_slopes(x: Floats) -> tuple[float, Floats]:
+            value, slopes = objective.with_slopes(family, x)
+            return value / size, slopes / size
+
+        exact: Any = objective.gradient is not None
+        searched: Any = scaled_with_slopes if exact else scaled
+        result = minimize(searched, x, method="BFGS", jac=exact, options={"gtol": 1e-9, "maxiter": 500})
+        if objective.value(family, result.x) < least:
+            least, x = objective.value(family, result.x), result.x
         for i in range(len(x)):
             changed = np.where(np.arange(len(x)) == i, 0.0, x)
-            value = objective(changed)
+            value = objective.value(family, changed)
             if value <= least + _IDLE * abs(least):
                 least, x = value, changed
     return _Minimum(least, x, family)

@@ -71,7 +71,8 @@ def realise(numerator: Iterable[float], denominator: Iterable[float]) -> Network
     reached = f"; the closest one deviates by {format_number(closest, 2)}" if np.isfinite(closest) else ""
     raise SynthesisError(
         f"No network with double-precision values has this admittance to {format_number(ACCURACY, 1)}{reached}. "
-        f"Reduce the ratio between its largest and smallest frequencies, or move it away from Re Y = 0 by a damper in parallel."
+        "Reduce the ratio between its largest and smallest frequencies, or move it away from Re Y = 0 by a damper in "
+        "parallel."
     )
 
 

@@ -3,14 +3,15 @@
 import { percent } from "./answers.js";
 import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody } from "./front.js";
+import { SearchForm, SearchResult, searchBody } from "./search.js";
 import { Plot } from "../plot.js";
 import { IndexChips, Select, Table, useChoice, formHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, quantity, shown, takenApart, withUnit } from "../state/scale.js";
+import { placed, printed, quantity, rounded, takenApart, withUnit } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { answerOf } from "../questions.js";
-import { membersOf, stop, takeAndTell, tryToBegin } from "../working.js";
+import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js";
 
 /** @import { Store, State, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -27,6 +28,9 @@ export const KINDS = [
     sentence: "The best designs over one number of the study." },
   { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult,
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
+  { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
+    sentence: "As inerter search does, for one index: every network that a free network may be, with its best values."
+  },
 ];
 
 /** @param {{store: Store, api: Api}} props */
@@ -64,8 +68,12 @@ const RUNNING = ["waiting", "running"];
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */
 export function JobHead({ store, api, job: { id, title, kind, state, share, begun } }) {
+  const { about } = store.get();
+  const resumes = ["stopped", "failed"].includes(state)
+    && (about?.work ?? []).some((/** @type {any} */ each) => each.key === kind && each.resumes);
   const running = RUNNING.includes(state);
   return html`<div class="row"><b>${title || kind}</b> <span class="state">${state}</span>
+      ${resumes && html`<button type="button" onClick=${() => resume(store, api, id)}>Resume</button>`}
       <button type="button" onClick=${() => stop(store, api, id)}>${running ? "Stop" : "Forget"}</button></div>
     ${running && html`<p class="row progress">
       <progress max="1" value=${share ?? undefined} aria-label=${`${title}, progress`} />
@@ -81,7 +89,7 @@ function JobRow({ store, api, job }) {
     <${JobHead} store=${store} api=${api} job=${job} />
     ${job.sentence
       && html`<p class=${failed ? "problem" : "quiet"} role=${failed ? "alert" : undefined}>${job.sentence}</p>`}
-    ${job.result && Result && html`<${Result} store=${store} api=${api} job=${job} />`}
+    ${(job.result ?? job.found) && Result && html`<${Result} store=${store} api=${api} job=${job} />`}
   </li>`;
 }
 
@@ -103,12 +111,6 @@ function OptimumResult({ store, job: { result } }) {
 /** A button that takes a design into the editor. @param {{store: Store, design: any, children: any}} props */
 const Take = ({ store, design, children }) =>
   html`<button type="button" onClick=${() => takeAndTell(store, design)}>${children}</button>`;
-
-/** A quantity with few digits. @param {string} text */
-function rounded(text) {
-  const apart = takenApart(text);
-  return apart ? `${shown(apart.number)} ${apart.unit}` : text;
-}
 
 /** The rows of a result of runs: designs with their index and values. @param {any} result @returns {any[]} */
 const rowsOf = (result) => result.rows ?? result.designs ?? (Array.isArray(result) ? result : []);

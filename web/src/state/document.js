@@ -25,6 +25,8 @@
  *  | {type: "freed", place: string[], name: string, from: string, to: string, method?: string}
  *  | {type: "fixed", place: string[], name: string, text: string}
  *  | {type: "drawn", text: string, added?: {[name: string]: ElementEntry}}
+ *  | {type: "networkTaken", layout: string, entry: LayoutEntry, elements: {[name: string]: string},
+ *     values: {[element: string]: string}}
  *  | {type: "selected", layout: string, strut?: string | null}
  *  | {type: "layoutAdded", name: string}
  *  | {type: "layoutRenamed", name: string}
@@ -73,6 +75,11 @@ const CHANGES = {
     const study = { ...document.study, elements: { ...document.study.elements, ...added } };
     const place = document.strut === null ? [document.layout] : [document.layout, document.strut];
     return withEntry({ ...document, study }, ["layouts", ...place], text);
+  },
+  networkTaken: (document, { layout, entry, elements, values }) => {
+    const study = { ...document.study, elements: { ...document.study.elements, ...elements } };
+    const chosen = { ...document.values, [layout]: { ...document.values[layout], ...values } };
+    return standing(withEntry({ ...document, study, layout, values: chosen }, ["layouts", layout], entry));
   },
   selected: (document, { layout, strut }) => standing({ ...document, layout, strut: strut ?? null }),
   layoutAdded: (document, { name }) => {

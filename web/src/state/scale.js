@@ -44,6 +44,12 @@ export function shown(number, digits = 5) {
   return minus(Number(number.toPrecision(digits)));
 }
 
+/** A quantity with few digits. @param {string} text */
+export function rounded(text) {
+  const apart = takenApart(text);
+  return apart ? `${shown(apart.number)} ${apart.unit}` : text;
+}
+
 /** A number with so many places after the point, or before it where these are negative, as answers show it; five digits
  * where there is no number of places. @param {number | null | undefined} number
  * @param {number | null | undefined} places */

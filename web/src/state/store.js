@@ -14,8 +14,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** What the page has to say: `about` tells which message a newer one replaces.
  * @typedef {{about: string, text: string}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
- * begun: number | null, share: number | null, sentence: string | null, result: any}} Job  `begun`: in seconds since
- * 1970, by the clock of the server */
+ * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
+ * seconds since 1970, by the clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
  * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View 
  * `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with;

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import partial
@@ -142,19 +142,21 @@ def search_study(
     force: bool = False,
     progress: Progress = lambda done, total, last, n_failures: None,
     compiling: ProgressCallback | None = None,
+    on_groups: Callable[[list[GroupResult]], object] = lambda groups: None,
     finish: Callable[[StudySearch, Path], object] = lambda result, folder: None,
 ) -> StudySearch:
     """Search the networks of `study` into `folder`, and write the resolved study and the table of all networks.
 
     Arguments and the journal are those of `run_study`; `progress` counts networks. With `resume`, networks in the
-    journal are not searched again, and the results are the same, byte for byte.
+    journal are not searched again, and the results are the same, byte for byte. `on_groups` is called with the groups
+    of networks in the journal, and then with others as completed, each time before `progress`.
 
     Raises what `run_study` raises, and `StudyError` for a study that cannot be searched.
     """
     plans = search_plans(study)
     mode = WriteMode(Path(folder), "search", _result_names(), study.inputs, resume, force)
     with open_results(mode) as results, worker_pool(jobs, executor) as pool:
-        done, computed = _compute(study, plans, results, pool, progress, compiling)
+        done, computed = _compute(study, plans, results, pool, progress, compiling, on_groups)
         outcomes = tuple(one for one in done.values() if isinstance(one, Outcome))
         found = StudySearch(results.folder, study, tuple(_searches(study, plans, done)), outcomes, computed)
         write_text(results.draft / RESOLVED, write_resolved(study))
@@ -187,6 +189,7 @@ def _compute(
     pool: Pool,
     progress: Progress,
     compiling: ProgressCallback | None,
+    on_groups: Callable[[list[GroupResult]], object],
 ) -> tuple[dict[Any, PartResult], int]:
     """Results of all parts, and the number of networks that were not in the journal."""
     parts = _parts(study, plans)
@@ -197,18 +200,19 @@ def _compute(
     if pending:
         prepare_on(pool, _kernels(study, plans), compiling)
 
-    def tell(last: PartResult | None) -> None:
+    def tell(ready: Collection[PartResult], last: PartResult | None) -> None:
+        on_groups([one for one in ready if isinstance(one, GroupResult)])
         troubled = sum(not one.ok for one in done.values())
         progress(sum(sizes[part] for part in done), sum(sizes.values()), last, troubled)
 
-    tell(None)
+    tell(done.values(), None)
     results.list_journal(journals.NAME)
     run = partial(_result, study)
     with logging_steps(), journal.appending(results.resume) as append:
         for ready in pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, study)):
             append(*(one.to_json() for one in ready))
             done |= {one.part: one for one in ready}
-            tell(ready[-1])
+            tell(ready, ready[-1])
     lost = len(set(parts) - set(done))
     if lost:
         raise WorkError(f"the executor returned no result for {lost} of {len(parts)} parts, and others twice.")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -93,3 +95,10 @@ def test_what_is_not_known_is_said(parts, sentence):
 def test_a_tyre_that_would_hang():
     with pytest.raises(MechanismError, match="'t_axle0' would carry a negative load"):
         it.static_tyre_loads(axles([1.0, 0.4], [5.0, 5.0]))
+
+
+def test_a_mechanism_without_any_spring_says_that_its_weight_rests_on_none():
+    car = it.QuarterCar(300.0, 40.0, 2e5, it.Damper(1.5e3)).mechanism()
+    (tyre,) = car.tyres
+    with pytest.raises(MechanismError, match="rests on no spring"):
+        it.static_tyre_loads(replace(car, tyres=(replace(tyre, network=it.Damper(1e3)),)))

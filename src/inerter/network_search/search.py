@@ -37,6 +37,7 @@ from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 _STARTS = 8  # searches for each value
+_SELDOM, _MORE = 10, 4  # where at most one start in so many finds the best value, so many times as many follow
 _GROUP = 24  # networks that are handed out together
 _CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -122,7 +123,8 @@ def search(
     """The best values of every network that the free network in `vehicle` may be, ranked by `index`.
 
     The vehicle has one `any_network(...)`; in several places it is the same network with the same values. Each network
-    is searched from `starts` points (default: 8 for each value), as in `optimise`. `jobs` processes or an `executor`
+    is searched from `starts` points (default: 8 for each value, and 32 where few of them find the best), as in
+    `optimise`. `jobs` processes or an `executor`
     (of `concurrent.futures`, of a dask client, of mpi4py) share the networks. The same seed gives the same result,
     whatever shares the work.
 
@@ -239,6 +241,10 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
     if found is None:
         return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
+    if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
+        starts *= _MORE
+        found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
+        assert found is not None
     values, points = found.values, found.points
     if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
         middle = dict(zip(topology.names(plan.taken_names), np.sqrt(lower * upper).tolist(), strict=True))
@@ -250,6 +256,10 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
         return _search_by_optimise(plan, topology)
     agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))
     return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(points[best].tolist()))
+
+
+def _count_equal(values: Array) -> int:
+    return int(np.sum(values <= values.min() * (1.0 + AGREEMENT)))
 
 
 def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:

@@ -98,6 +98,9 @@ class Norm(FormerMethodNames):
         return kernels_of(definition) if search else ()
 
 
+EXACT_NORM = Norm()  # which other code may compute in its place
+
+
 def is_exact_norm(method: object) -> bool:
-    """Whether a method is `Norm` under exact conventions, which other code may compute in its place."""
-    return method == Norm()
+    """Whether a method is `Norm` under exact conventions."""
+    return method == EXACT_NORM

@@ -21,7 +21,7 @@ from inerter.kernels.network_polynomials import Program
 from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.network_norm import NetworkIndex, admittance_program
-from inerter.methods.norm import Norm
+from inerter.methods.norm import EXACT_NORM
 from inerter.network_search.search import SearchPlan, places_of, plan_search, with_chosen_network
 from inerter.networks.elements import Damper, Network
 from inerter.networks.free_network import FreeNetwork
@@ -76,8 +76,8 @@ class AdmittanceResult:
 
     @cached_property
     def estimate(self) -> Estimate:
-        """The index of that design by `Norm()`; raises `SynthesisError` if no network was found."""
-        return evaluate(self.design, self.index, Norm())
+        """The index of that design by `EXACT_NORM`; raises `SynthesisError` if no network was found."""
+        return evaluate(self.design, self.index, EXACT_NORM)
 
     @cached_property
     def status(self) -> Status:
@@ -104,7 +104,7 @@ def optimise_admittance(
     degree (default: 25 for degree 0, twice as many for each degree more), and from half as many of each degree below.
     The same seed gives the same result.
 
-    The index is one of r.m.s. values that `Norm()` computes, and the network is in one place.
+    The index is one of r.m.s. values that `EXACT_NORM` computes, and the network is in one place.
 
     Raises `DesignError` without exactly one free network in one place, for other free values, for an index of another
     kind, for one that is infinite for all starts or lowest without a network or with a rigid link, or if `degree`,
@@ -117,7 +117,7 @@ def optimise_admittance(
     >>> round(best.value, 4), sorted(type(element).__name__ for element in best.network().elements())
     (2.4281, ['Damper', 'Inerter'])
     """
-    plan = plan_search(vehicle, index, Norm(), (), seed, starts)
+    plan = plan_search(vehicle, index, EXACT_NORM, (), seed, starts)
     if isinstance(degree, bool) or not isinstance(degree, Integral) or not 0 <= degree <= _MOST:
         raise DesignError(f"`degree` must be an integer from 0 to {_MOST}, got {degree!r}.")
     objective = _AdmittanceIndex(_compile_index(plan))

@@ -18,9 +18,11 @@ from study_text import PAPER_CAR, study_text
 import inerter as it
 from inerter.app.about import examples
 from inerter.files.rig.loading import load_rig
+from inerter.files.study.loading import load_study
 
 SIMULATED = "half_car_friction"  # of a simulation file its vehicle is opened
-STUDIES = [*examples(), SIMULATED]
+DESIGNS = [name for name, path in examples().items() if not load_study(path).free_networks]  # others have no answers
+STUDIES = [*DESIGNS, SIMULATED]
 TABS = ("history", "response")  # whose answers come by themselves
 SHOWN = """() => {
   const texts = (selector) => [...document.querySelectorAll(selector)].map(each => each.textContent.trim());

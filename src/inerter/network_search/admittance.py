@@ -76,7 +76,7 @@ class AdmittanceResult:
 
     @cached_property
     def estimate(self) -> Estimate:
-        """The index of that design by `EXACT_NORM`; raises `SynthesisError` if no network was found."""
+        """The index of that design by `Norm`; raises `SynthesisError` if no network was found."""
         return evaluate(self.design, self.index, EXACT_NORM)
 
     @cached_property
@@ -104,7 +104,7 @@ def optimise_admittance(
     degree (default: 25 for degree 0, twice as many for each degree more), and from half as many of each degree below.
     The same seed gives the same result.
 
-    The index is one of r.m.s. values that `EXACT_NORM` computes, and the network is in one place.
+    The index is one of r.m.s. values that `Norm` computes, and the network is in one place.
 
     Raises `DesignError` without exactly one free network in one place, for other free values, for an index of another
     kind, for one that is infinite for all starts or lowest without a network or with a rigid link, or if `degree`,

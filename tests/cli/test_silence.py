@@ -249,6 +249,8 @@ def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
         "import sys, time\nfrom inerter.work import progress\nbefore = progress.count_evaluation\n"
         "import inerter.optimisation.local as local\n"
         "local.count_evaluation = lambda: (time.sleep(0.02), before())\n"
+        "import importlib\n"
+        "importlib.import_module('inerter.optimisation.optimise')._compiled_searches = lambda *_: None\n"
         "from inerter.cli.main import main\nsys.exit(main())"
     )
     between, lines = gaps([sys.executable, "-c", slow, "run", str(path), "-o", str(tmp_path / "out"), "-j", "1"])

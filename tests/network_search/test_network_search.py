@@ -53,7 +53,7 @@ def facts(result: it.SearchResult) -> list[tuple]:
     ("index", "most", "starts"),
     [
         ("comfort", 2, 20),
-        *(pytest.param(index, 4, 20, marks=pytest.mark.campaign) for index in INDICES),
+        *(pytest.param(index, 4, 20, marks=pytest.mark.marathon) for index in INDICES),
     ],
 )
 def test_no_search_of_one_network_is_better(index, most, starts):
@@ -76,7 +76,7 @@ def test_values_are_those_of_the_designs(index):
             assert (name in one.active_bounds) == (value in (lower, upper))
 
 
-@pytest.mark.parametrize(("most", "seeds"), [(3, range(3)), pytest.param(4, range(10), marks=pytest.mark.campaign)])
+@pytest.mark.parametrize(("most", "seeds"), [(3, range(3)), pytest.param(4, range(10), marks=pytest.mark.marathon)])
 @pytest.mark.parametrize("index", INDICES)
 def test_seeds_give_the_same_best_networks(index, most, seeds):
     """Of travels of four elements the first four: the fifth has its optimum at bounds, where one start of 32 ends."""

@@ -44,6 +44,7 @@ def counted(stop_at: int | None = None) -> Iterator[list[int]]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(checkpoints, "_SELDOM", 0.0)
+        patch.setattr("inerter.optimisation.optimise._compiled_searches", lambda *_: None)  # which end at once
         for module in ("minimax_level", "local"):
             patch.setattr(f"inerter.optimisation.{module}.count_evaluation", count_one)
         yield count

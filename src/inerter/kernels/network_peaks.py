@@ -20,6 +20,7 @@ from inerter.kernels.decorators import kernel, part
 from inerter.kernels.network_norms import DEGREE, NormSpace, Port, fill_fraction, fill_shares, norm_space
 from inerter.kernels.network_polynomials import BOTTOM, TOP, Program, admittance, admittance_adjoint
 from inerter.kernels.network_search import Variables
+from inerter.kernels.quasi_newton import factorise_free, reset, solve_lower, solve_upper, update
 
 Array = Any
 _PER_DECADE, _BEYOND = 14, 0.7  # points of the grid, and decades that it goes beyond the moduli of the poles
@@ -49,6 +50,7 @@ class PeakSpace(NamedTuple):
     point: Floats
     trial: Floats
     step: Floats
+    bend: Floats  # change of the weighted peaks' gradient over a step
     change: Floats
     hessian: Matrix
     factor: Matrix
@@ -253,35 +255,14 @@ def _highest(count: int, heights: Array) -> float:
 
 
 @part(borrowing=True)
-def _factorise(space: PeakSpace) -> bool:
-    """Cholesky factor of the quadratic term over the variables that are not held."""
-    L, k = space.factor, space.point.size
-    for i in range(k):
-        for j in range(i + 1):
-            held = space.held[i] == 1 or space.held[j] == 1
-            total = space.hessian[i, j] if not held else 1.0 if i == j else 0.0
-            for m in range(j):
-                total -= L[i, m] * L[j, m]
-            if i == j:
-                if not total > 0.0:
-                    return False
-                L[i, i] = np.sqrt(total)
-            else:
-                L[i, j] = total / L[j, j]
-    return True
-
-
-@part(borrowing=True)
 def _weigh(count: int, space: PeakSpace) -> None:
     """Weights of the peaks: the dual of the quadratic program, by steps along pairs of weights."""
     L, k, W, weights = space.factor, space.point.size, space.scaled, space.weights
     highest = 0
     for p in range(count):
         for i in range(k):
-            total = 0.0 if space.held[i] == 1 else space.gradient[p, i]
-            for m in range(i):
-                total -= L[i, m] * W[p, m]
-            W[p, i] = total / L[i, i]
+            W[p, i] = 0.0 if space.held[i] == 1 else space.gradient[p, i]
+        solve_lower(L, W[p])
         weights[p] = 0.0
         if space.shifted[p] > space.shifted[highest]:
             highest = p
@@ -317,7 +298,7 @@ def _find_step(count: int, variables: Variables, space: PeakSpace) -> float:
     for i in range(k):
         space.held[i] = 0
     for _ in range(k + 1):
-        if not _factorise(space):
+        if not factorise_free(space.hessian, space.held, L):
             return 1.0
         _weigh(count, space)
         for i in range(k):
@@ -325,11 +306,7 @@ def _find_step(count: int, variables: Variables, space: PeakSpace) -> float:
             for p in range(count):
                 total -= space.weights[p] * space.scaled[p, i]
             step[i] = total
-        for i in range(k - 1, -1, -1):
-            total = step[i]
-            for m in range(i + 1, k):
-                total -= L[m, i] * step[m]
-            step[i] = total / L[i, i]
+        solve_upper(L, step)
         outwards = False
         for i in range(k):
             if space.held[i] == 0 and (
@@ -360,17 +337,9 @@ def _find_step(count: int, variables: Variables, space: PeakSpace) -> float:
 
 
 @part(borrowing=True)
-def _reset(hessian: Array, scale: float) -> None:
-    for i in range(hessian.shape[0]):
-        for j in range(hessian.shape[0]):
-            hessian[i, j] = scale if i == j else 0.0
-
-
-@part(borrowing=True)
 def _update(count: int, trial_count: int, space: PeakSpace) -> None:
     """BFGS update for the weighted peaks; peaks belong together if they are closest in frequency."""
-    B, s, Bs, k = space.hessian, space.step, space.change, space.point.size
-    y = space.factor[0]
+    s, y, k = space.step, space.bend, space.point.size
     for i in range(k):
         s[i] = space.trial[i] - space.point[i]
         y[i] = 0.0
@@ -384,22 +353,7 @@ def _update(count: int, trial_count: int, space: PeakSpace) -> None:
                 nearest, distance = q, away
         for i in range(k):
             y[i] += space.weights[p] * (space.trial_gradient[nearest, i] - space.gradient[p, i])
-    sBs, sy = 0.0, 0.0
-    for i in range(k):
-        Bs[i] = 0.0
-        for j in range(k):
-            Bs[i] += B[i, j] * s[j]
-        sBs += s[i] * Bs[i]
-        sy += s[i] * y[i]
-    if not sBs > 1e-30:
-        return
-    theta = 1.0 if sy >= 0.2 * sBs else 0.8 * sBs / (sBs - sy)
-    rs = theta * sy + (1.0 - theta) * sBs
-    for i in range(k):
-        ri = theta * y[i] + (1.0 - theta) * Bs[i]
-        for j in range(k):
-            rj = theta * y[j] + (1.0 - theta) * Bs[j]
-            B[i, j] += ri * rj / rs - Bs[i] * Bs[j] / sBs
+    update(space.hessian, s, y, space.change)
 
 
 @part(borrowing=True)
@@ -417,7 +371,7 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
     if count == 0:
         return f
     _fill_gradients(count, variables, program, port, space, space.omega, space.gradient)
-    _reset(space.hessian, 1.0)
+    reset(space.hessian, 1.0)
     fresh = True
     for _ in range(_ITERATIONS):
         for p in range(count):
@@ -426,7 +380,7 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
         if fall > 0.0:
             if fresh:
                 break
-            _reset(space.hessian, 1.0)
+            reset(space.hessian, 1.0)
             fresh = True
             continue
         if fall > -_CONVERGED:
@@ -468,7 +422,7 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
         if not taken:
             if fresh:
                 break
-            _reset(space.hessian, 1.0)
+            reset(space.hessian, 1.0)
             fresh = True
             continue
         fresh = False
@@ -501,6 +455,7 @@ def _peak_space(k: int, leaves: int, program: Program, port: Port) -> PeakSpace:
         np.zeros(_MOST),
         np.zeros(_MOST),
         np.zeros((_MOST, k)),
+        np.zeros(k),
         np.zeros(k),
         np.zeros(k),
         np.zeros(k),
@@ -545,19 +500,4 @@ def search_network_peak(
         counts[start] = space.count[0]
         for i in range(k):
             points[start, i] = np.exp(space.point[i])
-    return result
-
-
-@kernel("peak gains of a network", typed=True)
-def peak_gains(points: Matrix, program: Program, port: Port) -> Floats:
-    """Highest gain that the grid finds at each row of element values (designs, leaves)."""
-    k = points.shape[1]
-    space = _peak_space(k, k, program, port)
-    variables = Variables(np.zeros(k), np.arange(k), np.zeros(k), np.zeros(k))
-    result = np.zeros(points.shape[0])
-    for row in range(points.shape[0]):
-        for i in range(k):
-            space.point[i] = np.log(points[row, i])
-        count = _peaks_at(space.point, variables, program, port, space, space.omega, space.height, True)
-        result[row] = np.exp(_highest(count, space.height))
     return result

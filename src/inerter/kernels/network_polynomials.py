@@ -46,7 +46,7 @@ class Polynomials(NamedTuple):
     bottom_low: Matrix
     top_adjoint: Matrix
     bottom_adjoint: Matrix
-    room: Matrix  # (6, size)
+    room: Matrix  # (4, size)
 
 
 @part(borrowing=True)

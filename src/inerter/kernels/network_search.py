@@ -16,6 +16,7 @@ from inerter.kernels.arrays import Floats, Ints, Matrix
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.network_norms import NormSpace, Port, index_in, norm_space
 from inerter.kernels.network_polynomials import Program
+from inerter.kernels.quasi_newton import factorise_free, reset, solve_lower, solve_upper, update
 
 Array = Any
 _ITERATIONS, _HALVINGS = 300, 30
@@ -43,6 +44,7 @@ class SearchSpace(NamedTuple):
     trial: Floats
     trial_gradient: Floats
     step: Floats
+    bend: Floats  # change of the gradient over a step
     change: Floats
     hessian: Matrix
     factor: Matrix
@@ -81,13 +83,6 @@ def _projected_slope(point: Array, gradient: Array, variables: Variables) -> flo
 
 
 @part(borrowing=True)
-def _reset(hessian: Array, scale: float) -> None:
-    for i in range(hessian.shape[0]):
-        for j in range(hessian.shape[0]):
-            hessian[i, j] = scale if i == j else 0.0
-
-
-@part(borrowing=True)
 def _find_step(variables: Variables, space: SearchSpace) -> bool:
     """Fill the step that minimises the model over the variables that are not held; False if it has no minimum."""
     point, gradient, L, step = space.point, space.gradient, space.factor, space.step
@@ -95,61 +90,19 @@ def _find_step(variables: Variables, space: SearchSpace) -> bool:
     for i in range(k):
         low, high = point[i] <= variables.lower[i], point[i] >= variables.upper[i]
         space.held[i] = 1 if (low and gradient[i] > 0.0) or (high and gradient[i] < 0.0) else 0
-    for i in range(k):
-        for j in range(i + 1):
-            held = space.held[i] == 1 or space.held[j] == 1
-            total = space.hessian[i, j] if not held else 1.0 if i == j else 0.0
-            for m in range(j):
-                total -= L[i, m] * L[j, m]
-            if i == j:
-                if not total > 0.0:
-                    return False
-                L[i, i] = np.sqrt(total)
-            else:
-                L[i, j] = total / L[j, j]
-    for i in range(k):
-        total = 0.0 if space.held[i] == 1 else -gradient[i]
-        for m in range(i):
-            total -= L[i, m] * step[m]
-        step[i] = total / L[i, i]
+    if not factorise_free(space.hessian, space.held, L):
+        return False
     longest = 0.0
-    for i in range(k - 1, -1, -1):
-        total = step[i]
-        for m in range(i + 1, k):
-            total -= L[m, i] * step[m]
-        step[i] = total / L[i, i]
+    for i in range(k):
+        step[i] = 0.0 if space.held[i] == 1 else -gradient[i]
+    solve_lower(L, step)
+    solve_upper(L, step)
+    for i in range(k):
         longest = max(longest, abs(step[i]))
     if longest > _STEP:
         for i in range(k):
             step[i] *= _STEP / longest
     return bool(longest < np.inf)
-
-
-@part(borrowing=True)
-def _update(space: SearchSpace) -> None:
-    """The BFGS update with Powell's damping for the step to the trial."""
-    B, s, Bs = space.hessian, space.step, space.change
-    k = s.size
-    sBs, sy, yy = 0.0, 0.0, 0.0
-    for i in range(k):
-        s[i] = space.trial[i] - space.point[i]
-    for i in range(k):
-        Bs[i] = 0.0
-        for j in range(k):
-            Bs[i] += B[i, j] * s[j]
-        y = space.trial_gradient[i] - space.gradient[i]
-        sBs += s[i] * Bs[i]
-        sy += s[i] * y
-        yy += y * y
-    if not sBs > 0.0:
-        return
-    theta = 1.0 if sy >= 0.2 * sBs else 0.8 * sBs / (sBs - sy)
-    rs = theta * sy + (1.0 - theta) * sBs
-    for i in range(k):
-        ri = theta * (space.trial_gradient[i] - space.gradient[i]) + (1.0 - theta) * Bs[i]
-        for j in range(k):
-            rj = theta * (space.trial_gradient[j] - space.gradient[j]) + (1.0 - theta) * Bs[j]
-            B[i, j] += ri * rj / rs - Bs[i] * Bs[j] / sBs
 
 
 @part(borrowing=True)
@@ -159,7 +112,7 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
     k = point.size
     f = _index_at(point, variables, program, port, space, gradient)
     count, fresh = 1, True
-    _reset(space.hessian, 1.0)
+    reset(space.hessian, 1.0)
     if not f < np.inf:
         return f, count
     for _ in range(_ITERATIONS):
@@ -167,7 +120,7 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
         if slope <= _CONVERGED:
             break
         if not _find_step(variables, space):
-            _reset(space.hessian, 1.0)
+            reset(space.hessian, 1.0)
             fresh = True
             if not _find_step(variables, space):
                 break
@@ -190,7 +143,7 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
         if not taken:
             if fresh:
                 break
-            _reset(space.hessian, 1.0)
+            reset(space.hessian, 1.0)
             fresh = True
             continue
         if fresh:  # scale of the first model
@@ -200,9 +153,11 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
                 sy += y * (trial[i] - point[i])
                 yy += y * y
             if sy > 0.0:
-                _reset(space.hessian, yy / sy)
+                reset(space.hessian, yy / sy)
             fresh = False
-        _update(space)
+        for i in range(k):
+            space.step[i], space.bend[i] = trial[i] - point[i], trial_gradient[i] - gradient[i]
+        update(space.hessian, space.step, space.bend, space.change)
         for i in range(k):
             point[i], gradient[i] = trial[i], trial_gradient[i]
         f = min(new, f) if abs(new - f) <= _ROUNDING else new
@@ -223,6 +178,7 @@ def search_network(
     space = SearchSpace(
         norm_space(program, port),
         np.zeros(leaves),
+        np.zeros(k),
         np.zeros(k),
         np.zeros(k),
         np.zeros(k),

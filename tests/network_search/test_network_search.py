@@ -212,6 +212,14 @@ def test_limits_and_other_methods_are_searched_by_optimise(way):
             assert it.evaluate(one.design, INDICES["load"], NORM).value <= 560.0 * (1.0 + 1e-6)
 
 
+def test_a_network_that_cannot_keep_a_limit_is_not_ranked_and_says_so():
+    limits = [it.at_most(INDICES["load"], 560.0)]  # which no damper alone keeps
+    result = it.search(car(2, springs=None), INDICES["comfort"], NORM, subject_to=limits, starts=4)
+    assert "c1" not in [one.layout for one in result.ranking]
+    assert any(layout == "c1" and reason for layout, reason in result.failed)
+    assert result.n_networks == 4
+
+
 def test_two_places_have_the_same_network_with_the_same_values():
     place = it.any_network(2, dampers=BOUNDS["dampers"], inerters=BOUNDS["inerters"])
     half = paper_half_car(Spring(60e3) | place, Spring(50e3) | place)

@@ -246,8 +246,8 @@ def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] |
     network = linearise(mount.network).network
     if network is None or not all(type(element) in (Spring, Damper, Inerter) for element in network.elements()):
         return None
-    values = [e.value for e in network.elements() if isinstance(e.value, Free)]
-    if {str(value.name) for value in values} != set(mechanism.free_values()):
+    own = {str(e.value.name) for e in mount.network.elements() if isinstance(e.value, Free)}  # some without effect
+    if not own.issuperset(mechanism.free_values()):
         return None
     probe = replace(mount, network=Damper(free(1.0, 2.0, PLACE), PLACE))
     probed = replace(mechanism, struts=tuple(probe if strut is mount else strut for strut in mechanism.struts))

@@ -18,7 +18,8 @@ from inerter.vehicle.vehicle import Vehicle
 class RealInerter:
     """Shaft of a ball-screw inerter: stiffness [N/m] and damping [N s/m] in series with inertance and friction.
 
-    Source: Wang and Su (2008), Figure 6b, without backlash. The default values are those of their Table 3.
+    Source: Wang and Su (2008), Figure 6b, without backlash. The default values are those of the soft shaft of their
+    Table 2, which their rig has too.
     """
 
     stiffness: float = 1e6

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 from math import isfinite
 from typing import TYPE_CHECKING
 
@@ -88,13 +89,12 @@ class SearchResult:
 
         A network that does as well as a smaller one, with elements at their bounds, is counted there.
         """
-        return tuple(best_of_each_size(one for one in self.ranking if not one.simpler))
+        return tuple(self.ranking[i] for i in _frontier(self.ranking, lambda one: one.n_elements))
 
     @cached_property
     def frontier_of_inerters(self) -> tuple[FoundNetwork, ...]:
         """The best network of each number of inerters that is better than all of fewer; see `frontier`."""
-        counted = (one for one in self.ranking if not one.simpler)
-        return tuple(_improving(counted, lambda one: one.topology.counts["b"]))
+        return tuple(self.ranking[i] for i in _frontier(self.ranking, _count_inerters))
 
     def near_optimal(self, within: float = 0.01) -> tuple[FoundNetwork, ...]:
         """Networks whose value is within a share of the best one, those of the fewest elements first."""
@@ -104,22 +104,21 @@ class SearchResult:
         return tuple(sorted((one for one in self.ranking if one.value <= limit), key=lambda one: one.n_elements))
 
 
-def best_of_each_size(found: Iterable[FoundNetwork]) -> Iterator[FoundNetwork]:
-    """The best network of each number of elements, where it is better than all smaller ones."""
-    return _improving(found, lambda one: one.n_elements)
+def _count_inerters(found: FoundNetwork) -> int:
+    return found.topology.counts["b"]
 
 
-def _improving(found: Iterable[FoundNetwork], size_of: Callable[[FoundNetwork], int]) -> Iterator[FoundNetwork]:
-    by_size: dict[int, FoundNetwork] = {}
-    for one in found:
-        size = size_of(one)
-        if size not in by_size or one.value < by_size[size].value * (1.0 - TIED):
-            by_size[size] = one
+def _frontier(ranking: Sequence[FoundNetwork], size_of: Callable[[FoundNetwork], int]) -> Iterator[int]:
+    """Places in the ranking of the best network of each size, where it is better than all smaller ones."""
+    first: dict[int, int] = {}
+    for place, one in enumerate(ranking):
+        if not one.simpler:
+            first.setdefault(size_of(one), place)
     best = float("inf")
-    for size in sorted(by_size):
-        if by_size[size].value < best * (1.0 - TIED):
-            best = by_size[size].value
-            yield by_size[size]
+    for _, place in sorted(first.items()):
+        if ranking[place].value < best * (1.0 - TIED):
+            best = ranking[place].value
+            yield place
 
 
 def collect_results(plan: SearchPlan, searched: Iterable[SearchedNetwork]) -> SearchResult:
@@ -129,8 +128,9 @@ def collect_results(plan: SearchPlan, searched: Iterable[SearchedNetwork]) -> Se
     improved, like = _share_within_classes(plan, [one for one in ordered if isfinite(one.value)])
     lowest = {one.topology: one.value for one in improved}
     found = [_to_found_network(plan, one, like[one.topology], lowest) for one in rank_networks(improved)]
-    for i, one in enumerate(found[:_VERIFIED]):
-        found[i] = _verify(one)
+    frontiers = (_frontier(found, size_of) for size_of in (lambda one: one.n_elements, _count_inerters))
+    for place in {*range(min(_VERIFIED, len(found))), *chain(*frontiers)}:
+        found[place] = _verify(found[place])
     failed = tuple((plan.topology_text(one.topology), one.reason) for one in ordered if not isfinite(one.value))
     unit = found[0].unit if found else str(plan.index.unit)
     return SearchResult(str(plan.index.symbol), unit, tuple(found), failed, plan.seed)

@@ -15,7 +15,7 @@ from numbers import Integral
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, InerterError
+from inerter.errors import DesignError, InerterError, StatusKind
 from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
@@ -124,9 +124,8 @@ def search(
 
     The vehicle has one `any_network(...)`; in several places it is the same network with the same values. Each network
     is searched from `starts` points (default: 8 for each value, and 32 where few of them find the best), as in
-    `optimise`. `jobs` processes or an `executor`
-    (of `concurrent.futures`, of a dask client, of mpi4py) share the networks. The same seed gives the same result,
-    whatever shares the work.
+    `optimise`. `jobs` processes or an `executor` (of `concurrent.futures`, of a dask client, of mpi4py) share the
+    networks. The same seed gives the same result, whatever shares the work.
 
     Raises `DesignError` without exactly one free network, or if `seed`, `starts` or `jobs` are not valid, and what
     `optimise` raises for the index, the method and the constraints.
@@ -239,8 +238,8 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     lower, upper = np.array(plan.ends(topology)).T
     starts = plan.starts or _STARTS * topology.size
     found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
-    if found is None:
-        return SearchedNetwork(topology, reason="the index is infinite for all values of this network")
+    if found is None:  # for an index that is infinite, or zero, whatever the values
+        return _search_by_optimise(plan, topology)
     if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
         starts *= _MORE
         found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
@@ -276,7 +275,7 @@ def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points
 def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     design = plan.design(topology)
     found = optimise(design, plan.index, plan.method, subject_to=plan.limits, seed=plan.seed, starts=plan.starts)
-    if not np.isfinite(found.value):
+    if not np.isfinite(found.value) or found.status.kind is StatusKind.INFEASIBLE:
         return SearchedNetwork(topology, found.n_starts, reason=found.status.message or "the index is infinite")
     names = topology.names(plan.taken_names)
     others = {name: value for name, value in found.parameters.items() if name not in names}

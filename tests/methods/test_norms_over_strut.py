@@ -1,0 +1,39 @@
+"""Many designs of one strut: the same digits as one by one, in parts and as a whole, and those of other code."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from strategies import paper_quarter_car
+
+import inerter as it
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+INDICES = [it.RideComfort(ROAD), it.TyreLoad(ROAD)]
+CAR = paper_quarter_car(
+    it.Spring(120e3) | it.Damper(it.free(1e2, 1e5, "c"), "c") - it.Inerter(it.free(1.0, 2e3, "b"), "b")
+)
+
+
+def designs(count):
+    rng = np.random.default_rng(1)
+    return {"c": 10.0 ** rng.uniform(2.0, 5.0, count), "b": 10.0 ** rng.uniform(0.0, 3.3, count)}
+
+
+def test_parts_and_single_designs_have_the_digits_of_the_whole():
+    values = designs(200)
+    whole = it.evaluate_many(CAR, INDICES, values, it.Norm())
+    with ThreadPoolExecutor(2) as executor:
+        np.testing.assert_array_equal(it.evaluate_many(CAR, INDICES, values, it.Norm(), executor=executor), whole)
+    for i in range(5):
+        one = it.evaluate_many(CAR, INDICES, {name: column[i] for name, column in values.items()}, it.Norm())
+        np.testing.assert_array_equal(one[0], whole[i])
+
+
+def test_values_are_those_of_one_evaluation():
+    values = designs(20)
+    many = it.evaluate_many(CAR, INDICES, values, it.Norm())
+    for i, row in enumerate(many):
+        car = CAR.with_values({name: float(column[i]) for name, column in values.items()})
+        np.testing.assert_allclose(row, [it.evaluate(car, index, it.Norm()).value for index in INDICES], rtol=1e-11)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -181,12 +182,17 @@ class NetworkIndex:
         starts = samples.shape[0] // TRIED
         points, counts = np.zeros((starts, len(names))), np.zeros(starts, np.int64)
         given = samples, TRIED, variables, program.program, port, points, counts
-        values = np.asarray(search_network_peak(*given) if self.is_peak else search_network(*given))
+        values = np.asarray(network_kernel(self.definition)(*given))
         if self.is_peak:
             values = values * np.sqrt(port.weights[0])
         for end in (lower, upper):  # which logarithms miss by a rounding
             points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
         return CompiledSearch(points, values, counts)
+
+
+def network_kernel(definition: IndexDefinition) -> Any:
+    """The compiled code that searches for an index over a network."""
+    return search_network_peak if definition.is_peak else search_network
 
 
 def _form(function: PortFunction, program: NetworkProgram) -> tuple[int, ...] | None:

@@ -14,7 +14,7 @@ from inerter.indices.definition import Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of, rows_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
-from inerter.methods.network_norm import norms_over_strut
+from inerter.methods.network_norm import network_kernel, norms_over_strut
 from inerter.methods.objective import Differentiable
 from inerter.vehicle.vehicle import Vehicle
 
@@ -94,7 +94,10 @@ class Norm(FormerMethodNames):
 
     def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
-        return kernels_of(definition) if search else ()
+        if not search:
+            return ()
+        own = (network_kernel(definition),) if is_exact_norm(self) else ()
+        return (*own, *kernels_of(definition))
 
 
 EXACT_NORM = Norm()  # which other code may compute in its place

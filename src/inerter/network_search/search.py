@@ -16,12 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, StatusKind
-from inerter.kernels.network_peaks import search_network_peak
-from inerter.kernels.network_search import search_network
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index
+from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index, network_kernel
 from inerter.methods.norm import is_exact_norm
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.results import SearchResult, collect_results
@@ -104,9 +102,7 @@ class SearchPlan:
 
     def kernels(self) -> list[object]:
         """Compiled code that the search calls."""
-        if self.compiled is None:
-            return []
-        return [search_network_peak if self.compiled.is_peak else search_network]
+        return [] if self.compiled is None else [network_kernel(self.compiled.definition)]
 
 
 def search(

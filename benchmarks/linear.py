@@ -114,7 +114,7 @@ def evaluations() -> None:
 
 def sweep() -> None:
     source = study("figure11")
-    count = len(source.layouts) * len(source.indices) * len(source.sweep.values)
+    count = len(source.layouts) * len(source.indices) * sum(len(sweep.values) for sweep in source.sweeps)
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
         run_study(source, Path(folder) / "figure11", jobs=2)

@@ -125,7 +125,9 @@ def optimise(
 
     A quasi-random sample in the logarithms of the values is searched for local minima; the best `starts` of them
     (default: 8 for each free value) start a gradient method each: L-BFGS-B, for a peak gain a minimax search with
-    SLSQP. The same seed gives the same result.
+    SLSQP. The same seed gives the same result. Where `Norm` needs no delay and all free values are in one strut, the
+    whole search is compiled (`methods.network_norm`): each start is the best of 32 points of the sample, and the best
+    value is kept if the norms of other code agree with it.
 
     A method that simulates is searched without derivatives (COBYQA), from the best two among the best linear design and
     the local optima of a quick approximation that many starts find; `n_converged` then counts searches within 1e-4 of

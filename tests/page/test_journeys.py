@@ -262,7 +262,6 @@ def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
     page = visitor.page
     page.fill("#network-text", "k | c | b")
     page.locator(".element[data-name=b]").click()
-    page.keyboard.press("F2")
     page.get_by_role("tab", name="Road").click()
     page.evaluate("() => { document.getElementById('part-menu').open = true; }")
     for field in ("#element-name", ".title", "label:has-text('for [s]') input"):

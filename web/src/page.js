@@ -184,7 +184,8 @@ function Tabs({ store, api }) {
       ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key}
         aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1}
           onClick=${() => store.look({ tab: key })}>${title}</button>`)}
-    </div><${Chip} on=${view.tall} set=${() => store.look({ tall: !view.tall })}>Enlarge<//></div>
+    </div><${Chip} on=${view.tall} set=${() => store.look({ tall: !view.tall })}
+      aria-label="Enlarge" title="Enlarge: the whole height">⤢<//></div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
       <${shown.Panel} store=${store} api=${api} /></div>
   </section>`;

@@ -3,7 +3,7 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, strutsOf, entryAt } from "./state/document.js";
+import { isRange, strutsOf, entryAt, without } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -20,6 +20,16 @@ export const designOf = ({ layout, values }) => ({ layout, values: values[layout
 export function baselineOf({ study, values }) {
   const layout = study.study?.baseline ?? Object.keys(study.layouts ?? {})[0] ?? "";
   return { layout, values: values[layout] ?? {}, name: layout };
+}
+
+/** All layouts of the study as designs. @param {Document} document */
+export const allDesigns = (document) =>
+  Object.keys(document.study.layouts ?? {}).map((layout) => designOf({ ...document, layout }));
+
+/** The index by which designs are ranked. @param {State} state @returns {string | undefined} */
+export function goalOf({ view, history }) {
+  const indices = history.present.study.study?.indices ?? [];
+  return indices.includes(view.index) ? view.index : indices[0];
 }
 
 /** The design that is edited and the one that it is compared with; that one alone if it is edited.
@@ -55,15 +65,39 @@ const ROWS = [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
     { panel: "check", path: "study/check", body: { study } },
   ],
-  (state, document) => [ofDesigns("indices", { ...about(document), methods: methodNames(state) })],
+  (state, document) => [hasDecision(state) ? ofDesigns("decision", decided(state, document))
+    : { ...ofDesigns("indices", without(decided(state, document), "index")), panel: "decision" }],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
-  ({ view: { tab, seconds, seed } }, document) => (tab !== "history" ? [] : [
+  ({ view: { seconds, seed } }, document) => [
     ofDesigns("history", { ...presentDesign(document), duration: seconds, seed }),
     ofDesigns("mechanism", presentDesign(document)),
-  ]),
+  ],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
 ];
+
+/** Whether the server ranks designs itself; else the page does for now. @param {State} state */
+const hasDecision = ({ about }) => about === null
+  || (about.panels ?? []).some((/** @type {any} */ { key }) => key === "decision");
+
+/** The decision, also of a server that answers indices only. @param {State} state */
+export function decisionOf(state) {
+  const shown = answerOf(state, "decision");
+  return shown.value?.designs ? { ...shown, value: ranked(state, shown.value) } : shown;
+}
+
+/** @param {State} state @param {any} value */
+function ranked(state, { designs, baseline }) {
+  const index = goalOf(state);
+  const rows = designs.map((/** @type {any} */ { layout, results, unchosen, limits }) => {
+    const own = results.find((/** @type {any} */ each) => each.index === index);
+    return { ...own, layout, unchosen, limits, is_baseline: layout === baseline,
+      others: results.filter((/** @type {any} */ each) => each !== own) };
+  }).toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.value - b.value)
+    .map((/** @type {any} */ row, /** @type {number} */ i) => ({ ...row, rank: i + 1 }));
+  const { title, unit } = rows[0] ?? {};
+  return { goal: { index, title, unit }, rows, verdict: { sentence: "", severity: "answer", caveats: [] } };
+}
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });
@@ -102,6 +136,8 @@ export function soughtOf(state, panel) {
 
 /** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
 const SOUGHT = {
+  margins: (state, document, asked) =>
+    ({ ...presentDesign(document), baseline: baselineOf(document), index: goalOf(state), ...asked }),
   budget: (state, document, asked) =>
     ({ ...presentDesign(document), baseline: baselineOf(document), ...asked, ...seeing(state) }),
   tolerance: (state, document, asked) =>
@@ -131,12 +167,19 @@ function effortOf(state, scattering) {
 }
 
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
-export const bodyOf = (state, panel) =>
+export const bodyOf = (state, panel) => panel === "indices" ? indicesBody(state) :
   questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
 
 /** The method by which the page judges; none where the server has told of none, and then those of the study.
  * @param {State} state */
 const methodNames = (state) => [judging(state)?.name ?? []].flat();
+
+/** What the decision is asked of: all layouts. @param {State} state @param {Document} document */
+const decided = (state, document) => ({ study: document.study, designs: allDesigns(document),
+  baseline: baselineOf(document), methods: methodNames(state), index: goalOf(state) });
+
+/** What a table of the indices is asked of. @param {State} state */
+const indicesBody = (state) => ({ ...about(state.history.present), methods: methodNames(state) });
 
 /** @param {Document} document */
 const about = (document) =>

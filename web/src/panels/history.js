@@ -8,7 +8,6 @@ import { Field } from "../parts/field.js";
 import { Select, useChoice } from "../parts/controls.js";
 import { html, useMemo } from "../parts/html.js";
 import { problemsOf } from "./values.js";
-import { Motion } from "./motion.js";
 import { shown, withUnit } from "../state/scale.js";
 
 /** @import { Store } from "../state/store.js" */
@@ -23,7 +22,6 @@ export function HistoryPanel({ store }) {
   const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
-  const mechanism = answerOf(state, "mechanism").value;
   /** @type {{name: string, label: string, unit: string, time: number[], values: number[]}[]} */
   const signals = value?.signals ?? [];
   const [picked, setPicked] = useChoice(signals.map(({ name }) => name));
@@ -57,7 +55,6 @@ export function HistoryPanel({ store }) {
         peak ${shown(value.peaks?.[signal.name])} ${signal.unit}.
         ${bands.length > 0 && html` <span class="key stick"></span> friction sticks, <span class="key open">
           </span> a gap is open.`}</p>`}
-    ${value?.motion && mechanism && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
   </div>`;
 }
 

@@ -13,10 +13,11 @@ import { planOf, reachOf } from "./symbols.js";
  * reach: {[mount: string]: {[element: string]: number}}}} Range */
 /** `z`: of its middle, above the ground [px]; `from` and `to`: its ends, from its middle [px].
  * @typedef {{body: Body, z: number, thick: number, from: number, to: number}} PlacedBody */
-/** `x` and `y` as in the scene, and moved by `shift` [px]; `bottom` and `top`: its ends above the ground [px]. It stands
- * on an arm or a lever where it takes only a part of a motion, or more of it: whose hinge is `arm` before what it is on [px].
+/** On an arm or a lever an end of a strut has another part of a motion; the hinge is `arm` before what moves it [px].
+ * @typedef {{end: "upper" | "lower", ratio: number, arm: number, hinged: boolean}} Lever */
+/** `x` and `y` as in the scene, and moved by `shift` [px]; `bottom` and `top`: its ends above the ground [px].
  * @typedef {{strut: Strut, plan: Plan, x: number, y: number, shift: number, bottom: number, top: number,
- * scale: number, wide: number, lever: {end: "upper" | "lower", ratio: number, arm: number, hinged: boolean} | null}} PlacedStrut */
+ * scale: number, wide: number, lever: Lever | null}} PlacedStrut */
 /** `metre`: [px] along the vehicle; `lift`: [px] of a metre up and down, `times` as many.
  * @typedef {{scene: Scene, width: number, height: number, metre: number, lift: number, times: number, base: number,
  * radius: number, bodies: Map<Body, PlacedBody>, struts: PlacedStrut[], primaries: {tyre: Tyre, plan: Plan,
@@ -102,7 +103,7 @@ function frameOf(scene, { width, height }) {
     const [metre, middle] = [Math.max(18, Math.min(0.098 * height, 60)) / WHEEL, width * (width < 500 ? 0.5 : 0.42)];
     return { width, height, metre, base, radius, project: (x, _, z) => [middle + (x - first) * metre, base - z] };
   }
-  const car = scene.silhouette ? spread(axles) : 0;
+  const car = scene.silhouette ? scene.wheelbase : 0;
   const overhang = car > 0 ? 0.34 * car : Math.max(0.14 * long, 0.4);
   const whole = long + 2 * overhang;
   const metre = scene.oblique
@@ -127,7 +128,8 @@ function frameOf(scene, { width, height }) {
  * @param {Scene} scene @param {Frame} frame @param {Range} range @param {number} times */
 function fits(scene, frame, range, times) {
   const lift = times * frame.metre;
-  if (range.any * lift > (scene.silhouette ? 0.12 : 0.15) * frame.height || range.slope * times > STEEPEST) return false;
+  const most = (scene.silhouette ? 0.12 : 0.15) * frame.height;
+  if (range.any * lift > most || range.slope * times > STEEPEST) return false;
   const { struts } = placed(scene, frame, range, times);
   return struts.every(({ strut, top, bottom, scale }) => (range.travel[strut.name] ?? 0) * lift < 0.26 * (top - bottom)
     && (!scene.column || scale >= SMALL || times <= 3));
@@ -159,12 +161,13 @@ function placed(scene, frame, range, times) {
     const plan = planOf(tyre.network, false);
     const own = made.bodies.get(tyre.body);
     const long = own ? own.z - own.thick / 2 - 2 * frame.radius : 0;
-    return { tyre, plan, scale: Math.min(1, long / plan.height, roomAt(made, scene.tyres, tyre.x, tyre.y) / (plan.left + plan.right)) };
+    const room = roomAt(made, scene.tyres, tyre.x, tyre.y);
+    return { tyre, plan, scale: Math.min(1, long / plan.height, room / (plan.left + plan.right)) };
   });
   return made;
 }
 
-/** @param {Strut} strut @param {Frame} frame @returns {PlacedStrut["lever"]} */
+/** @param {Strut} strut @param {Frame} frame @returns {Lever | null} */
 function leverOf({ arm: share, upper, lower, x }, { radius }) {
   const end = Math.abs(lower.ratio - 1) > 1e-6 ? "lower" : "upper";
   const ratio = share !== 1 ? share : end === "lower" ? lower.ratio : upper.ratio;
@@ -226,7 +229,7 @@ const levelOf = ({ body, over }, fixed) => (body ?? over[0])?.level ?? fixed;
 
 /** Heights in a car that is drawn with its outline. @param {Scene} scene @param {Frame} frame */
 function carLevels(scene, { radius, metre }) {
-  const unit = (spread(scene.tyres.map(({ x }) => x)) * metre) / 100;
+  const unit = (scene.wheelbase * metre) / 100;
   return {
     roof: null,
     of: (/** @type {Body} */ { kind, level }) => {
@@ -247,13 +250,14 @@ function halves(scene, { width, metre, radius }, body) {
   return { from: -half * share, to: half * share };
 }
 
-/** The height of what stands on a body, above which a strut begins [px]. @param {Layout} made @param {Body | null} body */
+/** The height of what stands on a body, above which a strut begins [px]. @param {Layout} made
+ * @param {Body | null} body */
 function topOf(made, body) {
   const own = body && made.bodies.get(body);
   if (!own) return 0;
-  const { silhouette, oblique, tyres } = made.scene;
+  const { silhouette, oblique, wheelbase } = made.scene;
   if (own.body.kind === "wheel") return silhouette && oblique ? 1.1 * made.radius : 2 * made.radius + 4;
-  if (own.body.kind === "body" && silhouette) return made.radius + 0.09 * made.metre * spread(tyres.map(({ x }) => x));
+  if (own.body.kind === "body" && silhouette) return made.radius + 0.09 * made.metre * wheelbase;
   return own.z + own.thick / 2;
 }
 
@@ -314,13 +318,15 @@ function rescale(one, made) {
   const fit = () => Math.min(most, (top - bottom - made.lift * reachOf(one.plan, reach))
     / one.plan.height, room / (one.plan.left + one.plan.right));
   one.scale = fit();
+  const bare = planOf(one.strut.network, false);
   if (one.scale < 0.5 || room < 0.8 * (one.plan.left + one.plan.right)) {
-    one.plan = planOf(one.strut.network, false);
+    one.plan = bare;
     one.scale = fit();
   }
   one.scale = Math.max(0.2, one.scale);
   const whole = one.plan.left + one.plan.right;
-  one.wide = Math.max(one.scale, Math.min(1, room / whole, one.plan.right > 15 && one.plan.parts.length ? 1 : one.scale));
+  const named = one.plan.parts.length > 0 && one.plan.left + one.plan.right > bare.left + bare.right;
+  one.wide = Math.max(one.scale, named ? Math.min(1, room / whole) : 0);
 }
 
 /** The room of a strut, between those before and behind it [px]. @param {Layout} made
@@ -329,6 +335,6 @@ function roomAt(made, several, x, y) {
   const [at] = made.project(x, y, 0);
   const gaps = several.filter((other) => Math.abs(other.y - y) < 0.3)
     .map((other) => Math.abs(made.project(other.x, other.y, 0)[0] - at)).filter((gap) => gap > 4);
-  const car = made.scene.silhouette ? 0.42 * spread(made.scene.tyres.map((tyre) => tyre.x)) * made.metre : Infinity;
+  const car = made.scene.silhouette ? 0.42 * made.scene.wheelbase * made.metre : Infinity;
   return Math.min(0.86 * Math.min(...gaps, Infinity), car, 180);
 }

@@ -14,30 +14,34 @@ const COLOURS = {
   s4: ["#6b3fa0", "#c4a1f5"],
 };
 
+const DASH = [4, 3];
 const SERIF = "italic 14px 'STIX Two Math', 'Cambria Math', Georgia, 'DejaVu Serif', serif";
 const PLAIN = "11px Inter, system-ui, 'Segoe UI', Roboto, sans-serif";
 
 /** How each class looks. @param {Element} element whose styles hold @param {string} own the colour of the design
  * @returns {{[kind: string]: Style}} */
-export function stylesOf(element, own = "s3") {
+export function stylesOf(element, own = "var(--s3)") {
   const found = getComputedStyle(element);
   const dark = isDark(found.color);
   const c = Object.fromEntries(Object.entries(COLOURS).map(([name, both]) =>
     [name, found.getPropertyValue(`--${name}`).trim() || both[dark ? 1 : 0]]));
   return {
-    wire: { stroke: c.ink, width: 1.6 }, "wire open": { stroke: c.stick, width: 1.8 }, hatch: { stroke: c.ink2, width: 1 },
+    wire: { stroke: c.ink, width: 1.6 }, "wire open": { stroke: c.stick, width: 1.8 },
+    hatch: { stroke: c.ink2, width: 1 },
     oil: { fill: c.soft }, box: { fill: c.surface, stroke: c.ink, width: 1.6 },
     flywheel: { fill: c.soft, stroke: c.ink, width: 1.6 }, dot: { fill: c.ink },
     block: { fill: c.surface, stroke: c.ink, width: 1.6 }, "block stick": { fill: c.stick, stroke: c.ink, width: 1.6 },
-    name: { fill: c.ink, font: SERIF }, text: { fill: c.ink, font: PLAIN }, quiet: { fill: c.ink2, font: PLAIN },
-    told: { fill: c.warn, font: `600 ${PLAIN}` },
+    name: { fill: c.ink, font: SERIF, stroke: c.surface }, text: { fill: c.ink, font: PLAIN },
+    quiet: { fill: c.ink2, font: PLAIN }, beside: { fill: c.ink2, font: PLAIN, stroke: c.surface },
+    told: { fill: c.warn, font: `600 ${PLAIN}`, stroke: c.surface },
     earth: { fill: c.earth }, plain: { fill: c.earth, alpha: 0.6 }, road: { stroke: c.road, width: 2.2 },
     strip: { stroke: c.road, width: 8, alpha: 0.3 },
-    body: { fill: c.body, stroke: c.ink, width: 1.6 }, "body round": { fill: c.body, stroke: c.ink, width: 1.6, round: true },
+    body: { fill: c.body, stroke: c.ink, width: 1.6 },
+    "body round": { fill: c.body, stroke: c.ink, width: 1.6, round: true },
     "body far": { fill: c.body, stroke: c.ink, width: 1.4, alpha: 0.5 },
     "body near": { fill: c.body, stroke: c.ink, width: 1.4, alpha: 0.72 },
-    glass: { fill: c.glass, stroke: c.ink2, width: 0.9 }, "glass near": { fill: c.glass, stroke: c.ink2, width: 0.9, alpha:
-      0.7 },
+    glass: { fill: c.glass, stroke: c.ink2, width: 0.9 },
+    "glass near": { fill: c.glass, stroke: c.ink2, width: 0.9, alpha: 0.7 },
     edge: { stroke: c.ink2, width: 1, alpha: 0.6 }, cut: { fill: c.surface, alpha: 0.9 },
     seat: { stroke: c.ink, width: 4 }, centre: { fill: c.surface, stroke: c.ink, width: 1.3 }, quarter: { fill: c.ink },
     tyre: { fill: c.tyre, stroke: c.ink2, width: 1 }, rim: { fill: c.body }, spoke: { stroke: c.ink2, width: 2.6 },
@@ -47,8 +51,9 @@ export function stylesOf(element, own = "s3") {
     joint: { fill: c.surface, stroke: c.ink, width: 1.4 }, pivot: { fill: c.ink2 },
     chair: { fill: c.ink2 }, limb: { stroke: c.ink, width: 6 }, "limb thin": { stroke: c.ink, width: 3 },
     trunk: { stroke: c.ink, width: 9 }, "trunk thin": { stroke: c.ink, width: 4.5 }, head: { fill: c.ink },
-    other: { stroke: c.s1, width: 1.5, dash: [4, 3] }, "other round": { stroke: c.s1, width: 1.5, dash: [4, 3], round: true },
-    own: { stroke: c[own] ?? c.s3, width: 2.2 }, "other trail": { stroke: c.s1, width: 1.5, dash: [4, 3] },
+    other: { stroke: c.s1, width: 1.5, dash: DASH }, "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
+    "other trail": { stroke: c.s1, width: 1.5, dash: DASH }, bar: { stroke: c.ink, width: 1.2 },
+    own: { stroke: c[own.replace(/^var\(--|\)$/g, "")] ?? c.s3, width: 2.2 },
   };
 }
 
@@ -58,6 +63,7 @@ function isDark(colour) {
   return red + green + blue > 380;
 }
 
+const HALO = 3; // [px] around what is written over something
 const CORNER = 9; // [px] of a body
 
 /** Paints shapes one over the other. @param {CanvasRenderingContext2D} pen @param {Shape[]} shapes
@@ -109,9 +115,17 @@ function write(pen, { x, y, text, anchor = "start", class: kind }, style) {
   pen.font = style.font ?? PLAIN;
   pen.textAlign = anchor === "middle" ? "center" : anchor;
   const parts = kind === "name" ? text.match(/^([A-Za-z])_?(.+)$/) : null;
-  if (!parts) return pen.fillText(text, x, y);
-  pen.fillText(parts[1], x, y);
+  pen.strokeStyle = style.stroke ?? "";
+  pen.lineWidth = HALO;
+  pen.setLineDash([]);
+  /** @param {string} words @param {number} across @param {number} down */
+  const put = (words, across, down) => {
+    if (style.stroke) pen.strokeText(words, across, down);
+    pen.fillText(words, across, down);
+  };
+  if (!parts) return put(text, x, y);
+  put(parts[1], x, y);
   const beside = x + pen.measureText(parts[1]).width + 1;
   pen.font = SERIF.replace("14px", "10px");
-  pen.fillText(parts[2], beside, y + 3);
+  put(parts[2], beside, y + 3);
 }

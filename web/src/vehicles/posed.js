@@ -111,7 +111,7 @@ function inDepth(made, moment, behind, into) {
   const { scene } = made;
   const sides = [...new Set([...scene.tyres, ...made.struts].map(({ y }) => y))].sort((a, b) => b - a);
   const [far, near] = [sides[0], sides[sides.length - 1]];
-  for (const link of scene.links) if (spread(link.bodies.map(({ y }) => y)) < 1e-6) bar(made, link.bodies, moment, into);
+  for (const { bodies } of scene.links) if (!isAcross(bodies)) bar(made, bodies, moment, into);
   if (scene.silhouette && scene.main) car(made, scene.main, far, moment, into, "far");
   const middle = (far + near) / 2;
   let joined = false;
@@ -130,14 +130,18 @@ function inDepth(made, moment, behind, into) {
       if (own.body.kind === "occupant" && own.body.y === y) body(made, own, moment, into);
     }
   }
-  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.body.kind !== "occupant") slab(made, own, moment,
-    into);
+  for (const own of made.bodies.values()) {
+    if (isDrawn(made, own) && own.body.kind !== "occupant") slab(made, own, moment, into);
+  }
 }
+
+/** Whether bodies are on both sides. @param {Body[]} bodies */
+const isAcross = (bodies) => spread(bodies.map(({ y }) => y)) > 1e-6;
 
 /** What joins both sides: bars, and edges of the body. @param {Layout} made @param {number} far @param {number} near
  * @param {Moment} moment @param {Shape[]} into */
 function across(made, far, near, moment, into) {
-  for (const { bodies } of made.scene.links) if (spread(bodies.map(({ y }) => y)) > 1e-6) bar(made, bodies, moment, into);
+  for (const { bodies } of made.scene.links) if (isAcross(bodies)) bar(made, bodies, moment, into);
   if (!made.scene.silhouette || !made.scene.main) return;
   const { main } = made.scene;
   for (const edge of EDGES) into.push(line([far, near].map((y) => onCar(made, main, y, edge, moment)), "edge"));
@@ -268,7 +272,7 @@ function strut(made, one, moment, into) {
 }
 
 /** [px] of a hundredth of the wheelbase. @param {Layout} made */
-const unitOf = (made) => (spread(made.scene.tyres.map(({ x }) => x)) * made.metre) / 100;
+const unitOf = (made) => (made.scene.wheelbase * made.metre) / 100;
 
 /** How far the upper end of a strut is above its place [m]. @param {PlacedStrut} one @param {Pose} pose */
 const topHeight = ({ strut: { upper }, lever: on }, pose) => heightOf(upper.port, pose) / (on?.hinged ? on.ratio : 1);
@@ -297,7 +301,8 @@ function lever(made, one, moment, px, into) {
   into.push(line([[hinge, y(fixed)], [far, y(fixed + share * (moved - fixed))]], "lever"));
   if (hinged) into.push(line([[hinge, y(fixed)], [hinge, made.base - one.top - made.lift * fixed]], "lever"));
   else into.push(polygon([[hinge, y(0)], [hinge - 6, y(0) + 11], [hinge + 6, y(0) + 11]], "pivot"));
-  into.push(circle(hinge, y(fixed), 3, "joint"), circle(px + one.shift, y(fixed + ratio * (moved - fixed)), 3, "joint"));
+  into.push(circle(hinge, y(fixed), 3, "joint"),
+    circle(px + one.shift, y(fixed + ratio * (moved - fixed)), 3, "joint"));
 }
 
 /** A bar over several bodies, or a bracket to where a strut was moved. @param {Layout} made
@@ -322,17 +327,20 @@ function bar(made, bodies, moment, into) {
   const hubs = bodies.map((body) => point(made, body.x, body.y, made.bodies.get(body)?.z ?? 0, liftOf(body, 0, 0,
     moment.pose)));
   const [a, b] = [hubs[0], hubs[hubs.length - 1]];
-  const lengthwise = Math.abs(bodies[0].y - bodies[bodies.length - 1].y) < 1e-6;
-  into.push(line(lengthwise ? [[a[0], a[1]], [a[0], a[1] - out], [b[0], b[1] - out], [b[0], b[1]]]
-    : [[a[0] + out, a[1] + 4], [a[0] + 2 * out, a[1] + 4], [b[0] + 2 * out, b[1] + 4], [b[0] + out, b[1] + 4]], "link"));
+  if (!isAcross(bodies)) {
+    into.push(line([a, [a[0], a[1] - out], [b[0], b[1] - out], b], "link"));
+    return;
+  }
+  const beside = (/** @type {Point} */ [x, y], /** @type {number} */ times) =>
+    /** @type {Point} */ ([x + times * out, y + 4]);
+  into.push(line([beside(a, 1), beside(a, 2), beside(b, 2), beside(b, 1)], "link"));
 }
 
 /** A point of a car's outline. @param {Layout} made @param {Body} main @param {number} y @param {number[]} of
  * @param {Moment} moment @returns {Point} */
 function onCar(made, main, y, [ahead, above], moment) {
   const unit = unitOf(made);
-  const rear = Math.min(...made.scene.tyres.map((tyre) => tyre.x));
-  const x = rear + (ahead * unit) / made.metre;
+  const x = made.scene.rear + (ahead * unit) / made.metre;
   return point(made, x, y, made.radius + above * unit, liftOf(main, x - main.x, y - main.y, moment.pose));
 }
 
@@ -342,8 +350,7 @@ function car(made, main, y, moment, into, side = "") {
   const place = (/** @type {Point} */ of) => onCar(made, main, y, of, moment);
   into.push(polygon(CAR.map(place), `body ${side}`));
   if (side !== "far") for (const pane of WINDOWS) into.push(polygon(pane.map(place), `glass ${side}`));
-  if (side !== "far") mass(place([(main.x - Math.min(...made.scene.tyres.map(({ x }) => x))) * made.metre / unitOf(made),
-    26]), into);
+  if (side !== "far") mass(place([((main.x - made.scene.rear) * made.metre) / unitOf(made), 26]), into);
 }
 
 /** The sign of a centre of mass. @param {Point} at @param {Shape[]} into @param {number} [r] */
@@ -498,8 +505,8 @@ function nameBody(made, own, moment, into) {
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
   const weight = of.mass === null ? "" : massText(of.mass);
-  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 44 < to - from && thick >= 15 && of.kind !== "occupant";
-  if (fits && !made.scene.oblique) {
+  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 44 < to - from && thick >= 15;
+  if (fits && of.kind !== "occupant" && !made.scene.oblique) {
     into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
     return;
   }
@@ -519,12 +526,13 @@ function nameBody(made, own, moment, into) {
 function nameWheel(made, { x, y, port, body: of, network }, moment, into) {
   const [px, py] = point(made, x, y, made.radius, heightOf(port, moment.pose));
   const beside = px + made.radius + 12;
-  if (of.mass !== null) into.push(text(beside, py - 4, `${inWords(of.name)} ${massText(of.mass)}`, "quiet"));
+  if (of.mass !== null) into.push(text(beside, py - 4, `${inWords(of.name)} ${massText(of.mass)}`, "beside"));
   if (network.kind === "element") into.push(text(beside, py + 11, `tyre ${quantity(network.value, network.unit)}`,
-    "quiet"));
+    "beside"));
 }
 
 /** @param {number} x @param {number} y @param {string} words @param {string} [kind]
  * @param {"start" | "middle" | "end"} [anchor] @returns {Shape} */
-const text = (x, y, words, kind = "text", anchor = "start") => ({ kind: "text", x, y, text: words, class: kind, anchor });
+const text = (x, y, words, kind = "text", anchor = "start") =>
+  ({ kind: "text", x, y, text: words, class: kind, anchor });
 

@@ -1,7 +1,8 @@
 // What a mechanism looks like at rest: which of its coordinates are one rigid body, where bodies, wheels and struts are
 // along and across it [m], and what stands on what. Nothing is known of pixels here.
 
-/** A place that moves: how much of each coordinate, or of each road, it has. @typedef {{[name: string]: number}} Port */
+/** A place that moves: how much of each coordinate, or of each road, it has.
+ * @typedef {{[name: string]: number}} Port */
 /** @typedef {{port: Port, x?: number}} End */
 /** @typedef {{name: string, upper: End, lower: End, network: any}} MechanismStrut */
 /** @typedef {{name: string, port: Port, road: string, network: any}} MechanismTyre */
@@ -24,7 +25,7 @@
  * Tyre */
 /** @typedef {{name: string, x: number, y: number, distance: number, side: string}} Track */
 /** @typedef {{model: string, bodies: Body[], struts: Strut[], links: Link[], tyres: Tyre[], tracks: Track[],
- * oblique: boolean, silhouette: boolean, column: boolean, main: Body | null}} Scene */
+ * oblique: boolean, silhouette: boolean, column: boolean, main: Body | null, rear: number, wheelbase: number}} Scene */
 
 const APART = 1.2; // [m] between bodies of which nothing says where they are
 const TRACK = 1.5; // [m] between both sides, where nothing says how far they are apart
@@ -62,6 +63,8 @@ export function scene(mechanism, model = "") {
     model, bodies, struts, links, tyres, tracks,
     oblique: spread(across) > SAME,
     silhouette: CARS.includes(model),
+    rear: Math.min(...tyres.map(({ x }) => x)),
+    wheelbase: spread(tyres.map(({ x }) => x)),
     column: spread(along) < SAME && spread(across) < SAME,
     main: bodies.reduce((/** @type {Body | null} */ most, body) =>
       (body.kind === "body" && (most?.mass ?? 0) < (body.mass ?? 0) ? body : most), null),
@@ -81,7 +84,8 @@ function bodiesOf({ coordinates, struts, tyres, roads }) {
   const ports = [...struts.flatMap(({ upper, lower }) => [upper.port, lower.port]), ...tyres.map(({ port }) => port)];
   const angles = coordinates.filter(({ angle }) => angle);
   const heaves = coordinates.filter(({ angle }) => !angle);
-  const driven = roads.filter(({ name }) => struts.some(({ upper, lower }) => name in upper.port || name in lower.port));
+  const driven = roads.filter(({ name }) =>
+    struts.some(({ upper, lower }) => name in upper.port || name in lower.port));
   /** @type {Map<string, string>} */
   const owners = new Map();
   for (const { name } of angles) {
@@ -247,7 +251,8 @@ export function pointOf({ body, over, port, ahead, aside }) {
   if (over.length === 0) return null;
   const shares = over.map(({ heave }) => (heave === null ? 0 : port[heave] ?? 0));
   const sum = shares.reduce((a, b) => a + b, 0) || 1;
-  const mean = (/** @type {"x" | "y"} */ axis) => over.reduce((total, body, i) => total + body[axis] * shares[i], 0) / sum;
+  const mean = (/** @type {"x" | "y"} */ axis) =>
+    over.reduce((total, body, i) => total + body[axis] * shares[i], 0) / sum;
   return { x: mean("x"), y: mean("y") };
 }
 

@@ -108,7 +108,8 @@ function inAColumn(parts, x, y, long, work, into) {
   const reaches = parts.map((part) => reachOf(part, work.reach));
   const reach = reaches.reduce((sum, each) => sum + each, 0);
   parts.forEach((part, i) => {
-    const share = reach > 0 && left > 0 ? 0.7 * (reaches[i] / reach) + 0.3 * (part.height / whole) : part.height / whole;
+    const size = part.height / whole;
+    const share = reach > 0 && left > 0 ? 0.7 * (reaches[i] / reach) + 0.3 * size : size;
     const own = work.scale * part.height + left * share;
     draw(part, x, y, own, work, into);
     y += own + work.lift * travelOf(part, work.travel);
@@ -156,8 +157,8 @@ function symbol(plan, x, y, long, work, into) {
   const at = { x, y, s, end: y + long + grown, upper: y + long / 2, lower: y + long / 2 + grown, long, grown,
     reach: Math.min(lift * (work.reach[plan.key] ?? 0), long / 2 - 4 * s) };
   (SYMBOLS[/** @type {keyof typeof SYMBOLS} */ (plan.element)] ?? other)(at, plan, work, into);
-  if (work.labels && plan.right > HALF) into.push({ kind: "text", x: x + (HALF + 2) * s, y: y + long / 2 + grown / 2 + 4, text: plan.name,
-    class: "name" });
+  if (!work.labels || plan.right === HALF) return;
+  into.push({ kind: "text", x: x + (HALF + 2) * s, y: y + (long + grown) / 2 + 4, text: plan.name, class: "name" });
 }
 
 /** `upper` and `lower`: the middle of the symbol, as far as it moves with the upper and with the lower end.

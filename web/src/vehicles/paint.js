@@ -42,7 +42,7 @@ export function stylesOf(element, own = "var(--s3)") {
     "body near": { fill: c.body, stroke: c.ink, width: 1.4, alpha: 0.72 },
     glass: { fill: c.glass, stroke: c.ink2, width: 0.9 },
     "glass near": { fill: c.glass, stroke: c.ink2, width: 0.9, alpha: 0.7 },
-    edge: { stroke: c.ink2, width: 1, alpha: 0.6 }, cut: { fill: c.surface, alpha: 0.9 },
+    edge: { stroke: c.ink2, width: 1, alpha: 0.6 }, cut: { fill: c.surface, alpha: 0.88, round: true },
     seat: { stroke: c.ink, width: 4 }, centre: { fill: c.surface, stroke: c.ink, width: 1.3 }, quarter: { fill: c.ink },
     tyre: { fill: c.tyre, stroke: c.ink2, width: 1 }, rim: { fill: c.body }, spoke: { stroke: c.ink2, width: 2.6 },
     hub: { fill: c.ink }, halo: { stroke: c.surface, width: 8 }, "halo thin": { stroke: c.surface, width: 4 },
@@ -51,7 +51,8 @@ export function stylesOf(element, own = "var(--s3)") {
     joint: { fill: c.surface, stroke: c.ink, width: 1.4 }, pivot: { fill: c.ink2 },
     chair: { fill: c.ink2 }, limb: { stroke: c.ink, width: 6 }, "limb thin": { stroke: c.ink, width: 3 },
     trunk: { stroke: c.ink, width: 9 }, "trunk thin": { stroke: c.ink, width: 4.5 }, head: { fill: c.ink },
-    other: { stroke: c.s1, width: 1.5, dash: DASH }, "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
+    other: { stroke: c.s1, width: 1.5, dash: DASH },
+    "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
     "other trail": { stroke: c.s1, width: 1.5, dash: DASH }, bar: { stroke: c.ink, width: 1.2 },
     own: { stroke: c[own.replace(/^var\(--|\)$/g, "")] ?? c.s3, width: 2.2 },
   };

@@ -225,7 +225,7 @@ function wheel(made, tyre, moment, into) {
   into.push(circle(px, hub, 0.15 * R, "hub"));
   if (rigid) primary(made, tyre, moment, px, hub, into);
   else if (own.kind === "wheel" && made.struts.some(({ strut: { lower }, lever }) => lower.body === own && !lever)) {
-    carrier(px, hub, hub - R - 4, R, into);
+    carrier(px, hub, hub - (made.scene.silhouette && made.scene.oblique ? 0.6 * R : R + 4), R, into);
   }
 }
 
@@ -249,15 +249,23 @@ function primary(made, tyre, moment, px, hub, into) {
     states: moment.states[tyre.name] ?? {} }, into);
 }
 
+/** Where a strut is, and its ends. @param {Layout} made @param {PlacedStrut} one @param {Pose} pose */
+export function endsOf(made, one, pose) {
+  const { x, y, shift, top, bottom } = one;
+  return {
+    x: made.project(x, y, 0)[0] + shift,
+    top: point(made, x, y, top, topHeight(one, pose))[1],
+    bottom: point(made, x, y, bottom, bottomHeight(one, pose))[1],
+  };
+}
+
 /** A strut between its two ends, wherever these are. @param {Layout} made @param {PlacedStrut} one
  * @param {Moment} moment @param {Shape[]} into */
 function strut(made, one, moment, into) {
-  const { x, y, shift, bottom, top, scale, wide, plan } = one;
+  const { x, y, bottom, top, scale, wide, plan } = one;
   const { upper, lower, name: mount } = one.strut;
   const [px] = made.project(x, y, 0);
-  const at = px + shift;
-  const [, yTop] = point(made, x, y, top, topHeight(one, moment.pose));
-  const [, yBottom] = point(made, x, y, bottom, bottomHeight(one, moment.pose));
+  const { x: at, top: yTop, bottom: yBottom } = endsOf(made, one, moment.pose);
   if (one.lever) lever(made, one, moment, px, into);
   over(made, lower, at, yBottom, moment, bottom, into);
   over(made, upper, at, yTop, moment, top, into);
@@ -269,6 +277,16 @@ function strut(made, one, moment, into) {
   const travels = moment.travels[mount] ?? {};
   draw(plan, at, yTop, yBottom - yTop - made.lift * travelOf(plan, travels), { lift: made.lift, scale, wide,
     labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {} }, into);
+  if (made.scene.column) tell(moment.states[mount] ?? {}, at + plan.right * wide + 8, yBottom - 18, into);
+}
+
+/** Says which friction sticks and which gaps are open. @param {{[element: string]: string}} states @param {number} x
+ * @param {number} y @param {Shape[]} into */
+function tell(states, x, y, into) {
+  const names = (/** @type {string} */ state) => Object.keys(states).filter((key) => states[key] === state);
+  const [stick, open] = [names("stick"), names("open")];
+  if (stick.length > 0) into.push(text(x, y, `${stick.join(", ")} ${stick.length > 1 ? "stick" : "sticks"}`, "told"));
+  if (open.length > 0) into.push(text(x, y - 14, `${open.join(", ")} open`, "told"));
 }
 
 /** [px] of a hundredth of the wheelbase. @param {Layout} made */
@@ -489,7 +507,7 @@ function name(made, moment, into) {
   for (const { x, y, rigid, body: of } of scene.tyres) {
     const [px, floor] = made.project(x, y, 0);
     if (rigid || of.kind !== "wheel" || (scene.oblique && y > 0)) continue;
-    into.push(text(px, scene.oblique ? floor + 18 : made.height - 26, inWords(of.name), "quiet", "middle"));
+    into.push(text(px, scene.oblique ? floor + 18 : made.height - 10, inWords(of.name), "quiet", "middle"));
   }
 }
 
@@ -505,7 +523,7 @@ function nameBody(made, own, moment, into) {
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
   const weight = of.mass === null ? "" : massText(of.mass);
-  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 44 < to - from && thick >= 15;
+  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 56 < to - from && thick >= 15;
   if (fits && of.kind !== "occupant" && !made.scene.oblique) {
     into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
     return;

@@ -89,8 +89,9 @@ class _Motion:
         # a friction that sticks has exactly no velocity
         order = sorted(range(len(nodes)), key=lambda i: not graph.branches[i].element.switches_by(GuardRole.FORCE))
         chosen = [order[i] for i in independent_rows(clean(nodes @ loose)[order])]
-        rates = [run.evaluate(Output("", "", "", velocity=nodes[i], road_velocity=roads[i])) for i in chosen]
-        moved = scipy.integrate.cumulative_trapezoid(rates, run.time, axis=1, initial=0.0)
+        rates = np.array([run.evaluate(Output("", "", "", velocity=nodes[i], road_velocity=roads[i])) for i in chosen])
+        steps = 0.5 * (rates[:, 1:] + rates[:, :-1]) * np.diff(run.time)
+        moved = np.hstack([np.zeros((len(chosen), 1)), np.cumsum(steps, axis=1)])
         motion = replace(motion, chosen=tuple(chosen), moved=moved)
         start = np.array([motion.elongation(*row)[0] for row in zip(nodes, roads, strict=True)])
         free = nodes @ loose
@@ -111,6 +112,6 @@ class _Motion:
         if not self.chosen:
             return self.run.evaluate(Output("", "m", "", displacement=nodes, road=roads))
         told, told_roads = (rows[list(self.chosen)] for rows in self.rows)
-        shares = clean(np.linalg.solve((told @ self.loose).T, self.loose.T @ nodes))
+        shares = clean(np.asarray(np.linalg.solve((told @ self.loose).T, self.loose.T @ nodes)))
         rest, rest_roads = clean(nodes - shares @ told), roads - shares @ told_roads
         return self.run.evaluate(Output("", "m", "", displacement=rest, road=rest_roads)) + shares @ self.moved

@@ -132,10 +132,10 @@ export function takeNetwork(store, found, row) {
   const state = store.get();
   const { elements: known = {}, layouts = {} } = state.history.present.study;
   const { layout, index, free_networks: free } = found;
-  if (!(layout in layouts) || free.some((/** @type {string} */ name) => !(name in known)))
+  if (!Object.hasOwn(layouts, layout) || free.some((/** @type {string} */ name) => !Object.hasOwn(known, name)))
     return `The study that is open has no layout ${layout} with ${free.join(", ")}; nothing was changed.`;
   const used = Object.keys(row.elements).filter((name) =>
-    name in known && (layoutsWith(state, name) ?? []).some((each) => each !== layout));
+    Object.hasOwn(known, name) && (layoutsWith(state, name) ?? []).some((each) => each !== layout));
   if (used.length > 0)
     return `Another layout has elements of the same names (${used.join(", ")}): rename them; nothing was changed.`;
   const { entry, elements, values } = row;
@@ -153,7 +153,7 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const known = document.study.elements ?? {};
   const taken = [...Object.keys(known), ...Object.keys(elements)];
   const others = Object.keys(elements).filter((name) =>
-    name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
+    Object.hasOwn(known, name) && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
   /** @type {{[name: string]: string}} */
   const names = {};
   for (const name of others) names[name] = freshName(name, [...taken, ...Object.values(names)]);

@@ -12,7 +12,7 @@ from typing import Any
 
 from inerter.app.answers import optimum
 from inerter.app.comparing import compare_designs
-from inerter.app.documents import study_from
+from inerter.app.documents import study_for, study_from
 from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
 from inerter.figures.study import draw_study
@@ -28,7 +28,7 @@ Body = Mapping[str, Any]
 
 
 def optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    return optimum(study_from(body["study"]), body, tell)
+    return optimum(*study_for(body), tell)
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
@@ -88,4 +88,4 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:
-    return compare_designs(study_from(body["study"]), body, tell)
+    return compare_designs(*study_for(body), tell)

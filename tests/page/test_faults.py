@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browser import EXAMPLES, Served, Visitor, wait_until
 from study_text import PAPER_CAR, study_text
+
+import inerter as it
+from inerter.files.rig.loading import load_rig
 
 
 def _open(visitor: Visitor, folder: Path, name: str, text: str) -> None:
@@ -170,3 +174,89 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     assert page.locator(".plot canvas").count() > 0
     told = page.locator(".answers .problems").inner_text()
     assert told.count("layouts.S3e") == 1
+
+
+def test_a_file_that_another_program_changes_is_told_and_read_again(
+    serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    text = study_text('indices = ["J1"]', title='title = "Mine"')
+    file.write_text(text)
+    visitor = visitors(serve(file)).visit()
+    page = visitor.page
+    before = visitor.values()
+    assert page.locator(".notice").count() == 0
+    file.write_text(text.replace('"20 kN/m"', '"30 kN/m"'))
+    notice = page.locator(".notice:has-text('mine.toml has changed')")
+    notice.wait_for()
+    assert visitor.values() == before  # nothing changes by itself
+    page.reload()
+    page.wait_for_selector("[data-connection=ready]", state="attached")
+    notice.wait_for()  # a page that keeps its work says so too
+    assert page.locator("[id='entry elements.k']").get_attribute("title") == "20 kN/m"
+    notice.get_by_role("button", name="Reload").click()
+    page.wait_for_selector("[id='entry elements.k'][title='30 kN/m']")
+    assert visitor.values() != before
+    assert notice.count() == 0
+    visitors(visitor.served).visit().page.wait_for_selector("[id='entry elements.k'][title='30 kN/m']")
+    file.write_text("[vehicle\n")
+    page.wait_for_selector(".notice:has-text('cannot be read')")
+    file.unlink()
+    page.wait_for_selector(".notice:has-text('removed or renamed')")
+
+
+def test_work_that_is_done_says_nothing_of_a_step(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    page.click("#tab-work")
+    page.locator("form.begin:has-text('Run the whole study')").get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] table", timeout=120_000)
+    assert "figures and report" not in page.inner_text(".job[data-state=done]")
+    assert page.locator(".job[data-state=done] > p.quiet").count() == 0
+    page.locator(".job").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".job", state="detached")
+
+
+def _fits(visitor: Visitor, count: int) -> Any:
+    """The newest fit, once so many are done."""
+    visitor.page.wait_for_function(
+        "count => document.querySelectorAll('.fit[data-state=done] table').length === count", arg=count, timeout=240_000
+    )
+    return visitor.page.locator(".fit").first
+
+
+@pytest.mark.campaign
+def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_path: Path) -> None:
+    """First the reason and the likeliest cause, with a button each for what to do; then the device that it led to."""
+    page = visitor.page
+    visitor.settled()
+    record = tmp_path / "screw.csv"
+    it.write_record(replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=1.0).run(), record)
+    visitor.open(record)
+    page.wait_for_selector(".records li")
+    page.select_option("select[name=model]", "friction")
+    page.get_by_role("button", name="Identify").click()
+    fit = _fits(visitor, 1)
+    told = fit.inner_text()
+    assert "null" not in told and "undefined" not in told
+    assert told.index("times the sensor noise") < told.index("Possible causes") < told.index("95 % interval")
+    assert "the device is compliant" in told
+    assert fit.locator("td:text-is('withheld')").count() == 3
+    assert fit.get_by_role("button", name="Take the device").count() == 0
+    assert fit.locator("form:has-text('Fixture mass') input").count() == 1
+    fit.get_by_role("button", name="Fit the model elastic-friction").click()
+    fit = _fits(visitor, 2)
+    assert "elastic-friction" in fit.locator("b").first.inner_text()
+    fit.locator("form:has-text('Fixture mass') input").fill("heavy")
+    fit.locator("form:has-text('Fixture mass')").get_by_role("button").click()
+    page.wait_for_selector(".fit[data-state=failed] .problem")
+    assert "heavy" in page.inner_text(".fit[data-state=failed] .problem")
+    page.locator(".fit[data-state=failed]").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit[data-state=failed]", state="detached")
+    fit = _fits(visitor, 2)
+    fit.get_by_role("button", name="Take the device").click()
+    page.wait_for_selector(".notice:has-text('The device is in the new layout')")
+    assert "shaft" in visitor.text
+    for _ in range(2):
+        page.locator(".fit").first.get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit", state="detached")

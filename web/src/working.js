@@ -176,8 +176,14 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
  * @param {Store} store @param {Api} api @param {any} fit
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
 export async function takeFitted(store, api, fit, device) {
-  if (isOk(fit.status) && device !== null) return takeDevice(store, api, device);
+  if (isOk(fit.status) && device !== null) return `${unidentified(fit)}${await takeDevice(store, api, device)}`;
   return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
+}
+
+/** What is told before a device that has values which no record supports. @param {any} fit */
+function unidentified({ parameters }) {
+  const names = Object.keys(parameters ?? {}).filter((name) => parameters[name].identified === false);
+  return names.length === 0 ? "" : `Not identifiable: ${names.join(", ")}; the records do not support the values taken. `;
 }
 
 /** What is told in the place of a device: the values of a fit that is not to be relied on are not given.

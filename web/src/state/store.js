@@ -12,8 +12,9 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @import { Answers } from "./answers.js" */
 /** @import { Typed } from "../entering.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
-/** What the page has to say: `about` tells which message a newer one replaces.
- * @typedef {{about: string, text: string}} Message */
+/** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does.
+ * @typedef {{label: string, act: () => void}} Offer */
+/** @typedef {{about: string, text: string, offer?: Offer}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
  * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
  * seconds since 1970, by the clock of the server; `found`: a result so far */
@@ -49,7 +50,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "viewed", view: Partial<View>}
  *  | {type: "told", about: any}
  *  | {type: "connected", connection: Connection}
- *  | {type: "said", text: string, about?: string}
+ *  | {type: "said", text: string, about?: string, offer?: Offer}
  *  | {type: "closed", about: string}
  *  | {type: "typed", typed: Typed}
  *  | {type: "read", typed: Typed, sentence?: string}} Action */
@@ -57,7 +58,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** `change` changes the document, `look` what of it is shown; `say` gives a message.
  * @typedef {{get: () => State, dispatch: (action: Action) => void, subscribe: (told: () => void) => () => void,
  * change: (change: Change, gesture?: string | null) => void, look: (view: Partial<View>) => void,
- * say: (text: string, about?: string) => void}} Store */
+ * say: (text: string, about?: string, offer?: Offer) => void}} Store */
 
 /** @returns {State} */
 export const initial = () => ({
@@ -107,8 +108,8 @@ const STEPS = {
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text }) =>
-    ({ ...state, messages: [...others(state, about), { about, text }].slice(-MOST) }),
+  said: (state, { text, about = text, offer }) =>
+    ({ ...state, messages: [...others(state, about), { about, text, ...(offer ? { offer } : {}) }].slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
   typed: (state, { typed }) => ({ ...state, typed, answers: without(state.answers, "typed") }),
   read: (state, { typed, sentence }) => {
@@ -149,7 +150,7 @@ export function createStore(state = initial()) {
       if (isChange(change)) dispatch({ type: "changed", change, gesture });
     },
     look: (view) => dispatch({ type: "viewed", view }),
-    say: (text, about) => dispatch({ type: "said", text, about }),
+    say: (text, about, offer) => dispatch({ type: "said", text, about, offer }),
     subscribe: (told) => {
       listeners.add(told);
       return () => void listeners.delete(told);

@@ -139,8 +139,11 @@ function Bar({ store, api, enter }) {
     ${connection === "refused" &&
     html`<form class="row" onSubmit=${formHandler((form) => enter(String(form.get("token"))))}>
       <label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
-    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>
-      ${text} <button type="button" class="link" aria-label="Close the message"
+    ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}>
+      ${text} ${offer && html`<button type="button" onClick=${() => {
+        store.dispatch({ type: "closed", about: key });
+        offer.act();
+      }}>${offer.label}</button> `}<button type="button" class="link" aria-label="Close the message"
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
   </div><${AtWork} api=${api} />`;
 }

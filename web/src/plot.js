@@ -45,8 +45,18 @@ export function Plot({ x, curves, bands = [], title, theme, ...axes }) {
   return html`<div class="plot" ref=${place} role="img" aria-label=${title}></div>`;
 }
 
+const LARGEST = 1e18; // that uPlot has marks for, and the inverse of the smallest
+
+/** Whether a number has a place on an axis. @param {number | null} number */
+const isDrawable = (number) => number === null || number === 0
+  || (Math.abs(number) <= LARGEST && Math.abs(number) >= 1 / LARGEST);
+
 /** @param {number[]} x @param {Curve[]} curves @returns {any} */
-const dataOf = (x, curves) => [x, ...curves.map(({ values }) => values)];
+function dataOf(x, curves) {
+  const places = x.flatMap((at, i) => (isDrawable(at) ? [i] : []));
+  return [places.map((i) => x[i]), ...curves.map(({ values }) =>
+    places.map((i) => (isDrawable(values[i] ?? null) ? values[i] : null)))];
+}
 
 /** What stands at the marks of an axis. @param {uPlot} _ @param {(number | null)[]} marks */
 const marked = (_, marks) => marks.map((mark) => (mark === null ? "" : shown(mark).replace(/^1·/, "")));

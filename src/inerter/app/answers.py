@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from inerter.app.designs import baseline_of, designs_of, one_design
-from inerter.app.documents import study_from
+from inerter.app.documents import study_for
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
@@ -67,7 +67,9 @@ def answer_panel(key: str, body: Body) -> Answer:
     """
     with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
-        return answer(study_from(body["study"]), body)
+        study, asked = study_for(body)
+        left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
+        return {**answer(study, asked), **left_out}
 
 
 def response(study: Study, body: Body) -> Answer:

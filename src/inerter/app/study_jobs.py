@@ -14,7 +14,7 @@ from inerter.app.answers import optimum
 from inerter.app.comparing import compare_designs
 from inerter.app.deciding import margins_of
 from inerter.app.designs import designs_of
-from inerter.app.documents import study_from
+from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
@@ -30,7 +30,7 @@ Body = Mapping[str, Any]
 
 
 def optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    return optimum(study_from(body["study"]), body, tell)
+    return optimum(*study_for(body), tell)
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
@@ -107,4 +107,4 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:
-    return compare_designs(study_from(body["study"]), body, tell)
+    return compare_designs(*study_for(body), tell)

@@ -3,7 +3,7 @@
 import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
-import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
+import { isRange, nextLayout, own, strutsOf, textOf } from "../state/document.js";
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
@@ -25,7 +25,7 @@ export function NetworkPanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const mounts = mountsOf(state.about, document);
-  const parted = strutsOf(document.study.layouts?.[document.layout]);
+  const parted = strutsOf(own(document.study.layouts, document.layout));
   return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title">
     <h2 id="network-title">Strut</h2>
     <${Layouts} store=${store} />
@@ -64,6 +64,8 @@ function Layouts({ store }) {
         html`<form onSubmit=${formHandler((form) => {
           const name = String(form.get("name")).trim();
           if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
+          else if (name && name !== document.layout)
+            store.say(`Got ${name}, the name of another layout; expected an unused name.`, "layout name");
           setRenaming(false);
         })}>
           <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}
@@ -353,8 +355,8 @@ const symbolPath = (kind) => pathOf(kind.drawing, -1);
 /** The value of an element as it is written. @param {State} state @param {string} name */
 function valueOf(state, name) {
   const { study, values, layout } = state.history.present;
-  const entry = study.elements?.[name];
-  return isRange(entry) ? (values[layout]?.[name] ?? "free") : typeof entry === "string" ? entry : "";
+  const entry = own(study.elements, name);
+  return isRange(entry) ? (own(own(values, layout), name) ?? "free") : typeof entry === "string" ? entry : "";
 }
 
 /** @param {Path} a @param {Path} b */

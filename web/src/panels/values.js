@@ -1,12 +1,13 @@
 // Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed
 // or free.
 
+import { enter, isBeingRead, wronglyTyped } from "../entering.js";
 import { layoutsWith, numbersOf } from "../library.js";
 import { quickMethod } from "../methods.js";
 import { Chip, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, unitKey } from "../questions.js";
-import { entryAt, isRange } from "../state/document.js";
+import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -84,7 +85,7 @@ function amountOf(state, row) {
   const entry = entryAt(study, path);
   const label = labelOf(row);
   if (isRange(entry)) {
-    const text = values[layout]?.[name] ?? middle(state, entry, unit);
+    const text = own(own(values, layout), name) ?? middle(state, entry, unit);
     const set = (/** @type {string} */ value) =>
       /** @type {Change} */ ({ type: "valued", layout, values: { [name]: value } });
     return { row, label, text, range: entry, free: true, set };
@@ -93,7 +94,7 @@ function amountOf(state, row) {
   const bare = typeof entry === "number" || unit === PURE || unit === "";
   const set = (/** @type {string} */ value) =>
     /** @type {Change} */ ({ type: "placed", place: path, value: bare ? written(value) : value });
-  return { row, label, text, range: ranges[idOf(row)] ?? decade(text), free: false, set };
+  return { row, label, text, range: own(ranges, idOf(row)) ?? decade(text), free: false, set };
 }
 
 /** What a number is called below the title of its section, or of its table. An element has its own name, and its
@@ -154,22 +155,24 @@ function AmountRow({ store, amount }) {
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
-  const problems = problemsOf(state).filter((problem) => isAt(problem, row.path));
+  const wrong = wronglyTyped(state, id);
+  const problems = wrong ? [{ sentence: wrong }] : problemsOf(state).filter((problem) => isAt(problem, row.path));
   const gesture = `slide ${id}`;
   const slide = textHandler((position) => {
     if (!usable) return;
-    if (!free && !(id in state.history.present.ranges)) {
+    if (!free && !Object.hasOwn(state.history.present.ranges, id)) {
       store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
     }
     store.change(set(inUnitOf(state, text, unit, valueAt(Number(position), lower, upper))), gesture);
   });
-  return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence || row.words}>
+  return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence || row.words}
+    aria-busy=${isBeingRead(state, id)}>
     <label for=${`slider ${id}`}>${label}</label>
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS}
       value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
       onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      done=${(/** @type {string} */ value) => store.change(set(value))} />
+      done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text }, value, set(value))} />
     <${Bounds} store=${store} amount=${amount} />
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
   </div>`;
@@ -182,9 +185,13 @@ function Bounds({ store, amount }) {
   const judging = quickMethod(store.get())?.name;
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
-  /** @param {{from: string, to: string}} next */
-  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next })
-    : store.change({ type: "ranged", place: place.join("."), ...next }));
+  const id = place.join(".");
+  /** @param {string} value @param {"from" | "to"} end */
+  const setEnd = (value, end) => {
+    const next = { ...range, [end]: value };
+    enter(store, { id, unit: row.unit, before: range[end] }, value, free ? { type: "placed", place, value: next }
+      : { type: "ranged", place: id, ...next });
+  };
   return html`<details class="bounds">
     <summary aria-label=${`${label}: ${free ? "free" : "fixed"}, bounds`}>${free ? "free" : "fixed"}</summary>
     <div class="menu-body">
@@ -195,9 +202,9 @@ function Bounds({ store, amount }) {
           !free && store.change({ type: "freed", place, name, ...range, method: judging })}>free<//>
       </div>`}
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
-        done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
+        done=${(/** @type {string} */ from) => setEnd(from, "from")} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to}
-        done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
+        done=${(/** @type {string} */ to) => setEnd(to, "to")} /></label>
       ${removable && html`<button type="button"
         onClick=${() => store.change({ type: "elementRemoved", name: element })}>Delete ${element}</button>`}
     </div>

@@ -19,7 +19,7 @@ import { Field } from "./parts/field.js";
 import { Chip, Select, formHandler } from "./parts/controls.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
-import { decisionOf } from "./questions.js";
+import { answerOf } from "./questions.js";
 import { open } from "./remembering.js";
 
 /** @import { Store } from "./state/store.js" */
@@ -130,14 +130,15 @@ function Standing({ store, api }) {
   const state = store.get();
   const since = useWork(api);
   const { connection, messages } = state;
-  const { is } = decisionOf(state);
+  const { is } = answerOf(state, "decision");
   const count = messages.length + problemsOf(state).length;
   const lost = connection === "lost" || connection === "refused";
-  const told = lost ? "no server" : connection === "ready" ? STANDING[is] : connection;
+  const blank = Object.keys(state.history.present.study).length === 0;
+  const told = lost ? "no server" : blank && connection === "ready" ? "ready" : connection === "ready" ? STANDING[is] : connection;
   return html`<span role="status">${since !== null
       && html`<span class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></span> · `}
     ${count > 0 && html`<b>${count === 1 ? "1 message" : `${count} messages`}</b> <kbd>F8</kbd> · `}
-    <span class="dot" data-is=${lost ? "none" : is}></span>${told}</span>`;
+    <span class="dot" data-is=${lost ? "none" : blank ? "current" : is}></span>${told}</span>`;
 }
 
 /** @type {{[is: string]: string}} */

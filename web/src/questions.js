@@ -3,7 +3,7 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, strutsOf, entryAt, without } from "./state/document.js";
+import { isRange, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -65,8 +65,7 @@ const ROWS = [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
     { panel: "check", path: "study/check", body: { study } },
   ],
-  (state, document) => [hasDecision(state) ? ofDesigns("decision", decided(state, document))
-    : { ...ofDesigns("indices", without(decided(state, document), "index")), panel: "decision" }],
+  (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
   ({ view: { seconds, seed } }, document) => [
     ofDesigns("history", { ...presentDesign(document), duration: seconds, seed }),
@@ -75,29 +74,6 @@ const ROWS = [
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
 ];
-
-/** Whether the server ranks designs itself; else the page does for now. @param {State} state */
-const hasDecision = ({ about }) => about === null
-  || (about.panels ?? []).some((/** @type {any} */ { key }) => key === "decision");
-
-/** The decision, also of a server that answers indices only. @param {State} state */
-export function decisionOf(state) {
-  const shown = answerOf(state, "decision");
-  return shown.value?.designs ? { ...shown, value: ranked(state, shown.value) } : shown;
-}
-
-/** @param {State} state @param {any} value */
-function ranked(state, { designs, baseline }) {
-  const index = goalOf(state);
-  const rows = designs.map((/** @type {any} */ { layout, results, unchosen, limits }) => {
-    const own = results.find((/** @type {any} */ each) => each.index === index);
-    return { ...own, layout, unchosen, limits, is_baseline: layout === baseline,
-      others: results.filter((/** @type {any} */ each) => each !== own) };
-  }).toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.value - b.value)
-    .map((/** @type {any} */ row, /** @type {number} */ i) => ({ ...row, rank: i + 1 }));
-  const { title, unit } = rows[0] ?? {};
-  return { goal: { index, title, unit }, rows, verdict: { sentence: "", severity: "answer", caveats: [] } };
-}
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });

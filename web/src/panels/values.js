@@ -221,6 +221,13 @@ function AmountRow({ store, amount, wide }) {
   </div>`;
 }
 
+/** A name; of an element what follows the first underscore is a subscript.
+ * @param {{label: string, element: boolean}} props */
+function Name({ label, element }) {
+  const [stem, ...rest] = element ? label.split("_") : [label];
+  return html`${stem}${rest.length > 0 && html`<sub>${rest.join("_")}</sub>`}`;
+}
+
 /** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */
 function Bounds({ store, amount }) {
   const { row, label, range, free } = amount;
@@ -232,7 +239,7 @@ function Bounds({ store, amount }) {
     : store.change({ type: "ranged", place: place.join("."), ...next }));
   return html`<details class="bounds">
     <summary aria-label=${`${label}: bounds`} class=${section === ELEMENTS ? "symbol-name" : ""}
-      title=${sentence || words}>${label}</summary>
+      title=${sentence || words}><${Name} label=${label} element=${section === ELEMENTS} /></summary>
     <div class="menu-body">
       <p class="quiet">${sentence || words}</p>
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}

@@ -134,7 +134,8 @@ function Standing({ store, api }) {
   const count = messages.length + problemsOf(state).length;
   const lost = connection === "lost" || connection === "refused";
   const blank = Object.keys(state.history.present.study).length === 0;
-  const told = lost ? "no server" : blank && connection === "ready" ? "ready" : connection === "ready" ? STANDING[is] : connection;
+  const ready = blank ? "ready" : STANDING[is];
+  const told = lost ? "no server" : connection === "ready" ? ready : connection;
   return html`<span role="status">${since !== null
       && html`<span class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></span> · `}
     ${count > 0 && html`<b>${count === 1 ? "1 message" : `${count} messages`}</b> <kbd>F8</kbd> · `}
@@ -260,6 +261,8 @@ function alone(store, { key, target, altKey }, showKeys) {
     menu.querySelector("summary")?.focus();
   };
   if (key === "F8") return nextMessage;
+  if (key.startsWith("Arrow") && target === document.body)
+    return () => /** @type {HTMLElement | null} */ (document.querySelector(".card"))?.focus();
   if (altKey || isTyped(target) || document.querySelector("dialog[open]")) return undefined;
   if (key === " ") return isPressed(target) ? undefined : () => store.look({ playing: !store.get().view.playing });
   if (["1", "2", "3", "4"].includes(key)) return () => goTo(store, Number(key));

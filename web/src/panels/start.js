@@ -34,12 +34,22 @@ function questionOf({ study, free }) {
 
 const ORDER = [...Object.values(OF_VEHICLE), ...ASKED.map(([, question]) => question)];
 
+/** Whether an example is that of its vehicle, and asks nothing beside. @param {Example} example */
+const isPlain = ({ name, study }) => name === study.vehicle?.model;
+
+/** The example to begin with a vehicle. @param {Example[]} examples @param {string} model */
+function beginningWith(examples, model) {
+  const all = examples.filter(({ study, free }) => study.vehicle?.model === model && !free);
+  const size = (/** @type {Example} */ { study }) => JSON.stringify(study).length;
+  return all.find(isPlain) ?? all.toSorted((a, b) => size(a) - size(b))[0];
+}
+
 /** Examples in the order of their questions, each with a heading of its own. @param {Example[]} examples
  * @returns {{example: Example, heading: string}[]} */
 function cardsOf(examples) {
   /** @param {Example} example */
   const place = (example) => (ORDER.indexOf(questionOf(example)) + 1) || ORDER.length + 1;
-  const sorted = examples.toSorted((a, b) => place(a) - place(b) || a.study.title.length - b.study.title.length);
+  const sorted = examples.toSorted((a, b) => place(a) - place(b) || Number(isPlain(b)) - Number(isPlain(a)));
   const seen = new Set();
   return sorted.map((example) => {
     const question = questionOf(example);
@@ -74,7 +84,7 @@ export function Start({ store, api }) {
       <section class="panel" aria-labelledby="vehicles-title"><div class="inside">
         <div class="head"><h2 id="vehicles-title">Begin with a vehicle</h2></div>
         ${VEHICLES.map(([model, title]) => {
-          const example = examples.find(({ study }) => study.vehicle?.model === model && !study.study?.sweep);
+          const example = beginningWith(examples, model);
           return html`<button type="button" class="list-row" key=${model} disabled=${!example}
             onClick=${() => begin(example?.study)}><span>${title}</span></button>`;
         })}

@@ -12,7 +12,7 @@ import { RigPanel } from "./panels/rig.js";
 import { Start } from "./panels/start.js";
 import { TolerancePanel } from "./panels/tolerance.js";
 import { ValuesPanel, otherProblems, problemsOf } from "./panels/values.js";
-import { MotionPanel } from "./panels/vehicle.js";
+import { MotionPanel } from "./panels/motion.js";
 import { WorkPanel } from "./panels/work.js";
 import { Clock, Moving } from "./parts/clock.js";
 import { Field } from "./parts/field.js";

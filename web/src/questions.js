@@ -9,8 +9,9 @@ import { takenApart } from "./state/scale.js";
 /** @import { State, Action } from "./state/store.js" */
 /** @import { Document, Study } from "./state/document.js" */
 /** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
- * tells.
- * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) => Action}} Row */
+ * tells; `rest`: how long the state must have been the same before it is asked [ms].
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, rest?: number,
+ * learnt?: (value: any) => Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
@@ -68,7 +69,8 @@ const ROWS = [
   (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
   ({ view: { seconds, seed } }, document) => [
-    ofDesigns("history", { ...presentDesign(document), duration: seconds, seed }),
+    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
+      rest: 300 },
     ofDesigns("mechanism", presentDesign(document)),
   ],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
@@ -163,6 +165,9 @@ const about = (document) =>
 
 /** @param {Document} document */
 const presentDesign = (document) => ({ study: document.study, design: designOf(document) });
+
+/** The baseline, where that is another design. @param {Document} document */
+const beside = (document) => (shownDesigns(document).length > 1 ? { baseline: baselineOf(document) } : {});
 
 /** @param {State} state @returns {Row[]} */
 function comparison(state) {

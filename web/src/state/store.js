@@ -62,7 +62,7 @@ export const initial = () => ({
   history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
   parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [],
   view: {
-    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false,
+    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
     compared: [], against: "", seconds: 10, seed: 0, across: false, tall: false,
   },
 });

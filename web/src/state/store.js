@@ -17,7 +17,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
  * seconds since 1970, by the clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
- * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View 
+ * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean,
+ * ghosts: string[]}} View  `ghosts`: designs whose responses are drawn too;
  * `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with;
  * `across`: the drawing over the width of the page */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
@@ -62,7 +63,7 @@ export const initial = () => ({
   parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [],
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false,
-    compared: [], against: "", seconds: 10, seed: 0, across: false,
+    compared: [], against: "", seconds: 10, seed: 0, across: false, ghosts: [],
   },
 });
 

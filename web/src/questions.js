@@ -68,6 +68,7 @@ const ROWS = [
   ],
   (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
+  (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
   ({ view: { seconds, seed } }, document) => [
     { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
       rest: 300 },
@@ -76,6 +77,19 @@ const ROWS = [
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
 ];
+
+/** What is drawn beside the design that is edited and the baseline. @param {State} state @returns {Choice[]} */
+export function ghostsOf({ view, history: { present } }) {
+  const drawn = shownDesigns(present).map(({ layout }) => `layout ${layout}`);
+  return choicesOf(present).filter(({ key }) => view.ghosts.includes(key) && !drawn.includes(key));
+}
+
+/** The panel of such a design, whose answers are kept by it. @param {string} key */
+export const ghostPanel = (key) => `response of ${key}`;
+
+/** @param {Choice} choice @returns {Row} */
+const ghostly = ({ key, study, design }) =>
+  ({ panel: ghostPanel(key), path: "panel/response", ofDesigns: true, body: { study, designs: [design] } });
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });

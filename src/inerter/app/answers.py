@@ -76,23 +76,35 @@ def response(study: Study, body: Body) -> Answer:
     designs, indices = designs_of(study, body), tuple(body.get("indices") or study.indices)
     numbered = {str(number): design for number, design in enumerate(designs)}
     each = replace(study, indices=indices, layouts={n: study.layouts[design.layout] for n, design in numbered.items()})
-    data = responses(each, {Case(n, index): design.values for n, design in numbered.items() for index in indices})
+    found = {Case(n, index): design.values for n, design in numbered.items() for index in indices}
+    data = responses(each, found, phases=True)
     curves = [
         {
             "name": design.name,
             "layout": design.layout,
             "index": index,
-            "title": gains.attrs["long_name"],
+            "title": title,
             "unit": gains.attrs["units"],
             "label": label,
             "gain": gain,
+            "phase": phase,
         }
         for index in indices
         if (gains := data.get(f"gain_{index}")) is not None
-        for design, several in zip(designs, gains.values, strict=True)
-        for label, gain in zip(data[f"output_{index}"].values.tolist(), several, strict=True)
+        for design, several, angles in zip(designs, gains.values, data[f"phase_{index}"].values, strict=True)
+        for title, label, gain, phase in zip(*_output_titles(data, index), several, angles, strict=True)
     ]
     return {"frequency": data.omega.values / (2.0 * np.pi), "curves": curves}
+
+
+def _output_titles(data: Any, index: str) -> tuple[list[str], list[str]]:
+    """Titles and labels of the outputs of an index: its response in words, of several outputs that of each."""
+    words, labels = data[f"gain_{index}"].attrs["long_name"], data[f"output_{index}"].values.tolist()
+    if len(labels) == 1:
+        return [words], labels
+    _, per, source = words.partition(" per ")
+    names = [label.replace("_", " ") for label in labels]
+    return [f"{name} per {source}" if per else f"{name}: {words}" for name in names], labels
 
 
 def mechanism(study: Study, body: Body) -> Answer:

@@ -19,10 +19,14 @@ from inerter.figures.study import draw_study
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.checking import check_study
 from inerter.files.study.parts import PartResult
+from inerter.files.study.place import Sweep
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.sweeps import number_of
+from inerter.networks.elements import Element
 from inerter.report.page import write_report
 from inerter.report.study_data import as_text
+from inerter.units import parse_quantity
 
 Body = Mapping[str, Any]
 
@@ -52,7 +56,23 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _run_study(replace(study, layouts=layouts), folder, tell)
+    result = _run_study(replace(study, layouts=layouts), folder, tell)
+    swept = [_describe_sweep(study, one) for one in study.sweeps]
+    return {**result, "swept": swept, "units": study.free_units}
+
+
+def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
+    """Swept number: its name, what it is, its own value in the study, and the unit in which it is written."""
+    element = study.elements.get(swept.label)
+    own = number_of(study, swept.place).value
+    unit = swept.written or swept.unit
+    return {
+        "name": swept.label,
+        "words": f"{element.key} {swept.label}" if isinstance(element, Element) else swept.words,
+        "unit": swept.unit,
+        "own": float(own) if isinstance(own, int | float) else None,
+        "written": {"unit": unit, "factor": parse_quantity(f"1 {unit}", swept.unit) if unit else 1.0},
+    }
 
 
 def _run_study(study: Study, folder: Path, tell: Tell) -> Any:

@@ -51,7 +51,8 @@ export function stylesOf(element, own = "var(--s3)") {
     joint: { fill: c.surface, stroke: c.ink, width: 1.4 }, pivot: { fill: c.ink2 },
     chair: { fill: c.ink2 }, limb: { stroke: c.ink, width: 6 }, "limb thin": { stroke: c.ink, width: 3 },
     trunk: { stroke: c.ink, width: 9 }, "trunk thin": { stroke: c.ink, width: 4.5 }, head: { fill: c.ink },
-    other: { stroke: c.s1, width: 1.5, dash: DASH }, "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
+    other: { stroke: c.s1, width: 1.5, dash: DASH },
+    "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
     "other trail": { stroke: c.s1, width: 1.5, dash: DASH }, bar: { stroke: c.ink, width: 1.2 },
     own: { stroke: c[own.replace(/^var\(--|\)$/g, "")] ?? c.s3, width: 2.2 },
   };

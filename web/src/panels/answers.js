@@ -8,7 +8,7 @@ import { estimated, placed, shown, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
-import { layoutColours } from "../plots/colours.js";
+import { layoutColour } from "../parts/colours.js";
 import { useShown } from "../parts/shown.js";
 import { Sketch } from "./sketch.js";
 import { problemsOf } from "./values.js";
@@ -88,7 +88,7 @@ function Row({ store, row, missing }) {
   return html`<tr class=${on ? "on" : ""} onClick=${select}>
     <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
       <${Sketch} state=${state} tree=${treeOf(state, text)} />
-      <span style=${{ color: `var(--${layoutColours(document)[layout]})` }}>${layout}
+      <span style=${{ color: layoutColour(document, layout) }}>${layout}
         ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
     <td class="number" title=${row.message} data-index=${on && row.value !== undefined ? goal : undefined}
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>

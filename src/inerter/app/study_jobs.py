@@ -21,10 +21,14 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.checking import check_study
 from inerter.files.study.parts import PartResult
+from inerter.files.study.place import Sweep
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.sweeps import number_of
+from inerter.networks.elements import Element
 from inerter.report.study_data import as_text
 from inerter.report.writing import write_figures_and_report
+from inerter.units import parse_quantity
 
 Body = Mapping[str, Any]
 
@@ -68,7 +72,23 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _as_data(_run_study(replace(study, layouts=layouts), folder, tell))
+    result = _as_data(_run_study(replace(study, layouts=layouts), folder, tell))
+    swept = [_describe_sweep(study, one) for one in study.sweeps]
+    return {**result, "swept": swept, "units": study.free_units}
+
+
+def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
+    """Swept number: its name, what it is, its own value in the study, and the unit in which it is written."""
+    element = study.elements.get(swept.label)
+    own = number_of(study, swept.place).value
+    unit = swept.written or swept.unit
+    return {
+        "name": swept.label,
+        "words": f"{element.key} {swept.label}" if isinstance(element, Element) else swept.words,
+        "unit": swept.unit,
+        "own": float(own) if isinstance(own, int | float) else None,
+        "written": {"unit": unit, "factor": parse_quantity(f"1 {unit}", swept.unit) if unit else 1.0},
+    }
 
 
 def _as_data(result: StudyResult) -> Any:

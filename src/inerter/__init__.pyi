@@ -5,6 +5,12 @@ from inerter.errors import ErrorSource as ErrorSource
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
+from inerter.exports.export import export as export
+from inerter.exports.kind import ExportKind as ExportKind
+from inerter.exports.named_system import NamedSystem as NamedSystem
+from inerter.exports.named_system import named_system as named_system
+from inerter.exports.registry import EXPORTS as EXPORTS
+from inerter.exports.request import ExportRequest as ExportRequest
 from inerter.field_metadata import Field as Field
 from inerter.field_metadata import choice_field as choice_field
 from inerter.field_metadata import mount as mount

@@ -7,7 +7,7 @@ port that is a combination of coordinates, such as a body with a lever arm, is a
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
@@ -184,16 +184,16 @@ class _Source:
 
     def _port_model(self, kind: str, levers: Mapping[str, float]) -> None:
         """A port whose end moves by the sum of coordinates times levers, and which passes its force on to them."""
-        words = " + ".join(f"{exact(lever)} {name}" for name, lever in levers.items())
+        words = _sum([_times(lever, name) for name, lever in levers.items()])
         flanges, moves, forces = [], [], []
         for name, lever in levers.items():
             part, angle = self.at[name], name in self.coordinates and self.coordinates[name].angle
             library, place, effort = (_R, "phi", "tau") if angle else (_T, "s", "f")
             flanges.append(f"    {library}.Interfaces.Flange_a {part};")
-            moves.append(f"({exact(lever)})*{part}.{place}")
-            forces.append(f"    {part}.{effort} = -({exact(lever)})*end_flange.f;")
+            moves.append(_times(lever, f"{part}.{place}"))
+            forces.append(f"    {part}.{effort} = {_times(-lever, 'end_flange.f')};")
         lines = [f'  model {kind} "{words}"', *flanges, f"    {_T}.Interfaces.Flange_b end_flange;", "  equation"]
-        lines += [f"    end_flange.s = {' + '.join(moves)};", *forces, f"  end {kind};"]
+        lines += [f"    end_flange.s = {_sum(moves)};", *forces, f"  end {kind};"]
         self.models += lines
 
     def _network(self, network: Network, upper: str, lower: str) -> str:
@@ -204,7 +204,8 @@ class _Source:
             case Series(parts):
                 nodes = [upper, *(self._node() for _ in parts[1:]), lower]
                 forces = [self._network(part, *ends) for part, *ends in zip(parts, nodes, nodes[1:], strict=False)]
-                return f"({min(forces, key=len)})"
+                force = min(forces, key=len)
+                return f"({force})" if " " in force else force
             case Bridge(a, b, c, d, e):
                 left, right = self._node(), self._node()
                 places = ((a, upper, left), (b, left, lower), (c, upper, right), (d, right, lower), (e, left, right))
@@ -224,6 +225,14 @@ class _Source:
         made = self._name("node")
         self.parts.append(f"{_T}.Components.Rod {made}(L=0);")
         return f"{made}.flange_a"
+
+
+def _times(lever: float, what: str) -> str:
+    return what if lever == 1.0 else f"-{what}" if lever == -1.0 else f"{exact(lever)}*{what}"
+
+
+def _sum(terms: Sequence[str]) -> str:
+    return " + ".join(terms).replace("+ -", "- ")
 
 
 def _motions_of(coordinate: Coordinate) -> dict[str, tuple[str, int]]:

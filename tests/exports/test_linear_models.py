@@ -40,7 +40,9 @@ def test_python_control_and_scipy_respond_as_the_vehicle(number: int) -> None:
 
 @pytest.mark.parametrize("number", sampled(range(COUNT), ALWAYS))
 def test_the_descriptor_responds_as_the_state_space(number: int) -> None:
-    assert deviation(it.named_system(design(number), form="descriptor").response(frequencies()), expected(number)) < 1e-10
+    assert (
+        deviation(it.named_system(design(number), form="descriptor").response(frequencies()), expected(number)) < 1e-10
+    )
 
 
 @pytest.mark.parametrize("tens", sampled(range(0, COUNT, 10), (0,)))
@@ -63,7 +65,9 @@ def test_octave_responds_as_the_vehicle(tens: int, tmp_path: Path) -> None:
             f"r.by_data_{n} = h; clear h; r.units_{n} = d.input_units;",
         ]
     (tmp_path / "ask.m").write_text("\n".join([*lines, "save -v7 found.mat -struct r"]).replace(" = \n", " = ...\n"))
-    done = subprocess.run([OCTAVE, "--no-gui", "-qf", "ask.m"], cwd=tmp_path, capture_output=True, text=True, timeout=280)
+    done = subprocess.run(
+        [OCTAVE, "--no-gui", "-qf", "ask.m"], cwd=tmp_path, capture_output=True, text=True, timeout=280
+    )
     if "package" in done.stderr and "control" in done.stderr and not (tmp_path / "found.mat").exists():
         pytest.skip("The package control of Octave is not installed (Debian: octave-control).")
     assert done.returncode == 0, done.stderr

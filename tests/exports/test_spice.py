@@ -79,5 +79,7 @@ def test_every_strut_of_a_vehicle_is_a_subcircuit() -> None:
 
 
 def test_parts_of_one_name_are_told_apart() -> None:
-    parts = re.findall(r"^([LRC]\w+) ", it.export(it.Spring(1e3) | it.Spring(2e3) - it.Spring(3e3), "spice"), re.MULTILINE)
+    parts = re.findall(
+        r"^([LRC]\w+) ", it.export(it.Spring(1e3) | it.Spring(2e3) - it.Spring(3e3), "spice"), re.MULTILINE
+    )
     assert len(set(parts)) == 3

@@ -46,7 +46,15 @@ def export(
         check_single(path, by=_BY, inputs=design.inputs, force=force)
         title = f"{' '.join(design.study.title.split())}, {design.case.name}"
         indices = {design.case.index: design.study.index(design.case.index)}
-        request = ExportRequest(design.vehicle(), to, outputs=only or None, linear=linear, indices=indices, title=title)
+        request = ExportRequest(
+            design.vehicle(),
+            to,
+            outputs=only or None,
+            linear=linear,
+            indices=indices,
+            conventions=design.study.conventions,
+            title=title,
+        )
         contents = export_contents(kind, request, path)
         with single(path, by=_BY, inputs=design.inputs, force=force) as draft:
             draft.write_bytes(contents)

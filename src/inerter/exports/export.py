@@ -48,7 +48,7 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
-    request = ExportRequest(of, to, inputs, outputs, linear, form, frequencies, indices, title)
+    request = ExportRequest(of, to, inputs, outputs, linear, form, frequencies, indices, title=title)
     if path is None:
         return kind.make(request, kind.suffixes[0] if kind.is_file else "")
     contents = export_contents(kind, request, path)

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.errors import ExportError
 from inerter.exports.named_system import FORMS, NamedSystem, has_massless_nodes, named_system, refuse_free
@@ -36,6 +37,7 @@ class ExportRequest:
     form: str = ""  # of the linear model; by default that of the kind
     frequencies: Sequence[float] | None = None  # [Hz]
     indices: Mapping[str, Index] | None = None  # by name, whose responses are wanted too
+    conventions: str = "exact"  # of those
     title: str = ""
 
     def system(self, form: str = "") -> NamedSystem:
@@ -94,14 +96,14 @@ class ExportRequest:
         return found, notes
 
     @property
-    def omega(self) -> np.ndarray | None:
-        """Angular frequencies [rad/s] that were asked for; raises `ExportError` unless they are positive numbers."""
+    def hertz(self) -> NDArray[np.float64] | None:
+        """Frequencies [Hz] that were asked for; raises `ExportError` unless they are positive numbers."""
         if self.frequencies is None:
             return None
         given = list(self.frequencies) if isinstance(self.frequencies, Sequence | np.ndarray) else [self.frequencies]
         if not given or not all(is_number(one) and one > 0.0 for one in given):
             raise ExportError(f"Frequencies are positive numbers of Hz, got {self.frequencies!r}.")
-        return 2.0 * np.pi * np.asarray(given, dtype=float)
+        return np.asarray(given, dtype=float)
 
     def _vehicle(self, wanted: str) -> Vehicle:
         """What is exported, as a vehicle; raises `ExportError` if it is none."""

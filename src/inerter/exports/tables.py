@@ -22,7 +22,6 @@ from inerter.norms.response import frequency_response, resonant_range
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.descriptor import close
 from inerter.systems.linear import check_names
-from inerter.vehicle.mechanism import Mechanism
 
 if TYPE_CHECKING:
     import xarray
@@ -56,26 +55,28 @@ def responses_of(request: ExportRequest) -> Responses:
     Raises `ExportError` for a pole at one of the frequencies that were asked for.
     """
     system = replace(request, form="").system()
-    omega = request.omega
-    if omega is None:
-        omega = resonant_range([system.A])
+    hertz = request.hertz
+    if hertz is None:
+        hertz = resonant_range([system.A]) / (2.0 * np.pi)
+    omega = 2.0 * np.pi * hertz
     values = system.response(omega)
     if not np.all(np.isfinite(values)):
         raise ExportError("A frequency is that of an undamped pole, where the response is infinite. Choose others.")
     found = {}
     for name, index in (request.indices or {}).items():
-        found[name] = _index_gains(request.mechanism, name, index, omega)
-    return Responses(omega / (2.0 * np.pi), system, values, found)
+        found[name] = _index_gains(request, name, index, omega)
+    return Responses(hertz, system, values, found)
 
 
-def _index_gains(mechanism: Mechanism, name: str, index: Index, omega: Matrix) -> tuple[tuple[str, ...], Matrix]:
+def _index_gains(request: ExportRequest, name: str, index: Index, omega: Matrix) -> tuple[tuple[str, ...], Matrix]:
     """Weighted gains of the outputs of an index, with the delays of its road, over all of its sources."""
+    mechanism = request.mechanism
     try:
-        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS["exact"])
+        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[request.conventions])
     except LinearSystemError as error:
         raise ExportError(f"{name}: {error}") from error
     system = problem.system(close(problem.descriptor, {}))
-    sizes = np.linalg.norm(frequency_response(system, omega), axis=2).T
+    sizes = np.linalg.norm(frequency_response(system, omega, problem.pade_order), axis=2).T
     weights = np.array([abs(output.weight) for output in problem.definition.outputs])
     return tuple(output.output for output in problem.definition.outputs), weights[:, None] * sizes
 

@@ -10,7 +10,7 @@ from inerter.exports.kind import ExportKind as ExportKind
 from inerter.exports.named_system import NamedSystem as NamedSystem
 from inerter.exports.named_system import named_system as named_system
 from inerter.exports.registry import EXPORTS as EXPORTS
-from inerter.exports.request import ExportRequest as ExportRequest
+from inerter.exports.request import ExportSpec as ExportSpec
 from inerter.field_metadata import Field as Field
 from inerter.field_metadata import choice_field as choice_field
 from inerter.field_metadata import mount as mount

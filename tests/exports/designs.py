@@ -64,7 +64,7 @@ def frequencies() -> np.ndarray:
 
 
 def deviation(found: np.ndarray, expected: np.ndarray, *, of_output: bool = False) -> float:
-    """Largest difference over the largest value of each channel over the frequencies; arrays (frequency, output, input).
+    """Largest difference over the largest value of each channel over the frequencies; of (frequency, output, input).
 
     A channel that symmetry makes zero, such as the heave of a full car under a roll moment, is measured by the largest
     value of its output, and so is every channel with `of_output`.

@@ -81,7 +81,7 @@ def test_objects_are_no_files(tmp_path: Path) -> None:
 
 
 def test_unknown_kinds_and_forms() -> None:
-    with pytest.raises(it.InerterError, match="Unknown kind of export 'matlba'.*Did you mean 'matlab'"):
+    with pytest.raises(it.InerterError, match=r"Unknown kind of export 'matlba'.*Did you mean 'matlab'"):
         it.export(CAR, "matlba")
     with pytest.raises(it.InerterError, match="Unknown form 'dss'; available: state-space, descriptor"):
         it.export(CAR, "matlab", form="dss")

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from designs import ALWAYS, COUNT, design, deviation, frequencies
-from flat_modelica import FlatModel
 from nodal import Nodal
 
 import inerter as it
+
+pytest.importorskip("pymoca", reason='pymoca reads Modelica back: pip install "inerter[test]".')
+from flat_modelica import FlatModel
 
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 

@@ -14,7 +14,7 @@ import xarray as xr
 from designs import ALWAYS, design
 
 import inerter as it
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.exports.tables import responses_of
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
@@ -66,7 +66,7 @@ def test_curves_of_an_index_are_those_of_the_figure(conventions: str, examples: 
     case = next(case for case in cases(study) if (case.layout, case.index) == (layout, "J1"))
     shown = responses(study, {case: values})["gain_J1"].isel(layout=0).transpose("output_J1", "omega")
     hertz = shown["omega"].values / (2.0 * np.pi)
-    request = ExportRequest(
+    request = ExportSpec(
         study.design(layout).with_values(values),
         "csv",
         frequencies=hertz,

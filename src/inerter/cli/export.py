@@ -9,7 +9,7 @@ from inerter.cli.interrupts import interruptible
 from inerter.errors import StudyError
 from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.files.common.folder import check_single, single
 from inerter.files.study.chosen_design import chosen_design
 
@@ -46,7 +46,7 @@ def export(
         check_single(path, by=_BY, inputs=design.inputs, force=force)
         title = f"{' '.join(design.study.title.split())}, {design.case.name}"
         indices = {design.case.index: design.study.index(design.case.index)}
-        request = ExportRequest(
+        request = ExportSpec(
             design.vehicle(),
             to,
             outputs=only or None,

@@ -7,14 +7,14 @@ import warnings
 from typing import TYPE_CHECKING
 
 from inerter.exports.kind import ExportKind
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Element, Free, Network, Tied
 
 if TYPE_CHECKING:
     from inerter.figures.networks import Schematic
 
 
-def _titled(request: ExportRequest) -> dict[str, Network]:
+def _titled(request: ExportSpec) -> dict[str, Network]:
     """Networks by their titles; mounts with the same network share one, and one alone has none."""
     together: dict[Network, list[str]] = {}
     for name, network in request.networks.items():
@@ -22,7 +22,7 @@ def _titled(request: ExportRequest) -> dict[str, Network]:
     return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}
 
 
-def _figure(request: ExportRequest, suffix: str) -> bytes:
+def _figure(request: ExportSpec, suffix: str) -> bytes:
     from inerter.figures.networks import network_figure  # noqa: PLC0415 - heavy
     from inerter.figures.style import UNDATED, style_context  # noqa: PLC0415 - heavy
 
@@ -34,7 +34,7 @@ def _figure(request: ExportRequest, suffix: str) -> bytes:
     return content.getvalue()
 
 
-def _tikz(request: ExportRequest, suffix: str) -> str:
+def _tikz(request: ExportSpec, suffix: str) -> str:
     from inerter.figures.networks import schematic  # noqa: PLC0415 - heavy
 
     lines = ["% written by inerter; needs \\usepackage{tikz}, one unit is one point"]

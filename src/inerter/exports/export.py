@@ -11,7 +11,7 @@ from inerter.atomic_io import export as atomic_export
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
-from inerter.exports.request import Exportable, ExportRequest
+from inerter.exports.request import Exportable, ExportSpec
 from inerter.indices.definition import Index
 
 
@@ -48,7 +48,7 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
-    request = ExportRequest(of, to, inputs, outputs, linear, form, frequencies, indices, title=title)
+    request = ExportSpec(of, to, inputs, outputs, linear, form, frequencies, indices, title=title)
     if path is None:
         return kind.make(request, kind.suffixes[0] if kind.is_file else "")
     contents = export_contents(kind, request, path)
@@ -57,7 +57,7 @@ def export(
     return Path(path)
 
 
-def export_contents(kind: ExportKind, request: ExportRequest, path: str | os.PathLike[str]) -> bytes:
+def export_contents(kind: ExportKind, request: ExportSpec, path: str | os.PathLike[str]) -> bytes:
     """The contents of a file of that name; raises `ExportError` for a suffix that the kind does not have."""
     check_suffix(kind, path)
     made: str | bytes = kind.make(request, Path(path).suffix.lower())

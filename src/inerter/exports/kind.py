@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class ExportKind:
     key: str
     description: str
     suffixes: tuple[str, ...]
-    make: Callable[[ExportRequest, str], Any]
+    make: Callable[[ExportSpec, str], Any]
 
     @property
     def is_file(self) -> bool:

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from inerter.exports.kind import ExportKind
 from inerter.exports.named_system import NamedQuantity, NamedSystem
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 
 Matrix = NDArray[np.float64]
 
 
-def _make(request: ExportRequest, suffix: str) -> str | bytes:
+def _make(request: ExportSpec, suffix: str) -> str | bytes:
     system = request.system_as_it_is()
     return matlab_script(system) if suffix == ".m" else matlab_file(system)
 

@@ -13,7 +13,7 @@ from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.matlab import exact
 from inerter.exports.refusals import delay_notes
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Bridge, Element, Network, Parallel, Series
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import UpsideDown, linearise
@@ -46,7 +46,7 @@ _INERTER = f"""\
 """
 
 
-def _make(request: ExportRequest, suffix: str) -> str:
+def _make(request: ExportSpec, suffix: str) -> str:
     mechanism = request.linear_mechanism("Modelica")
     notes = (*linear_graph(mechanism).notes, *delay_notes(mechanism, [road.name for road in mechanism.roads]))
     return "".join([*(f"// {note}\n" for note in notes), modelica_source(mechanism, request.title)])

@@ -26,7 +26,7 @@ Exportable = Vehicle | Network | LinearSystem | Trajectory
 
 
 @dataclass(frozen=True, eq=False)
-class ExportRequest:
+class ExportSpec:
     """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted."""
 
     of: Exportable

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.matlab import exact
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Bridge, Element, Network, Parallel, Series
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import UpsideDown
@@ -20,7 +20,7 @@ _LETTERS = {LinearRole.STIFFNESS: "L", LinearRole.DAMPING: "R", LinearRole.MASS:
 _WORD = re.compile(r"[^A-Za-z0-9_]")
 
 
-def _make(request: ExportRequest, suffix: str) -> str:
+def _make(request: ExportSpec, suffix: str) -> str:
     networks, notes = request.linear_networks()
     head = [f"* {' '.join((request.title or 'struts').split())}, written by inerter"]
     if len(networks) > 1 or request.title:

@@ -15,7 +15,7 @@ from inerter.atomic_io import netcdf_content
 from inerter.errors import ExportError, LinearSystemError
 from inerter.exports.kind import ExportKind
 from inerter.exports.named_system import NamedSystem
-from inerter.exports.request import ExportRequest
+from inerter.exports.request import ExportSpec
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.response import frequency_response, resonant_range
@@ -30,7 +30,7 @@ Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Responses:
+class ExportedResponses:
     """Frequency responses of a linear model, and of indices the gain of each weighted output from their source."""
 
     frequency: Matrix  # [Hz]
@@ -49,7 +49,7 @@ class Responses:
         return f"{_in_brackets(top)}/{_in_brackets(below)}" if below else top
 
 
-def responses_of(request: ExportRequest) -> Responses:
+def responses_of(request: ExportSpec) -> ExportedResponses:
     """The responses that a request asks for.
 
     Raises `ExportError` for a pole at one of the frequencies that were asked for.
@@ -65,10 +65,10 @@ def responses_of(request: ExportRequest) -> Responses:
     found = {}
     for name, index in (request.indices or {}).items():
         found[name] = _index_gains(request, name, index, omega)
-    return Responses(hertz, system, values, found)
+    return ExportedResponses(hertz, system, values, found)
 
 
-def _index_gains(request: ExportRequest, name: str, index: Index, omega: Matrix) -> tuple[tuple[str, ...], Matrix]:
+def _index_gains(request: ExportSpec, name: str, index: Index, omega: Matrix) -> tuple[tuple[str, ...], Matrix]:
     """Weighted gains of the outputs of an index, with the delays of its road, over all of its sources."""
     mechanism = request.mechanism
     try:
@@ -81,7 +81,7 @@ def _index_gains(request: ExportRequest, name: str, index: Index, omega: Matrix)
     return tuple(output.output for output in problem.definition.outputs), weights[:, None] * sizes
 
 
-def _make_csv(request: ExportRequest, suffix: str) -> str:
+def _make_csv(request: ExportSpec, suffix: str) -> str:
     content = io.StringIO()
     writer = csv.writer(content, lineterminator="\n")
     if isinstance(request.of, Trajectory):
@@ -100,7 +100,7 @@ def _make_csv(request: ExportRequest, suffix: str) -> str:
     return content.getvalue()
 
 
-def _columns(found: Responses) -> Iterator[tuple[str, Matrix]]:
+def _columns(found: ExportedResponses) -> Iterator[tuple[str, Matrix]]:
     yield "frequency [Hz]", found.frequency
     phase = found.phase
     for i, output in enumerate(found.system.outputs):
@@ -113,13 +113,13 @@ def _columns(found: Responses) -> Iterator[tuple[str, Matrix]]:
             yield f"gain of {output_name} in {name}", gain
 
 
-def _make_netcdf(request: ExportRequest, suffix: str) -> bytes:
+def _make_netcdf(request: ExportSpec, suffix: str) -> bytes:
     if isinstance(request.of, Trajectory):
         return bytes(netcdf_content(request.of.to_xarray(_outputs_of(request))))
     return bytes(netcdf_content(responses_dataset(responses_of(request))))
 
 
-def responses_dataset(found: Responses) -> xarray.Dataset:
+def responses_dataset(found: ExportedResponses) -> xarray.Dataset:
     """Gain, phase and complex response of every output from every input over the frequency, with units."""
     import xarray  # noqa: PLC0415 - heavy
 
@@ -149,7 +149,7 @@ def responses_dataset(found: Responses) -> xarray.Dataset:
     return data
 
 
-def _outputs_of(request: ExportRequest) -> list[str]:
+def _outputs_of(request: ExportSpec) -> list[str]:
     assert isinstance(request.of, Trajectory)
     return list(request.of.outputs if request.outputs is None else check_names("outputs", request.outputs))
 

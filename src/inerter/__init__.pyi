@@ -70,6 +70,8 @@ from inerter.methods.static_stiffness import static_stiffness as static_stiffnes
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.network_search.admittance import AdmittanceResult as AdmittanceResult
 from inerter.network_search.admittance import optimise_admittance as optimise_admittance
+from inerter.network_search.front_results import FrontNetwork as FrontNetwork
+from inerter.network_search.front_results import NetworkFront as NetworkFront
 from inerter.network_search.real_inerters import RealInerter as RealInerter
 from inerter.network_search.real_inerters import RealNetwork as RealNetwork
 from inerter.network_search.real_inerters import with_friction_and_elasticity as with_friction_and_elasticity

@@ -32,6 +32,7 @@ from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import budget_method, element_break_even
 from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]
@@ -108,16 +109,23 @@ def _output_titles(data: Any, index: str) -> tuple[list[str], list[str]]:
 
 def mechanism(study: Study, body: Body) -> Answer:
     design = one_design(study, body)
-    mechanism = design.mechanism
+    return {**design.describe_values(), **describe_mechanism(design.mechanism)}
+
+
+def describe_mechanism(mechanism: Mechanism) -> Answer:
+    """Coordinates, struts, tyres, roads, forces and outputs of a mechanism as data."""
     angles = {c.name for c in mechanism.coordinates if c.angle}
+    rolling = {name for name, other in mechanism.mirror if name == other}
 
     def end(port: Mapping[str, float]) -> Answer:
-        return {"port": dict(port), "x": sum(lever for name, lever in port.items() if name in angles)}
+        return {"port": dict(port), "x": sum(lever for name, lever in port.items() if name in angles - rolling)}
 
     known = outputs(mechanism, full_graph(mechanism))
     return {
-        **design.describe_values(),
-        "coordinates": [{"name": c.name, "inertia": c.inertia, "angle": c.angle} for c in mechanism.coordinates],
+        "coordinates": [
+            {"name": c.name, "inertia": c.inertia, "angle": c.angle, "roll": c.name in rolling}
+            for c in mechanism.coordinates
+        ],
         "struts": [
             {"name": s.name, "upper": end(s.upper), "lower": end(s.lower), "network": tree_of(s.network)}
             for s in mechanism.struts
@@ -125,7 +133,7 @@ def mechanism(study: Study, body: Body) -> Answer:
         "tyres": [
             {"name": t.name, **end(t.port), "road": t.road, "network": tree_of(t.network)} for t in mechanism.tyres
         ],
-        "roads": [{"name": r.name, "distance": r.distance} for r in mechanism.roads],
+        "roads": [{"name": r.name, "distance": r.distance, "side": r.side} for r in mechanism.roads],
         "forces": [{"name": f.name, **end(f.port)} for f in mechanism.forces],
         "outputs": [{"name": o.name, "unit": o.unit, "title": o.title} for o in known.values()],
     }

@@ -29,6 +29,7 @@ class Design:
     vehicle: Vehicle
     values: dict[str, float] = field(compare=False)  # of what was free, in SI units
     unchosen: tuple[str, ...] = field(default=(), compare=False)  # of these, what nobody gave a value
+    free: dict[str, Free] = field(default_factory=dict, compare=False, repr=False)  # bounds of what was free
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -73,7 +74,7 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
         key: _number(key, values[key], units[key]) if key in values else _middle(free) for key, free in all_free.items()
     }
     unchosen = tuple(key for key in all_free if key not in values)
-    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen)
+    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen, all_free)
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:

@@ -133,6 +133,13 @@ class Trajectory:
             self._known[name] = self._evaluate(output)
         return np.asarray(self._known[name])
 
+    def evaluate(self, output: Output) -> Matrix:
+        """Samples of an output that has no name of its own.
+
+        Its displacements must be combinations of coordinates and of elongations of springs and gaps.
+        """
+        return self._evaluate(output)
+
     def rms(self, name: str) -> float:
         """Root of the mean square of an output over all samples."""
         return float(np.sqrt(np.mean(self[name] ** 2)))

@@ -10,7 +10,6 @@ import { layoutColours } from "../plots/colours.js";
 import { answerOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
 import { printed, shown } from "../state/scale.js";
-import { Motion } from "./motion.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store } from "../state/store.js" */
@@ -29,7 +28,6 @@ export function HistoryPanel({ store }) {
   const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
-  const mechanism = answerOf(state, "mechanism").value;
   /** @type {Signal[]} */
   const signals = value?.signals ?? [];
   const [picked, setPicked] = useChoice(signals.map(({ name }) => name));
@@ -53,7 +51,6 @@ export function HistoryPanel({ store }) {
       : sentence}</p>`}
     ${plot === null && html`<div class="row plot-tools">${controls}</div><div class="plot empty"></div>`}
     ${plot && html`<${Plot} plot=${plot} current=${answer.is === "current"} cursor=${clock}>${controls}<//>`}
-    ${value?.motion && mechanism && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
   </div>`;
 }
 

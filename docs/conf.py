@@ -41,7 +41,8 @@ autodoc_preserve_defaults = True
 html_theme = "furo"
 html_title = f"inerter {release}"
 _MATHJAX = find_spec("sphinx-mathjax-offline")  # the files of it: no page asks another host for anything
-assert _MATHJAX is not None and _MATHJAX.origin is not None
+assert _MATHJAX is not None
+assert _MATHJAX.origin is not None
 html_static_path = ["_static", str(Path(_MATHJAX.origin).parent / "static")]
 mathjax_path = "mathjax/tex-svg.js"
 html_css_files = ["site.css"]

@@ -12,6 +12,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
 from sphinx.application import Sphinx
 
 import inerter
@@ -176,8 +177,6 @@ def commands() -> list[str]:
 
 
 def _help(name: str) -> str:
-    from rich.console import Console
-
     shown = StringIO()
     command_line.help_print([name], console=Console(file=shown, width=100, color_system=None))
     return shown.getvalue().strip()

@@ -18,6 +18,7 @@ from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
+from inerter.notebook import shown_by
 from inerter.optimisation.threads import one_blas_thread
 from inerter.uncertainty.distributions import (
     Scatter,
@@ -47,6 +48,8 @@ class Tolerance:
     slightly exceed the range 0 to 1). `worst` is the largest value found, at the `worst_values`, in the sample and at
     the corners of the tolerances. All are nan, with a status, where the index has no value for some of the sample.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:tolerance_html")
 
     nominal: Estimate
     mean: float

@@ -39,7 +39,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
             if all(map(is_blind, study.methods)):
                 raise
-    omega = _frequencies([system.A for _, system in systems.values()])
+    omega = response_frequencies([system.A for _, system in systems.values()])
     data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
     for index in study.indices:
         mine = {layout: entry for (layout, i), entry in systems.items() if i == index}
@@ -55,7 +55,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
             gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
         mechanism = designs[next(iter(mine)), index].mechanism()
         attributes = {
-            "units": _per(definition.unit, _source_unit(mechanism, definition)),
+            "units": gain_unit(definition.unit, source_unit(mechanism, definition)),
             "long_name": _words(study, index),
         }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
@@ -65,13 +65,13 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
     return data
 
 
-def _per(unit: str, per: str) -> str:
+def gain_unit(unit: str, per: str) -> str:
     """Unit of a gain: `unit` over `per`; `unit` alone if `per` is empty."""
     top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
     return f"{top or 1}/{bottom}" if per else unit
 
 
-def _source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
+def source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
     """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
     if definition.drive.unit or not definition.drive.is_random:
         return definition.drive.unit
@@ -94,7 +94,7 @@ def _output_label(output: OutputWeight, own: str, unit: str) -> str:
     return f"{output.output} x {format_number(output.weight)}{' m' if own.startswith('rad') else ''}"
 
 
-def _frequencies(matrices: list[Array]) -> Array:
+def response_frequencies(matrices: list[Array]) -> Array:
     """Angular frequencies from a decade below the slowest resonance to a decade above the fastest."""
     poles = np.concatenate([np.linalg.eigvals(A) for A in matrices]) if matrices else np.array([1.0])
     resonances = np.abs(poles[np.abs(poles.imag) > 0.3 * np.abs(poles)])

@@ -261,7 +261,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     found = answers[0].json()
     told = page.locator(".records .finding").all_inner_texts()
     assert told == [each["sentence"] for each in found["findings"]]
-    page.wait_for_selector(".records .plot canvas")
+    page.wait_for_selector(".records .plot .drawn")
     assert page.locator(".records select option").all_inner_texts() == [each["name"] for each in found["channels"]]
     page.get_by_role("button", name="Remove noise.csv").click()
     page.wait_for_selector(".records .plot", state="detached")

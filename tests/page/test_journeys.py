@@ -407,7 +407,7 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     assert form.locator("[name=from]").input_value() == "12.5 m/s"
     form.locator("[name=points]").fill("2")
     form.get_by_role("button", name="Begin").click()
-    page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)
+    page.wait_for_selector(".job[data-state=done] .plot .drawn", timeout=120_000)
 
 
 @pytest.mark.campaign

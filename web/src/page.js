@@ -19,7 +19,7 @@ import { Field } from "./parts/field.js";
 import { Chip, Select, formHandler } from "./parts/controls.js";
 import { html, useEffect, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
-import { decisionOf } from "./questions.js";
+import { answerOf } from "./questions.js";
 import { open } from "./remembering.js";
 
 /** @import { Store } from "./state/store.js" */
@@ -130,14 +130,16 @@ function Standing({ store, api }) {
   const state = store.get();
   const since = useWork(api);
   const { connection, messages } = state;
-  const { is } = decisionOf(state);
+  const { is } = answerOf(state, "decision");
   const count = messages.length + problemsOf(state).length;
   const lost = connection === "lost" || connection === "refused";
-  const told = lost ? "no server" : connection === "ready" ? STANDING[is] : connection;
+  const blank = Object.keys(state.history.present.study).length === 0;
+  const ready = blank ? "ready" : STANDING[is];
+  const told = lost ? "no server" : connection === "ready" ? ready : connection;
   return html`<span role="status">${since !== null
       && html`<span class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></span> · `}
     ${count > 0 && html`<b>${count === 1 ? "1 message" : `${count} messages`}</b> <kbd>F8</kbd> · `}
-    <span class="dot" data-is=${lost ? "none" : is}></span>${told}</span>`;
+    <span class="dot" data-is=${lost ? "none" : blank ? "current" : is}></span>${told}</span>`;
 }
 
 /** @type {{[is: string]: string}} */
@@ -161,7 +163,11 @@ function Bar({ store, enter }) {
     ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
       ${problems.map((problem) => html`<li class="problem">${problem.sentence.startsWith(problem.place.join(".")) ? ""
         : html`<code>${problem.place.join(".")}</code> `}${problem.sentence}</li>`)}</ul></div>`}
-    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}><span>${text}</span>
+    ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
+      ${offer && html`<button type="button" class="edged" onClick=${() => {
+        store.dispatch({ type: "closed", about: key });
+        offer.act();
+      }}>${offer.label}</button>`}
       <button type="button" class="link" aria-label="Close the message"
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
   </div>`;
@@ -259,6 +265,8 @@ function alone(store, { key, target, altKey }, showKeys) {
     menu.querySelector("summary")?.focus();
   };
   if (key === "F8") return nextMessage;
+  if (key.startsWith("Arrow") && target === document.body)
+    return () => /** @type {HTMLElement | null} */ (document.querySelector(".card"))?.focus();
   if (altKey || isTyped(target) || document.querySelector("dialog[open]")) return undefined;
   if (key === " ") return isPressed(target) ? undefined : () => store.look({ playing: !store.get().view.playing });
   if (["1", "2", "3", "4"].includes(key)) return () => goTo(store, Number(key));

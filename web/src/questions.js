@@ -3,7 +3,7 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, strutsOf, entryAt, without } from "./state/document.js";
+import { isRange, own, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -15,12 +15,12 @@ import { takenApart } from "./state/scale.js";
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
-export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
+export const designOf = ({ layout, values }) => ({ layout, values: own(values, layout) ?? {}, name: layout });
 
 /** The design that it is compared with. @param {Document} document */
 export function baselineOf({ study, values }) {
   const layout = study.study?.baseline ?? Object.keys(study.layouts ?? {})[0] ?? "";
-  return { layout, values: values[layout] ?? {}, name: layout };
+  return { layout, values: own(values, layout) ?? {}, name: layout };
 }
 
 /** All layouts of the study as designs. @param {Document} document */
@@ -66,9 +66,9 @@ const ROWS = [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
     { panel: "check", path: "study/check", body: { study } },
   ],
-  (state, document) => [hasDecision(state) ? ofDesigns("decision", decided(state, document))
-    : { ...ofDesigns("indices", without(decided(state, document), "index")), panel: "decision" }],
+  (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
+  (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
   ({ view: { seconds, seed } }, document) => [
     { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
       rest: 300 },
@@ -76,30 +76,29 @@ const ROWS = [
   ],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
+  typedText,
 ];
 
-/** Whether the server ranks designs itself; else the page does for now. @param {State} state */
-const hasDecision = ({ about }) => about === null
-  || (about.panels ?? []).some((/** @type {any} */ { key }) => key === "decision");
-
-/** The decision, also of a server that answers indices only. @param {State} state */
-export function decisionOf(state) {
-  const shown = answerOf(state, "decision");
-  return shown.value?.designs ? { ...shown, value: ranked(state, shown.value) } : shown;
+/** Whether what was typed into a field is a quantity of its unit. @param {State} state @returns {Row[]} */
+function typedText({ typed }) {
+  if (typed === null || typed.sentence !== undefined) return [];
+  const { text, unit } = typed;
+  return [{ panel: "typed", path: "quantity", body: { text, unit },
+    learnt: ({ sentence }) => ({ type: "read", typed, sentence }) }];
 }
 
-/** @param {State} state @param {any} value */
-function ranked(state, { designs, baseline }) {
-  const index = goalOf(state);
-  const rows = designs.map((/** @type {any} */ { layout, results, unchosen, limits }) => {
-    const own = results.find((/** @type {any} */ each) => each.index === index);
-    return { ...own, layout, unchosen, limits, is_baseline: layout === baseline,
-      others: results.filter((/** @type {any} */ each) => each !== own) };
-  }).toSorted((/** @type {any} */ a, /** @type {any} */ b) => a.value - b.value)
-    .map((/** @type {any} */ row, /** @type {number} */ i) => ({ ...row, rank: i + 1 }));
-  const { title, unit } = rows[0] ?? {};
-  return { goal: { index, title, unit }, rows, verdict: { sentence: "", severity: "answer", caveats: [] } };
+/** What is drawn beside the design that is edited and the baseline. @param {State} state @returns {Choice[]} */
+export function ghostsOf({ view, history: { present } }) {
+  const drawn = shownDesigns(present).map(({ layout }) => `layout ${layout}`);
+  return choicesOf(present).filter(({ key }) => view.ghosts.includes(key) && !drawn.includes(key));
 }
+
+/** The panel of such a design, whose answers are kept by it. @param {string} key */
+export const ghostPanel = (key) => `response of ${key}`;
+
+/** @param {Choice} choice @returns {Row} */
+const ghostly = ({ key, study, design }) =>
+  ({ panel: ghostPanel(key), path: "panel/response", ofDesigns: true, body: { study, designs: [design] } });
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });
@@ -232,8 +231,8 @@ export function unitsIn(state, { study, values, ranges }) {
   };
   for (const { path, unit, name } of numbersOf(state)) {
     const entry = entryAt(study, path);
-    const bounds = ranges[path.join(".")];
-    const chosen = name === "" ? [] : Object.values(values).map((of) => of[name]);
+    const bounds = own(ranges, path.join("."));
+    const chosen = name === "" ? [] : Object.values(values).map((of) => own(of, name));
     for (const text of [...(isRange(entry) ? [entry.from, entry.to] : [entry]), bounds?.from, bounds?.to, ...chosen]) {
       add(text, unit);
     }
@@ -246,5 +245,5 @@ export function unitsIn(state, { study, values, ranges }) {
 export function mountsOf(about, { study, layout }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
   const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);
-  return mounts.length > 1 ? mounts : strutsOf(study.layouts?.[layout]);
+  return mounts.length > 1 ? mounts : strutsOf(own(study.layouts, layout));
 }

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design, baseline_of, design_of, designs_of
-from inerter.app.documents import study_from
+from inerter.app.designs import baseline_of, designs_of, one_design
+from inerter.app.documents import study_for
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
@@ -68,7 +68,9 @@ def answer_panel(key: str, body: Body) -> Answer:
     """
     with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
-        return answer(study_from(body["study"]), body)
+        study, asked = study_for(body)
+        left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
+        return {**answer(study, asked), **left_out}
 
 
 def response(study: Study, body: Body) -> Answer:
@@ -76,23 +78,35 @@ def response(study: Study, body: Body) -> Answer:
     designs, indices = designs_of(study, body), tuple(body.get("indices") or study.indices)
     numbered = {str(number): design for number, design in enumerate(designs)}
     each = replace(study, indices=indices, layouts={n: study.layouts[design.layout] for n, design in numbered.items()})
-    data = responses(each, {Case(n, index): design.values for n, design in numbered.items() for index in indices})
+    found = {Case(n, index): design.values for n, design in numbered.items() for index in indices}
+    data = responses(each, found, phases=True)
     curves = [
         {
             "name": design.name,
             "layout": design.layout,
             "index": index,
-            "title": gains.attrs["long_name"],
+            "title": title,
             "unit": gains.attrs["units"],
             "label": label,
             "gain": gain,
+            "phase": phase,
         }
         for index in indices
         if (gains := data.get(f"gain_{index}")) is not None
-        for design, several in zip(designs, gains.values, strict=True)
-        for label, gain in zip(data[f"output_{index}"].values.tolist(), several, strict=True)
+        for design, several, angles in zip(designs, gains.values, data[f"phase_{index}"].values, strict=True)
+        for title, label, gain, phase in zip(*_output_titles(data, index), several, angles, strict=True)
     ]
     return {"frequency": data.omega.values / (2.0 * np.pi), "curves": curves}
+
+
+def _output_titles(data: Any, index: str) -> tuple[list[str], list[str]]:
+    """Titles and labels of the outputs of an index: its response in words, of several outputs that of each."""
+    words, labels = data[f"gain_{index}"].attrs["long_name"], data[f"output_{index}"].values.tolist()
+    if len(labels) == 1:
+        return [words], labels
+    _, per, source = words.partition(" per ")
+    names = [label.replace("_", " ") for label in labels]
+    return [f"{name} per {source}" if per else f"{name}: {words}" for name in names], labels
 
 
 def mechanism(study: Study, body: Body) -> Answer:
@@ -265,12 +279,3 @@ def required_value(body: Body, key: str) -> Any:
 
 def motion(study: Study, body: Body) -> Answer:
     return history(study, one_design(study, body), body)
-
-
-def one_design(study: Study, body: Body) -> Design:
-    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
-    given = body.get("design")
-    if given:
-        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
-    layout = body.get("layout") or next(iter(study.layouts))
-    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})

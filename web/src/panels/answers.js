@@ -2,7 +2,7 @@
 
 import { treeOf, unchosenIn } from "../library.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
-import { allDesigns, baselineOf, decisionOf, goalOf } from "../questions.js";
+import { allDesigns, answerOf, baselineOf, goalOf } from "../questions.js";
 import { nextLayout, textOf } from "../state/document.js";
 import { estimated, placed, shown, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
@@ -18,7 +18,7 @@ import { problemsOf } from "./values.js";
 /** @param {{store: Store}} props */
 export function AnswersPanel({ store }) {
   const state = store.get();
-  const answer = decisionOf(state);
+  const answer = answerOf(state, "decision");
   const { value, sentence } = answer;
   useShown("decision", state);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${answer.is === "coming"}
@@ -88,8 +88,8 @@ function Row({ store, row, missing }) {
   return html`<tr class=${on ? "on" : ""} onClick=${select}>
     <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
       <${Sketch} state=${state} tree=${treeOf(state, text)} />
-      <span style=${{ color: layoutColour(document, layout) }}>${layout}</span></button>
-      ${isBaseline && html`<small>baseline</small>`}</th>
+      <span style=${{ color: layoutColour(document, layout) }}>${layout}
+        ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
     <td class="number" title=${row.message} data-index=${on && row.value !== undefined ? goal : undefined}
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
@@ -157,9 +157,8 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
-/** @param {{value: any, decimals?: any}} result */
-const amountText = ({ value, decimals }) =>
-  (typeof value === "string" ? value.replace("inf", "∞") : placed(value, decimals));
+/** @param {{value: any}} result */
+const amountText = ({ value }) => (typeof value === "string" ? value.replace("inf", "∞") : shown(value, 4));
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
@@ -202,6 +201,8 @@ function Layouts({ store }) {
       ${renaming && html`<form onSubmit=${formHandler((form) => {
         const name = String(form.get("name")).trim();
         if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
+        else if (name && name !== document.layout)
+          store.say(`Got ${name}, the name of another layout; expected an unused name.`, "layout name");
         setRenaming(false);
       })}>
         <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}

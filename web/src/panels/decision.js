@@ -3,7 +3,7 @@
 import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
-import { decisionOf, designOf, goalOf, soughtAnswer } from "../questions.js";
+import { answerOf, designOf, goalOf, soughtAnswer } from "../questions.js";
 import { unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
 import { AskedPanel } from "./asked.js";
@@ -59,11 +59,11 @@ function strutOf(state) {
   const document = state.history.present;
   if (document.layout === "") return "None";
   if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, values not chosen`;
-  const { is, value } = decisionOf(state);
+  const { is, value } = answerOf(state, "decision");
   /** @type {any[]} */
   const rows = value?.rows ?? [];
   const row = rows.find(({ layout }) => layout === document.layout);
-  return is === "current" && row?.rank ? `${document.layout}, rank ${row.rank} of ${rows.length}` : document.layout;
+  return is === "current" && row?.rank ? `${document.layout}, ${row.rank} of ${rows.length}` : document.layout;
 }
 
 /** What is to be least, by which method, and what is asked besides. @param {{store: Store}} props */
@@ -71,8 +71,7 @@ function Goal({ store }) {
   const state = store.get();
   const indices = indicesOf(state);
   const goal = indices.find(({ symbol }) => symbol === goalOf(state));
-  const answer = goal ? (goal.title === goal.symbol ? `Least ${goal.symbol}` : `Least ${goal.symbol}, ${goal.title}`)
-    : "None";
+  const answer = goal ? [...new Set([goal.symbol, goal.title])].join(", ") : "None";
   return html`<details class="menu step">
     <summary id="step-2"><small>2 Goal</small><b title=${answer}>${answer}</b></summary>
     <div class="menu-body">
@@ -91,7 +90,7 @@ function Goal({ store }) {
 function Verdict({ state, blank }) {
   if (blank) return html`<section class="verdict wait" aria-label="Verdict" tabindex="-1" id="verdict">
     <b>No study is open</b></section>`;
-  const { is, value, sentence } = decisionOf(state);
+  const { is, value, sentence } = answerOf(state, "decision");
   const [problem] = problemsOf(state);
   /** @type {{sentence: string, severity: string, caveats: Caveat[]} | undefined} */
   const verdict = value?.verdict;

@@ -3,7 +3,7 @@ import { drawing, pathOf } from "../network/drawing.js";
 import { kindOf } from "../library.js";
 import { html, useMemo } from "../parts/html.js";
 
-const [WIDTH, HEIGHT] = [56, 38];
+const [WIDTH, HEIGHT] = [48, 36];
 
 /** @param {{drawing?: any[]} | null} kind */
 export const symbolPath = (kind) => (kind?.drawing ? pathOf(kind.drawing, -1) : "M0 -20V-9M-8 -9H8V9H-8ZM0 9V20");

@@ -11,7 +11,7 @@ import { symbolPath } from "./sketch.js";
 /** @import { Api } from "../api.js" */
 /** @typedef {{name: string, study: any, tree: any, kinds: {[name: string]: any}, free: boolean}} Example */
 
-/** What a study asks beyond its designs: the first key that it has. @type {[string, string][]} */
+/** What a study asks beyond its designs, by the keys of its section `study`. @type {[string, string][]} */
 const ASKED = [["sweep", "Where is it worth it?"], ["tolerance", "What if values scatter?"],
   ["budgets", "How much friction or backlash does it bear?"], ["trade_off", "What does one index cost the other?"],
   ["conditions", "What is best over all operating conditions?"], ["subject_to", "What is best within constraints?"]];
@@ -24,11 +24,39 @@ const OF_VEHICLE = { "quarter-car": "Which strut for a quarter car?", "half-car"
 const VEHICLES = [["quarter-car", "Quarter car"], ["half-car", "Half car"], ["full-car", "Full car"],
   ["mechanism", "Own vehicle, of masses and struts"]];
 
-/** @param {{study: any, free: boolean}} example */
+/** The question of an example; its own title where it asks nothing that is listed.
+ * @param {{study: any, free: boolean}} example @returns {string} */
 function questionOf({ study, free }) {
   if (free) return "Which network is the best of all?";
   const asked = ASKED.find(([key]) => study.study?.[key] !== undefined || study[key] !== undefined);
   return asked?.[1] ?? OF_VEHICLE[study.vehicle?.model] ?? study.title;
+}
+
+const ORDER = [...Object.values(OF_VEHICLE), ...ASKED.map(([, question]) => question)];
+
+/** Whether an example is that of its vehicle, and asks nothing beside. @param {Example} example */
+const isPlain = ({ name, study }) => name === study.vehicle?.model;
+
+/** The example to begin with a vehicle. @param {Example[]} examples @param {string} model */
+function beginningWith(examples, model) {
+  const all = examples.filter(({ study, free }) => study.vehicle?.model === model && !free);
+  const size = (/** @type {Example} */ { study }) => JSON.stringify(study).length;
+  return all.find(isPlain) ?? all.toSorted((a, b) => size(a) - size(b))[0];
+}
+
+/** Examples in the order of their questions, each with a heading of its own. @param {Example[]} examples
+ * @returns {{example: Example, heading: string}[]} */
+function cardsOf(examples) {
+  /** @param {Example} example */
+  const place = (example) => (ORDER.indexOf(questionOf(example)) + 1) || ORDER.length + 1;
+  const sorted = examples.toSorted((a, b) => place(a) - place(b) || Number(isPlain(b)) - Number(isPlain(a)));
+  const seen = new Set();
+  return sorted.map((example) => {
+    const question = questionOf(example);
+    const heading = seen.has(question) ? example.study.title : question;
+    seen.add(question);
+    return { example, heading };
+  });
 }
 
 /** @param {{store: Store, api: Api}} props */
@@ -46,16 +74,17 @@ export function Start({ store, api }) {
       <div class="head"><h2 id="questions-title">Begin with a question</h2>
         <small>Each opens complete, and all of it can be changed.</small></div>
       <div class="inside"><div class="cards" onKeyDown=${walk}>
-        ${examples.map((example) => html`<button type="button" class="card" key=${example.name}
+        ${cardsOf(examples).map(({ example, heading }) => html`<button type="button" class="card" key=${example.name}
           data-example=${example.name} onClick=${() => begin(example.study)}>
           <${Picture} example=${example} />
-          <span><b>${questionOf(example)}</b><small>${example.study.title}</small></span></button>`)}
+          <span><b>${heading}</b>${heading !== example.study.title
+            && html`<small>${example.study.title}</small>`}</span></button>`)}
       </div></div></section>
     <div class="col">
       <section class="panel" aria-labelledby="vehicles-title"><div class="inside">
         <div class="head"><h2 id="vehicles-title">Begin with a vehicle</h2></div>
         ${VEHICLES.map(([model, title]) => {
-          const example = examples.find(({ study }) => study.vehicle?.model === model && !study.study?.sweep);
+          const example = beginningWith(examples, model);
           return html`<button type="button" class="list-row" key=${model} disabled=${!example}
             onClick=${() => begin(example?.study)}><span>${title}</span></button>`;
         })}
@@ -96,11 +125,12 @@ async function examplesOf(api, about, told) {
   for (const { name } of examples) {
     const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
     const { networks, elements, layouts } = await api.post("study/parts", { study });
-    const tree = networks.findLast((/** @type {any} */ each) => each.tree)?.tree;
+    const [largest] = networks.filter((/** @type {any} */ { tree }) => tree)
+      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => b.names.length - a.names.length);
     const kinds = Object.fromEntries(Object.entries(elements).map(([element, { kind }]) =>
       [element, about.elements.find((/** @type {any} */ { key }) => key === kind)]));
     const free = Object.values(layouts).some((/** @type {any} */ { free_networks: some }) => some.length > 0);
-    found.push({ name, study, tree: tree && canonical(tree), kinds, free });
+    found.push({ name, study, tree: largest && canonical(largest.tree), kinds, free });
     told([...found]);
   }
 }

@@ -151,7 +151,7 @@ function filmOn(canvas, store) {
   let range = /** @type {any} */ (null);
   let [frame, frames, last, due] = [0, 0, performance.now(), true];
   let styles = stylesOf(canvas);
-  let seen = true;
+  let [seen, ran] = [true, false];
 
   function fit() {
     const { clientWidth: width, clientHeight: height } = canvas;
@@ -168,6 +168,8 @@ function filmOn(canvas, store) {
   function tick(now) {
     frame = requestAnimationFrame(tick);
     const { view: { playing, speed } } = store.get();
+    due ||= playing !== ran;
+    ran = playing;
     const end = shown ? endOf(shown) : 0;
     if (playing && !dragging && end > 0 && seen) clock.set(within(clock.get() + (Math.min(now - last, LONGEST) / 1000)
       * speed, end));

@@ -1,4 +1,4 @@
-"""The vehicle in motion on the page: it moves, is held, follows one clock with the plot, and says why it stands still."""
+"""The vehicle in motion on the page: it moves, is held, has one clock with the plot, and says why it stands still."""
 
 from __future__ import annotations
 

@@ -31,7 +31,12 @@ export function MotionPanel({ store }) {
   const state = store.get();
   const mechanism = answerOf(state, "mechanism");
   const history = answerOf(state, "history");
-  const shown = useMemo(() => shownOf(state, mechanism.value, history.value), [mechanism.value, history.value]);
+  const found = useMemo(() => shownOf(state, mechanism.value, history.value), [mechanism.value, history.value]);
+  const last = useRef(found);
+  // of the same study the picture stands until the next mechanism comes
+  const stays = found === null && mechanism.is === "coming" && (state.answers.mechanism?.recent ?? false);
+  const shown = stays ? last.current : found;
+  last.current = shown;
   const { playing, speed } = state.view;
   const reduced = useReduced(store);
   const why = whyStill(mechanism, history);
@@ -45,7 +50,7 @@ export function MotionPanel({ store }) {
       <button type="button" aria-pressed=${!playing} onClick=${() => store.look({ playing: !playing })}>
         ${playing ? "Hold" : "Run"} <kbd>space</kbd></button>
     </div>
-    <div class=${`picture ${history.before ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
+    <div class=${`picture ${history.before || stays ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
     ${why && html`<p class=${`why ${why.doubt ? "doubt" : ""}`}>${why.words}</p>`}

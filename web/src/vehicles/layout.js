@@ -1,10 +1,10 @@
 // Where everything of a scene is in a picture of some size, at rest: along it to scale as far as there is room, upwards
 // one level above the other; and how large motions are drawn.
 
-import { pointOf, heightOf, spread } from "./scene.js";
+import { pointOf, spread } from "./scene.js";
 import { planOf, reachOf } from "./symbols.js";
 
-/** @import { Scene, Body, Strut, Tyre, Pose } from "./scene.js" */
+/** @import { Scene, Body, Strut, Tyre } from "./scene.js" */
 /** @import { Plan, Point } from "./symbols.js" */
 /** The answer `history.motion` of the server. @typedef {{time: number[], coordinates: {[name: string]: number[]},
  * roads: {[name: string]: number[]}, elements?: {[mount: string]: {[element: string]: number[]}}}} Motion */
@@ -55,11 +55,10 @@ export function rangeOf(scene, motions) {
       for (const value of all[heave] ?? []) if (value > range.up) range.up = value;
     }
     for (const { name, upper, lower } of scene.struts) {
-      const most = motion.time.reduce((so, _, i) => {
-        const pose = poseAt(all, i);
-        return Math.max(so, Math.abs(heightOf(upper.port, pose) - heightOf(lower.port, pose)));
-      }, 0);
-      range.travel[name] = Math.max(range.travel[name] ?? 0, most);
+      const ends = [...Object.entries(upper.port), ...Object.entries(lower.port).map(([of, lever]) =>
+        /** @type {[string, number]} */ ([of, -lever]))];
+      const travel = motion.time.map((_, i) => ends.reduce((sum, [of, lever]) => sum + lever * (all[of]?.[i] ?? 0), 0));
+      range.travel[name] = Math.max(range.travel[name] ?? 0, farthest(travel));
     }
     for (const [mount, elements] of Object.entries(motion.elements ?? {})) {
       const reach = range.reach[mount] ??= {};
@@ -71,9 +70,6 @@ export function rangeOf(scene, motions) {
 
 /** @param {number[]} values */
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-
-/** @param {{[name: string]: number[]}} all @param {number} i @returns {Pose} */
-const poseAt = (all, i) => Object.fromEntries(Object.entries(all).map(([name, values]) => [name, values[i]]));
 
 /** Everything at its place. @param {Scene} scene @param {{width: number, height: number}} size @param {Range} range
  * @param {number} [before] how many times as large motions were drawn before @returns {Layout} */

@@ -1,11 +1,13 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
-import { numbersOf } from "../library.js";
+import { numbersOf, treeOf } from "../library.js";
+import { partAt } from "../network/algebra.js";
 import { layoutColour } from "../parts/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
+import { textOf } from "../state/document.js";
 import { layout, rangeOf } from "../vehicles/layout.js";
 import { paint, stylesOf } from "../vehicles/paint.js";
 import { REST, momentOf, passing, pastOf, posed, trail } from "../vehicles/posed.js";
@@ -119,6 +121,13 @@ function Picture({ store, shown, reduced }) {
       /** @type {PointerEvent} */ event) => scrub(event, end)}></canvas>`;
 }
 
+/** The element that is selected in the drawing of the strut. @param {State} state */
+function chosenIn(state) {
+  const tree = treeOf(state, textOf(state.history.present));
+  const part = tree && partAt(tree, state.view.path);
+  return part?.kind === "element" ? part.name : null;
+}
+
 /** @param {Shown} shown */
 const endOf = ({ motion }) => (motion ? motion.time[motion.time.length - 1] : 0);
 
@@ -157,6 +166,8 @@ function filmOn(canvas, store) {
   let [frame, frames, last, due] = [0, 0, performance.now(), true];
   let styles = stylesOf(canvas);
   let [seen, ran] = [true, false];
+  let chosen = /** @type {string | null} */ (null);
+  let seenState = /** @type {State | null} */ (null);
 
   function fit() {
     const { clientWidth: width, clientHeight: height } = canvas;
@@ -173,6 +184,12 @@ function filmOn(canvas, store) {
   function tick(now) {
     frame = requestAnimationFrame(tick);
     const { view: { playing, speed } } = store.get();
+    const state = store.get();
+    if (state !== seenState) {
+      const next = chosenIn(state);
+      due ||= next !== chosen;
+      [chosen, seenState] = [next, state];
+    }
     due ||= playing !== ran;
     ran = playing;
     const end = shown ? endOf(shown) : 0;
@@ -181,8 +198,8 @@ function filmOn(canvas, store) {
     last = now;
     if (frames % OFTEN === 0) {
       const next = stylesOf(canvas, shown?.own);
-      due ||= JSON.stringify(next) !== JSON.stringify(styles);
-      styles = next;
+      const others = ["wire", "own"].some((kind) => next[kind].stroke !== styles[kind].stroke);
+      if (others) [styles, due] = [next, true];
     }
     frames += 1;
     if (!due || !shown || !made || !seen) return;
@@ -190,7 +207,7 @@ function filmOn(canvas, store) {
     const ratio = canvas.width / made.width;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, made.width, made.height);
-    paint(pen, shapesOf(shown, made, Math.min(clock.get(), end)), styles);
+    paint(pen, shapesOf(shown, made, Math.min(clock.get(), end), chosen), styles);
     canvas.dataset.frames = String(frames);
     if (!playing || dragging) canvas.setAttribute("aria-valuenow", clock.get().toFixed(3));
   }
@@ -222,10 +239,10 @@ function filmOn(canvas, store) {
 }
 
 /** Everything in the picture at one time. @param {Shown} shown @param {Layout} made @param {number} at [s]
- * @returns {Shape[]} */
-function shapesOf({ motion, other, shaded, speed, names, scene: { column } }, made, at) {
-  if (!motion) return [...posed(made, REST), ...captions(made, null, null)];
-  const moment = momentOf(made, motion, at, { speed, shaded });
+ * @param {string | null} chosen @returns {Shape[]} */
+function shapesOf({ motion, other, shaded, speed, names, scene: { column } }, made, at, chosen) {
+  if (!motion) return posed(made, { ...REST, chosen });
+  const moment = { ...momentOf(made, motion, at, { speed, shaded }), chosen };
   const beside = other ? momentOf(made, other, at, { speed }) : null;
   const trails = column ? [...(other ? trail(made, pastOf(made, other, at, speed), "other trail") : []),
     ...trail(made, pastOf(made, motion, at, speed), "own")] : [];

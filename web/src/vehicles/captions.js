@@ -11,11 +11,10 @@ const BARS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 40, 50, 100, 200, 500, 1000]; // [
 const [SHORTEST, NARROW] = [22, 500]; // [px]
 const STILL = 1e-9; // [rad]
 
-/** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number} | null} moved
+/** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number}} moved
  * @param {{own: string, other: string} | null} names of the design and of the one that is dashed @returns {Shape[]} */
 export function captions(made, moved, names) {
   const { width, height, scene } = made;
-  if (moved === null) return [];
   const narrow = width < NARROW;
   /** @type {Shape[]} */
   const into = [...scaleBar(made, narrow)];
@@ -42,8 +41,9 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
   if (main.pitch !== null) parts.push(`pitch ${degrees(main.pitch)}°`);
   const rolls = main.roll !== null && (motion.coordinates[main.roll] ?? []).some((value) => Math.abs(value) > STILL);
   if (main.roll !== null && rolls) parts.push(`roll ${degrees(main.roll)}°`);
-  const first = `${parts.join(", ")}, ${large}`;
-  return main.roll !== null && !rolls ? [first, "roll 0: both sides meet the same road"] : [first];
+  const how = parts.join(", ");
+  const lines = main.roll === null ? [`${how}, ${large}`] : [how, large];
+  return main.roll !== null && !rolls ? [...lines, "roll 0: both sides meet the same road"] : lines;
 }
 
 /** A length upwards. @param {Layout} made @param {boolean} narrow @returns {Shape[]} */

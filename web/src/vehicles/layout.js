@@ -328,7 +328,7 @@ function rescale(one, made) {
   one.scale = Math.max(0.2, one.scale);
   const whole = one.plan.left + one.plan.right;
   const named = one.plan.parts.length > 0 && one.plan.left + one.plan.right > bare.left + bare.right;
-  one.wide = Math.max(one.scale, named ? Math.min(1, room / whole) : 0);
+  one.wide = Math.max(one.scale, Math.min(named ? 1 : 0.7, room / whole));
 }
 
 /** The room of a strut, between those before and behind it [px]. @param {Layout} made

@@ -9,10 +9,11 @@ import { box, circle, draw, line, polygon, travelOf } from "./symbols.js";
 /** @import { Body, Pose, Strut, Tyre } from "./scene.js" */
 /** @import { Point, Shape } from "./symbols.js" */
 /** What is at one time: heights and angles, travels of elements [m], states of friction and gaps, how far wheels have
- * turned [rad], and the height of a road beside the wheel it is under [m], so many px before it.
+ * turned [rad], which element is selected, and the height of a road so many px before the wheel that it is under [m].
  * @typedef {{pose: Pose, travels: {[mount: string]: {[element: string]: number}},
  * states: {[mount: string]: {[element: string]: string}}, turned: number,
- * road: (name: string, px: number) => number}} Moment */
+ * road: (name: string, px: number) => number,
+ * chosen?: string | null}} Moment */
 
 /** Of a vehicle that stands still. @type {Moment} */
 export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0 };
@@ -276,7 +277,8 @@ function strut(made, one, moment, into) {
   }
   const travels = moment.travels[mount] ?? {};
   draw(plan, at, yTop, yBottom - yTop - made.lift * travelOf(plan, travels), { lift: made.lift, scale, wide,
-    labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {} }, into);
+    labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {},
+    chosen: moment.chosen }, into);
   if (made.scene.column) tell(moment.states[mount] ?? {}, at + plan.right * wide + 8, yBottom - 18, into);
 }
 

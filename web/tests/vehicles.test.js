@@ -252,7 +252,7 @@ test("roll that cannot be is said, and roll that is there is a number", () => {
     const { made, motion, moments } = of(name);
     return captions(made, { moment: moments[2], motion, passing: 1 }, null).map(({ text }) => text ?? "").join("; ");
   };
-  assert.match(words("full car"), /roll 0: both sides meet the same road/);
+  assert.match(words("full car"), /roll 0: same road on both sides/);
   assert.match(words("full car on two tracks"), /roll −?\d\.\d\d°/);
 });
 

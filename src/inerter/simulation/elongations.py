@@ -39,7 +39,7 @@ def elongations(run: Trajectory, mechanism: Mechanism) -> dict[str, dict[str, Ma
         rows = found[mount.name] = {}
         for element in mount.network.elements():
             nodes, roads = _row_of(expand_elements(element, _to_simulation), motion.next_row(branches))
-            rows[_unused(element.label, rows)] = motion.elongation(nodes, roads)
+            rows[_unique_label(element.label, rows)] = motion.elongation(nodes, roads)
     return found
 
 
@@ -47,7 +47,7 @@ def _to_simulation(element: Element) -> Network:
     return element.as_piecewise()
 
 
-def _unused(label: str, used: Mapping[str, object]) -> str:
+def _unique_label(label: str, used: Mapping[str, object]) -> str:
     names = (f"{label} {number}" if number > 1 else label for number in count(1))
     return next(name for name in names if name not in used)
 

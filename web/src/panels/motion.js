@@ -36,8 +36,8 @@ export function MotionPanel({ store }) {
   const found = useMemo(() => shownOf(state, mechanism.value, history.value), [mechanism.value, history.value]);
   const last = useRef(found);
   // of the same study the picture stands until the next mechanism comes
-  const stays = found === null && mechanism.is === "coming" && (state.answers.mechanism?.recent ?? false);
-  const shown = stays ? last.current : found;
+  const isKept = found === null && mechanism.is === "coming" && (state.answers.mechanism?.recent ?? false);
+  const shown = isKept ? last.current : found;
   last.current = shown;
   const { playing, speed } = state.view;
   const reduced = useReduced(store);
@@ -52,7 +52,7 @@ export function MotionPanel({ store }) {
       <button type="button" aria-pressed=${!playing} onClick=${() => store.look({ playing: !playing })}>
         ${playing ? "Hold" : "Run"} <kbd>space</kbd></button>
     </div>
-    <div class=${`picture ${history.before || stays ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
+    <div class=${`picture ${history.before || isKept ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
     ${why && html`<p class=${`why ${why.doubt ? "doubt" : ""}`}>${why.words}</p>`}

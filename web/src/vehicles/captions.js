@@ -43,7 +43,7 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
   if (main.roll !== null && rolls) parts.push(`roll ${degrees(main.roll)}°`);
   const how = parts.join(", ");
   const lines = main.roll === null ? [`${how}, ${large}`] : [how, large];
-  return main.roll !== null && !rolls ? [...lines, "roll 0: both sides meet the same road"] : lines;
+  return main.roll !== null && !rolls ? [...lines, "roll 0: same road on both sides"] : lines;
 }
 
 /** A length upwards. @param {Layout} made @param {boolean} narrow @returns {Shape[]} */

@@ -1,5 +1,6 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
+import { inWords } from "./posed.js";
 import { liftOf } from "./scene.js";
 import { line } from "./symbols.js";
 
@@ -38,7 +39,7 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
     value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const degrees = (/** @type {string} */ name) => signed(((pose[name] ?? 0) * 180) / Math.PI, 2);
   const parts = [`heave ${signed(liftOf(main, 0, 0, pose) * 1000, 1)} mm`];
-  if (main.pitch !== null) parts.push(`pitch ${degrees(main.pitch)}°`);
+  if (main.pitch !== null) parts.push(`${inWords(main.pitch)} ${degrees(main.pitch)}°`);
   const rolls = main.roll !== null && (motion.coordinates[main.roll] ?? []).some((value) => Math.abs(value) > STILL);
   if (main.roll !== null && rolls) parts.push(`roll ${degrees(main.roll)}°`);
   const how = parts.join(", ");

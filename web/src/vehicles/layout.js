@@ -32,6 +32,7 @@ const DIP = 0.11; // of the height, of a road at most
 const SIDE = 0.44; // [px] nearer of a metre to the right, of a metre along
 const WHEEL = 0.31; // [m] its radius
 const SMALL = 0.6; // scale of a strut, from which on motions are drawn less large
+const SHORT = 0.4; // of what is allowed to beams, which are short
 const STEEPEST = 0.16; // of a body, as it is drawn
 
 /** How far things move in one or several motions. @param {Scene} scene @param {Motion[]} motions @returns {Range} */
@@ -40,13 +41,14 @@ export function rangeOf(scene, motions) {
   const range = { up: 0, down: 0, any: 0, slope: 0, travel: {}, reach: {} };
   const turning = scene.bodies.filter(({ heave }) => heave !== null);
   const angles = turning.flatMap(({ pitch, roll }) => [pitch ?? [], roll ?? []]).flat();
+  const beams = turning.filter(({ kind }) => kind === "beam").flatMap(({ pitch }) => pitch ?? []);
   const free = scene.bodies.flatMap(({ heave, pitch }) => (heave === null && pitch !== null ? [pitch] : []));
   for (const motion of motions) {
     const all = { ...motion.coordinates, ...motion.roads };
     for (const [name, values] of Object.entries(all)) {
       const most = farthest(values);
       if (free.includes(name)) continue;
-      if (angles.includes(name)) range.slope = Math.max(range.slope, most);
+      if (angles.includes(name)) range.slope = Math.max(range.slope, most * (beams.includes(name) ? SHORT : 1));
       else range.any = Math.max(range.any, most);
     }
     for (const value of Object.values(motion.roads).flat()) range.down = Math.max(range.down, -value);
@@ -196,6 +198,7 @@ function levelsOf(scene, frame, range, lift) {
     if (kind === "wheel") return 2 * radius;
     if (kind === "beam" || (pitch !== null && mass === null)) return 9;
     if (kind === "table") return 16;
+    if (scene.oblique) return 10;
     if (body === main && pitch !== null) return Math.min(0.15 * height, 80);
     const share = main?.mass && mass ? Math.cbrt(mass / main.mass) : 1;
     return Math.max(14, Math.min(0.1 * height, 60) * Math.min(1, share));
@@ -293,8 +296,8 @@ function widen(made) {
     const { body } = own;
     if (body.kind === "wheel" || body.kind === "occupant") continue;
     const arms = [
-      ...made.struts.flatMap(({ strut: { upper, lower }, shift }) =>
-        [upper, lower].filter((place) => place.body === body).map(({ ahead }) => ahead * metre + shift)),
+      ...made.struts.flatMap(({ strut: { upper, lower }, x, shift }) =>
+        [upper, lower].filter((place) => place.body === body).map(() => (x - body.x) * metre + shift)),
       ...made.struts.flatMap(({ strut: { upper }, lever }) => (lever?.hinged && upper.body === body
         ? [upper.ahead * metre + lever.arm] : [])),
       ...scene.tyres.filter((tyre) => tyre.body === body).map(({ x }) => (x - body.x) * metre),

@@ -188,7 +188,7 @@ function ground(made, moment, into) {
 /** The profile under the wheels of one side: of the nearest of its roads. @param {Layout} made @param {number} y
  * @param {Moment} moment @param {number} from @param {number} to @returns {Point[]} */
 function profileOf(made, y, moment, from, to) {
-  const { tracks, oblique } = made.scene;
+  const { tracks, oblique, frontal } = made.scene;
   const own = (oblique ? tracks.filter((track) => track.y === y) : tracks).map(({ name, x }) =>
     ({ name, at: made.project(x, y, 0)[0] }));
   const [, level] = made.project(0, y, 0);
@@ -196,7 +196,7 @@ function profileOf(made, y, moment, from, to) {
   const points = [];
   for (let px = from; px <= to + STEP; px += STEP) {
     const near = own.reduce((best, each) => (Math.abs(each.at - px) < Math.abs(best.at - px) ? each : best));
-    points.push([px, level - made.lift * moment.road(near.name, px - near.at)]);
+    points.push([px, level - made.lift * moment.road(near.name, frontal ? 0 : px - near.at)]);
   }
   return points;
 }
@@ -504,7 +504,7 @@ function quantity(value, unit) {
 /** What stands beside things. @param {Layout} made @param {Moment} moment @param {Shape[]} into */
 function name(made, moment, into) {
   const { scene } = made;
-  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.thick >= 12) nameBody(made, own, moment, into);
+  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.thick >= 10) nameBody(made, own, moment, into);
   if (scene.column && scene.tyres.length === 1) return nameWheel(made, scene.tyres[0], moment, into);
   for (const { x, y, rigid, body: of } of scene.tyres) {
     const [px, floor] = made.project(x, y, 0);
@@ -530,7 +530,11 @@ function nameBody(made, own, moment, into) {
     into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
     return;
   }
-  if (made.scene.oblique && of.kind === "occupant") {
+  if (made.scene.oblique && of.kind !== "occupant") {
+    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${weight}`, "beside"));
+    return;
+  }
+  if (made.scene.oblique) {
     const [x, y] = at(-6);
     into.push(text(x, y - 0.52 * thick - 6, words, "text", "middle"));
     return;

@@ -18,12 +18,14 @@ import { box, circle, draw, line, polygon, travelOf } from "./symbols.js";
 /** Of a vehicle that stands still. @type {Moment} */
 export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0 };
 
+const SAME_SIDE = 0.3; // [m]
 const STEP = 4; // [px] of a road that is drawn
 const ROLLED = 9; // [rad/s] of a wheel, so that its spokes are seen to turn
 const COLUMN = 200; // [px/s] of a road under one wheel
 
 /** How fast a road passes [px/s]. @param {Layout} made @param {number} speed [m/s] */
-export const passing = (made, speed) => (made.scene.column || !(speed > 0) ? COLUMN : speed * made.metre);
+export const passing = (made, speed) => (made.scene.column || !(speed > 0) ? COLUMN
+  : speed * (made.project(1, 0, 0)[0] - made.project(0, 0, 0)[0]));
 
 /** What is at one time of a motion. @param {Layout} made @param {Motion} motion @param {number} at [s]
  * @param {{speed: number, shaded?: {element: string, state: string, intervals: [number, number][]}[]}} how
@@ -106,6 +108,8 @@ function fromTheSide(made, moment, behind, into) {
   for (const own of made.bodies.values()) if (isDrawn(made, own)) body(made, own, moment, into);
 }
 
+const NEAR = 0.25; // of the width, what belongs to the near side
+
 /** From the far side to the near one. @param {Layout} made @param {Moment} moment @param {Shape[]} behind
  * @param {Shape[]} into */
 function inDepth(made, moment, behind, into) {
@@ -114,14 +118,10 @@ function inDepth(made, moment, behind, into) {
   const [far, near] = [sides[0], sides[sides.length - 1]];
   for (const { bodies } of scene.links) if (!isAcross(bodies)) bar(made, bodies, moment, into);
   if (scene.silhouette && scene.main) car(made, scene.main, far, moment, into, "far");
-  const middle = (far + near) / 2;
-  let joined = false;
+  const first = sides.find((y) => y < near + NEAR * (far - near));
   for (const y of sides) {
-    if (y < middle && !joined) {
-      across(made, far, near, moment, into);
-      joined = true;
-    }
-    if (y === near && scene.silhouette && scene.main) {
+    if (y === first) across(made, far, near, moment, into);
+    if (y === first && scene.silhouette && scene.main) {
       car(made, scene.main, near, moment, into, "near");
       into.push(...behind);
     }
@@ -163,7 +163,8 @@ function ground(made, moment, into) {
   if (scene.oblique) {
     const [, far] = made.project(0, Math.max(...scene.tyres.map(({ y }) => y)), 0);
     into.push(box(0, far - 10, width, height, "plain"));
-    for (const y of [...new Set(scene.tracks.map((track) => track.y))].sort((a, b) => b - a)) {
+    const every = scene.tracks.map((track) => track.y);
+    for (const y of [Math.max(...every), Math.min(...every)]) {
       const [left] = made.project(Math.min(...scene.tracks.map(({ x }) => x)), y, 0);
       const [right] = made.project(Math.max(...scene.tracks.map(({ x }) => x)), y, 0);
       const profile = profileOf(made, y, moment, Math.max(0, left - 70), Math.min(width, right + 70));
@@ -189,7 +190,7 @@ function ground(made, moment, into) {
  * @param {Moment} moment @param {number} from @param {number} to @returns {Point[]} */
 function profileOf(made, y, moment, from, to) {
   const { tracks, oblique, frontal } = made.scene;
-  const own = (oblique ? tracks.filter((track) => track.y === y) : tracks).map(({ name, x }) =>
+  const own = (oblique ? tracks.filter((track) => Math.abs(track.y - y) < SAME_SIDE) : tracks).map(({ name, x }) =>
     ({ name, at: made.project(x, y, 0)[0] }));
   const [, level] = made.project(0, y, 0);
   /** @type {Point[]} */

@@ -94,17 +94,17 @@ def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
     _moving(visitor)
     asked: list[dict[str, Any]] = []
     page.on("request", lambda request: asked.append(request.post_data_json) if "panel/history" in request.url else None)
-    page.evaluate(
-        """async () => {
-          const slider = document.getElementById("slider elements.k");
-          for (let i = 0; i < 30; i += 1) {
-            slider.value = String(200 + i);
-            slider.dispatchEvent(new Event("input", { bubbles: true }));
-            await new Promise((done) => setTimeout(done, 20));
-          }
-        }"""
-    )
-    wait_until(lambda: len(asked) > 0)
+    with page.expect_request("**/api/panel/history"):
+        page.evaluate(
+            """async () => {
+              const slider = document.getElementById("slider elements.k");
+              for (let i = 0; i < 30; i += 1) {
+                slider.value = String(200 + i);
+                slider.dispatchEvent(new Event("input", { bubbles: true }));
+                await new Promise((done) => setTimeout(done, 20));
+              }
+            }"""
+        )
     _moving(visitor)
     page.wait_for_timeout(600)
     _moving(visitor)

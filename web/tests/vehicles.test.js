@@ -4,8 +4,10 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { captions } from "../src/vehicles/captions.js";
 import { layout, rangeOf } from "../src/vehicles/layout.js";
-import { REST, cornersOf, endsOf, momentOf, outlines, passing, posed } from "../src/vehicles/posed.js";
+import { REST, momentOf, passing } from "../src/vehicles/moments.js";
+import { cornersOf, outlines, posed } from "../src/vehicles/posed.js";
 import { heightOf, scene } from "../src/vehicles/scene.js";
+import { endsOf } from "../src/vehicles/struts.js";
 import { draw, planOf, travelOf } from "../src/vehicles/symbols.js";
 
 const SIZES = [{ width: 566, height: 356 }, { width: 404, height: 400 }, { width: 1092, height: 560 }];

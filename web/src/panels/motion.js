@@ -8,11 +8,12 @@ import { html, useEffect, useMemo, useRef } from "../parts/html.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
 import { textOf } from "../state/document.js";
-import { layout, rangeOf } from "../vehicles/layout.js";
-import { paint, stylesOf } from "../vehicles/paint.js";
-import { REST, momentOf, passing, pastOf, posed, trail } from "../vehicles/posed.js";
-import { scene } from "../vehicles/scene.js";
 import { captions } from "../vehicles/captions.js";
+import { layout, rangeOf } from "../vehicles/layout.js";
+import { REST, momentOf, passing, pastOf } from "../vehicles/moments.js";
+import { paint, stylesOf } from "../vehicles/paint.js";
+import { posed, trail } from "../vehicles/posed.js";
+import { scene } from "../vehicles/scene.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Layout, Motion } from "../vehicles/layout.js" */
@@ -26,6 +27,7 @@ const SPEEDS = /** @type {[number, string][]} */ ([[0.25, "¼"], [0.5, "½"], [1
 const LONGEST = 100; // [ms] that the clock goes on between two frames
 const SCRUB = 1 / 200; // [s] of a pixel that the picture is dragged
 const NUDGE = 1 / 60; // [s] of a key
+const SMALLEST = 40; // [px] of a picture
 const OFTEN = 30; // frames between two looks at the colours
 
 /** The whole panel. @param {{store: Store, api?: unknown}} props */
@@ -155,78 +157,40 @@ function scrub(event, end) {
 }
 
 /** Draws until it is ended. @typedef {{show: (shown: Shown) => void, end: () => void}} Film */
+/** What a film has at hand: `due` where it must draw, `seen` where somebody sees it.
+ * @typedef {{shown: Shown | null, made: Layout | null, styles: {[kind: string]: import("../vehicles/paint.js").Style},
+ * chosen: string | null, state: State | null, last: number, frames: number, due: boolean, seen: boolean}} Stage */
 
 /** A picture that follows the clock, and that moves the clock while it is not held.
  * @param {HTMLCanvasElement} canvas @param {Store} store @returns {Film} */
 function filmOn(canvas, store) {
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  let shown = /** @type {Shown | null} */ (null);
-  let made = /** @type {Layout | null} */ (null);
-  let range = /** @type {any} */ (null);
-  let [frame, frames, last, due] = [0, 0, performance.now(), true];
-  let styles = stylesOf(canvas);
-  let [seen, ran] = [true, false];
-  let chosen = /** @type {string | null} */ (null);
-  let seenState = /** @type {State | null} */ (null);
-
-  function fit() {
-    const { clientWidth: width, clientHeight: height } = canvas;
-    if (!shown || width < 40 || height < 40) return;
-    const ratio = globalThis.devicePixelRatio || 1;
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    const before = made && made.scene.model === shown.scene.model ? made.times : 0;
-    made = layout(shown.scene, { width, height }, range, before);
-    due = true;
-  }
-
+  /** @type {Stage} */
+  const stage = { shown: null, made: null, styles: stylesOf(canvas), chosen: null, state: null,
+    last: performance.now(), frames: 0, due: true, seen: true };
+  let range = /** @type {import("../vehicles/layout.js").Range | null} */ (null);
+  const fit = () => range && fitTo(canvas, stage, range);
   /** @param {number} now */
   function tick(now) {
     frame = requestAnimationFrame(tick);
-    const { view: { playing, speed } } = store.get();
-    const state = store.get();
-    if (state !== seenState) {
-      const next = chosenIn(state);
-      due ||= next !== chosen;
-      [chosen, seenState] = [next, state];
-    }
-    due ||= playing !== ran;
-    ran = playing;
-    const end = shown ? endOf(shown) : 0;
-    if (playing && !dragging && end > 0 && seen) clock.set(within(clock.get() + (Math.min(now - last, LONGEST) / 1000)
-      * speed, end));
-    last = now;
-    if (frames % OFTEN === 0) {
-      const next = stylesOf(canvas, shown?.own);
-      const others = ["wire", "own"].some((kind) => next[kind].stroke !== styles[kind].stroke);
-      if (others) [styles, due] = [next, true];
-    }
-    frames += 1;
-    if (!due || !shown || !made || !seen) return;
-    due = false;
-    const ratio = canvas.width / made.width;
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    pen.clearRect(0, 0, made.width, made.height);
-    paint(pen, shapesOf(shown, made, Math.min(clock.get(), end), chosen), styles);
-    canvas.dataset.frames = String(frames);
-    if (!playing || dragging) canvas.setAttribute("aria-valuenow", clock.get().toFixed(3));
+    look(canvas, stage, store.get());
+    goOn(stage, now);
+    if (stage.due && stage.seen) render(canvas, stage);
   }
-
+  let frame = requestAnimationFrame(tick);
   const leave = clock.subscribe(() => {
-    due = true;
+    stage.due = true;
   });
   const sized = new ResizeObserver(fit);
   sized.observe(canvas);
   const looking = new IntersectionObserver(([{ isIntersecting }]) => {
-    seen = isIntersecting;
+    stage.seen = isIntersecting;
   });
   looking.observe(canvas);
-  frame = requestAnimationFrame(tick);
   return {
     show: (next) => {
-      shown = next;
+      stage.shown = next;
+      stage.styles = stylesOf(canvas, next.own);
       range = rangeOf(next.scene, [next.motion ?? [], next.other ?? []].flat());
-      styles = stylesOf(canvas, next.own);
       fit();
     },
     end: () => {
@@ -236,6 +200,60 @@ function filmOn(canvas, store) {
       looking.disconnect();
     },
   };
+}
+
+/** Lays the scene out anew. @param {HTMLCanvasElement} canvas @param {Stage} stage
+ * @param {import("../vehicles/layout.js").Range} range */
+function fitTo(canvas, stage, range) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const { shown, made } = stage;
+  if (!shown || width < SMALLEST || height < SMALLEST) return;
+  const ratio = globalThis.devicePixelRatio || 1;
+  canvas.width = Math.round(width * ratio);
+  canvas.height = Math.round(height * ratio);
+  const before = made && made.scene.model === shown.scene.model ? made.times : 0;
+  stage.made = layout(shown.scene, { width, height }, range, before);
+  stage.due = true;
+}
+
+/** Sees what has changed of the page: the selected element, whether it is held, now and then the colours.
+ * @param {HTMLCanvasElement} canvas @param {Stage} stage @param {State} state */
+function look(canvas, stage, state) {
+  if (state !== stage.state) {
+    const next = chosenIn(state);
+    stage.due ||= next !== stage.chosen || state.view.playing !== stage.state?.view.playing;
+    stage.chosen = next;
+    stage.state = state;
+  }
+  stage.frames += 1;
+  if (stage.frames % OFTEN !== 0) return;
+  const styles = stylesOf(canvas, stage.shown?.own);
+  if (["wire", "own"].every((kind) => styles[kind].stroke === stage.styles[kind].stroke)) return;
+  stage.styles = styles;
+  stage.due = true;
+}
+
+/** Moves the clock, unless it is held. @param {Stage} stage @param {number} now [ms] */
+function goOn(stage, now) {
+  const { shown, state, last, seen } = stage;
+  const end = shown ? endOf(shown) : 0;
+  stage.last = now;
+  if (!state?.view.playing || dragging || end === 0 || !seen) return;
+  clock.set(within(clock.get() + (Math.min(now - last, LONGEST) / 1000) * state.view.speed, end));
+}
+
+/** Draws the present time. @param {HTMLCanvasElement} canvas @param {Stage} stage */
+function render(canvas, stage) {
+  const { shown, made, styles, chosen, state, frames } = stage;
+  if (!shown || !made) return;
+  stage.due = false;
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const ratio = canvas.width / made.width;
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, made.width, made.height);
+  paint(pen, shapesOf(shown, made, Math.min(clock.get(), endOf(shown)), chosen), styles);
+  canvas.dataset.frames = String(frames);
+  if (!state?.view.playing || dragging) canvas.setAttribute("aria-valuenow", clock.get().toFixed(3));
 }
 
 /** Everything in the picture at one time. @param {Shown} shown @param {Layout} made @param {number} at [s]

@@ -1,11 +1,11 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
-import { inWords } from "./posed.js";
+import { inWords } from "./naming.js";
 import { liftOf } from "./scene.js";
 import { line } from "./symbols.js";
 
 /** @import { Layout, Motion } from "./layout.js" */
-/** @import { Moment } from "./posed.js" */
+/** @import { Moment } from "./moments.js" */
 /** @import { Shape } from "./symbols.js" */
 
 const BARS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 40, 50, 100, 200, 500, 1000]; // [mm]

@@ -343,3 +343,15 @@ function roomAt(made, several, x, y) {
   const car = made.scene.silhouette ? 0.42 * made.scene.wheelbase * made.metre : Infinity;
   return Math.min(0.86 * Math.min(...gaps, Infinity), car, 180);
 }
+
+/** Whether a body is drawn by itself, not as a wheel or as the outline of a car. @param {Layout} made
+ * @param {PlacedBody} own */
+export const isDrawn = ({ scene }, { body: { kind }, body: own }) =>
+  kind !== "wheel" && kind !== "beam" && !(scene.silhouette && own === scene.main);
+
+/** The point of a picture that is so far above the ground. @param {Layout} made @param {number} x @param {number} y
+ * @param {number} z [px] @param {number} lift [m] @returns {Point} */
+export const point = (made, x, y, z, lift) => made.project(x, y, z + made.lift * lift);
+
+/** [px] of a hundredth of the wheelbase. @param {Layout} made */
+export const unitOf = (made) => (made.scene.wheelbase * made.metre) / 100;

@@ -1,87 +1,20 @@
 // A vehicle in one pose, as shapes in px with classes: every height is that of the simulation, every element is as long
 // as the simulation says.
 
+import { isDrawn, point, unitOf } from "./layout.js";
+import { name } from "./naming.js";
 import { CAR, EDGES, WINDOWS } from "./outline.js";
 import { heightOf, liftOf, spread } from "./scene.js";
-import { box, circle, draw, line, polygon, travelOf } from "./symbols.js";
+import { carrier, primary, strut } from "./struts.js";
+import { box, circle, line, polygon } from "./symbols.js";
 
-/** @import { Layout, Motion, PlacedBody, PlacedStrut } from "./layout.js" */
-/** @import { Body, Pose, Strut, Tyre } from "./scene.js" */
+/** @import { Layout, PlacedBody } from "./layout.js" */
+/** @import { Moment } from "./moments.js" */
+/** @import { Body, Tyre } from "./scene.js" */
 /** @import { Point, Shape } from "./symbols.js" */
-/** What is at one time: heights and angles, travels of elements [m], states of friction and gaps, how far wheels have
- * turned [rad], which element is selected, and the height of a road so many px before the wheel that it is under [m].
- * @typedef {{pose: Pose, travels: {[mount: string]: {[element: string]: number}},
- * states: {[mount: string]: {[element: string]: string}}, turned: number,
- * road: (name: string, px: number) => number,
- * chosen?: string | null}} Moment */
-
-/** Of a vehicle that stands still. @type {Moment} */
-export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0 };
 
 const SAME_SIDE = 0.3; // [m]
 const STEP = 4; // [px] of a road that is drawn
-const ROLLED = 9; // [rad/s] of a wheel, so that its spokes are seen to turn
-const COLUMN = 200; // [px/s] of a road under one wheel
-
-/** How fast a road passes [px/s]. @param {Layout} made @param {number} speed [m/s] */
-export const passing = (made, speed) => (made.scene.column || !(speed > 0) ? COLUMN
-  : speed * (made.project(1, 0, 0)[0] - made.project(0, 0, 0)[0]));
-
-/** What is at one time of a motion. @param {Layout} made @param {Motion} motion @param {number} at [s]
- * @param {{speed: number, shaded?: {element: string, state: string, intervals: [number, number][]}[]}} how
- * @returns {Moment} */
-export function momentOf(made, motion, at, { speed, shaded = [] }) {
-  const { time } = motion;
-  const step = time.length > 1 ? time[1] - time[0] : 1;
-  const now = Math.max(0, Math.min(time.length - 1, at / step));
-  /** @param {{[name: string]: number[]}} several */
-  const each = (several) => Object.fromEntries(Object.entries(several).map(([name, values]) => [name,
-    between(values, now)]));
-  const travels = Object.fromEntries(Object.entries(motion.elements ?? {}).map(([mount, of]) => [mount, each(of)]));
-  const states = shaded.filter(({ intervals }) => isWithin(intervals, at));
-  const perSample = step * passing(made, speed);
-  return {
-    pose: each({ ...motion.coordinates, ...motion.roads }),
-    travels,
-    states: Object.fromEntries(Object.entries(travels).map(([mount, of]) => [mount, Object.fromEntries(
-      Object.keys(of).flatMap((key) => {
-        const found = states.find(({ element }) => element === `${mount}.${key}`)
-          ?? states.find(({ element }) => element === key);
-        return found ? [[key, found.state]] : [];
-      }),
-    )])),
-    turned: ROLLED * at,
-    road: (name, px) => smooth(motion.roads[name] ?? [0], now + px / perSample),
-  };
-}
-
-/** @param {number[]} values @param {number} at in samples */
-function between(values, at) {
-  const i = Math.min(Math.floor(at), values.length - 1);
-  return values[i] + (at - i) * ((values[i + 1] ?? values[i]) - values[i]);
-}
-
-/** The same without corners. @param {number[]} values @param {number} at in samples */
-function smooth(values, at) {
-  const last = values.length - 1;
-  const now = Math.max(0, Math.min(last, at));
-  const i = Math.min(Math.floor(now), Math.max(0, last - 1));
-  const t = now - i;
-  const [a, b, c, d] = [i - 1, i, i + 1, i + 2].map((j) => values[Math.max(0, Math.min(last, j))]);
-  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
-}
-
-/** Whether a time is in one of the intervals, which are in order. @param {[number, number][]} intervals
- * @param {number} at */
-function isWithin(intervals, at) {
-  let [low, high] = [0, intervals.length];
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (intervals[middle][0] <= at) low = middle + 1;
-    else high = middle;
-  }
-  return low > 0 && at < intervals[low - 1][1];
-}
 
 /** A vehicle in a pose, before the outlines of another one. @param {Layout} made @param {Moment} moment
  * @param {{labels?: boolean, other?: Moment | null}} [how] @returns {Shape[]} */
@@ -147,15 +80,6 @@ function across(made, far, near, moment, into) {
   const { main } = made.scene;
   for (const edge of EDGES) into.push(line([far, near].map((y) => onCar(made, main, y, edge, moment)), "edge"));
 }
-
-/** Whether a body is drawn by itself, not as a wheel or as the outline of a car. @param {Layout} made
- * @param {PlacedBody} own */
-const isDrawn = ({ scene }, { body: { kind }, body: own }) =>
-  kind !== "wheel" && kind !== "beam" && !(scene.silhouette && own === scene.main);
-
-/** The point of a picture that is so far above the ground. @param {Layout} made @param {number} x @param {number} y
- * @param {number} z [px] @param {number} lift [m] @returns {Point} */
-const point = (made, x, y, z, lift) => made.project(x, y, z + made.lift * lift);
 
 /** The ground, and the roads on it. @param {Layout} made @param {Moment} moment @param {Shape[]} into */
 function ground(made, moment, into) {
@@ -228,115 +152,6 @@ function wheel(made, tyre, moment, into) {
   if (rigid) primary(made, tyre, moment, px, hub, into);
   else if (own.kind === "wheel" && made.struts.some(({ strut: { lower }, lever }) => lower.body === own && !lever)) {
     carrier(px, hub, hub - (made.scene.silhouette && made.scene.oblique ? 0.6 * R : R + 4), R, into);
-  }
-}
-
-/** What carries a strut on a hub. @param {number} x @param {number} hub @param {number} top @param {number} R
- * @param {Shape[]} into */
-const carrier = (x, hub, top, R, into) => void into.push(line([[x, hub], [x, top]], R > 20 ? "halo" : "halo thin"),
-  line([[x, hub], [x, top]], R > 20 ? "carrier" : "carrier thin"));
-
-/** The suspension of a wheel that is on its road. @param {Layout} made @param {Tyre} tyre @param {Moment} moment
- * @param {number} px @param {number} hub @param {Shape[]} into */
-function primary(made, tyre, moment, px, hub, into) {
-  const own = /** @type {PlacedBody} */ (made.bodies.get(tyre.body));
-  const found = made.primaries.find((each) => each.tyre === tyre);
-  if (!found) return;
-  const rest = made.project(tyre.x, tyre.y, own.z - own.thick / 2)[1];
-  const top = point(made, tyre.x, tyre.y, own.z - own.thick / 2, heightOf(tyre.port, moment.pose))[1];
-  const long = made.base - 2 * made.radius - rest;
-  carrier(px, hub, hub - made.radius, made.radius, into);
-  draw(found.plan, px, top, long, { lift: made.lift, scale: found.scale, wide: found.scale, labels: false,
-    travel: moment.travels[tyre.name] ?? {}, reach: made.range.reach[tyre.name] ?? {},
-    states: moment.states[tyre.name] ?? {} }, into);
-}
-
-/** Where a strut is, and its ends. @param {Layout} made @param {PlacedStrut} one @param {Pose} pose */
-export function endsOf(made, one, pose) {
-  const { x, y, shift, top, bottom } = one;
-  return {
-    x: made.project(x, y, 0)[0] + shift,
-    top: point(made, x, y, top, topHeight(one, pose))[1],
-    bottom: point(made, x, y, bottom, bottomHeight(one, pose))[1],
-  };
-}
-
-/** A strut between its two ends, wherever these are. @param {Layout} made @param {PlacedStrut} one
- * @param {Moment} moment @param {Shape[]} into */
-function strut(made, one, moment, into) {
-  const { x, y, bottom, top, scale, wide, plan } = one;
-  const { upper, lower, name: mount } = one.strut;
-  const [px] = made.project(x, y, 0);
-  const { x: at, top: yTop, bottom: yBottom } = endsOf(made, one, moment.pose);
-  if (one.lever) lever(made, one, moment, px, into);
-  over(made, lower, at, yBottom, moment, bottom, into);
-  over(made, upper, at, yTop, moment, top, into);
-  if (made.scene.silhouette && plan.parts.length > 0) {
-    const half = [plan.left, plan.right].map((side) => side * wide + 4);
-    into.push(box(at - half[0], yTop + 3, at + half[1], yBottom, "cut"),
-      line([[px - 0.09 * 100 * unitOf(made), yTop], [px + 0.09 * 100 * unitOf(made), yTop]], "seat"));
-  }
-  const travels = moment.travels[mount] ?? {};
-  draw(plan, at, yTop, yBottom - yTop - made.lift * travelOf(plan, travels), { lift: made.lift, scale, wide,
-    labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {},
-    chosen: moment.chosen }, into);
-  if (made.scene.column) tell(moment.states[mount] ?? {}, at + plan.right * wide + 8, yBottom - 18, into);
-}
-
-/** Says which friction sticks and which gaps are open. @param {{[element: string]: string}} states @param {number} x
- * @param {number} y @param {Shape[]} into */
-function tell(states, x, y, into) {
-  const names = (/** @type {string} */ state) => Object.keys(states).filter((key) => states[key] === state);
-  const [stick, open] = [names("stick"), names("open")];
-  if (stick.length > 0) into.push(text(x, y, `${stick.join(", ")} ${stick.length > 1 ? "stick" : "sticks"}`, "told"));
-  if (open.length > 0) into.push(text(x, y - 14, `${open.join(", ")} open`, "told"));
-}
-
-/** [px] of a hundredth of the wheelbase. @param {Layout} made */
-const unitOf = (made) => (made.scene.wheelbase * made.metre) / 100;
-
-/** How far the upper end of a strut is above its place [m]. @param {PlacedStrut} one @param {Pose} pose */
-const topHeight = ({ strut: { upper }, lever: on }, pose) => heightOf(upper.port, pose) / (on?.hinged ? on.ratio : 1);
-
-/** The same of its lower end; on an arm it is between the body and the wheel. @param {PlacedStrut} one
- * @param {Pose} pose */
-function bottomHeight(one, pose) {
-  const height = heightOf(one.strut.lower.port, pose);
-  return one.lever?.hinged ? height + (1 - one.lever.ratio) * topHeight(one, pose) : height;
-}
-
-/** The lever or arm on which an end of a strut is. @param {Layout} made @param {PlacedStrut} one
- * @param {Moment} moment @param {number} px @param {Shape[]} into */
-function lever(made, one, moment, px, into) {
-  const { end, arm, ratio, hinged } = /** @type {NonNullable<PlacedStrut["lever"]>} */ (one.lever);
-  const place = one.strut[end];
-  const own = place.body && made.bodies.get(place.body);
-  if (!own) return;
-  const z = end === "lower" ? one.bottom : one.top;
-  const moved = heightOf(place.port, moment.pose) / ratio;
-  const fixed = hinged ? topHeight(one, moment.pose) : 0;
-  const y = (/** @type {number} */ lift) => made.base - z - made.lift * lift;
-  const hinge = px + arm;
-  const share = Math.max(1, ratio);
-  const far = hinge - share * arm;
-  into.push(line([[hinge, y(fixed)], [far, y(fixed + share * (moved - fixed))]], "lever"));
-  if (hinged) into.push(line([[hinge, y(fixed)], [hinge, made.base - one.top - made.lift * fixed]], "lever"));
-  else into.push(polygon([[hinge, y(0)], [hinge - 6, y(0) + 11], [hinge + 6, y(0) + 11]], "pivot"));
-  into.push(circle(hinge, y(fixed), 3, "joint"),
-    circle(px + one.shift, y(fixed + ratio * (moved - fixed)), 3, "joint"));
-}
-
-/** A bar over several bodies, or a bracket to where a strut was moved. @param {Layout} made
- * @param {import("./scene.js").Place} place @param {number} at @param {number} y @param {Moment} moment
- * @param {number} z @param {Shape[]} into */
-function over(made, place, at, y, moment, z, into) {
-  if (place.over.length > 1) {
-    const ends = place.over.map((body) => point(made, body.x, body.y, z, liftOf(body, 0, 0, moment.pose)));
-    into.push(line(ends, "lever"), ...ends.map(([a, b]) => circle(a, b, 3, "joint")), circle(at, y, 3, "joint"));
-    for (const [i, body] of place.over.entries()) {
-      if (body.kind === "wheel") carrier(ends[i][0], point(made, body.x, body.y, made.radius, liftOf(body, 0, 0,
-        moment.pose))[1], ends[i][1], made.radius, into);
-    }
   }
 }
 
@@ -477,87 +292,3 @@ export function trail(made, past, kind) {
   }
   return points.length > 1 ? [line(points, kind)] : [];
 }
-
-/** How high a coordinate was, so many px ago; nan before the beginning. @param {Layout} made @param {Motion} motion
- * @param {number} at [s] @param {number} speed [m/s] @returns {Moment["road"]} */
-export const pastOf = (made, motion, at, speed) => (name, px) => {
-  const time = at + px / passing(made, speed);
-  const step = motion.time.length > 1 ? motion.time[1] - motion.time[0] : 1;
-  return time < 0 ? NaN : smooth(motion.coordinates[name] ?? [0], time / step);
-};
-
-/** @type {{[name: string]: string}} */
-const WORDS = { sprung: "body", unsprung: "wheel", primary: "primary mass" };
-
-/** A name as words. @param {string} name */
-export const inWords = (name) => WORDS[name] ?? name.replace(/^unsprung_/, "").replaceAll("_", " ");
-
-/** A mass with its unit. @param {number} mass [kg] */
-export const massText = (mass) => (mass >= 1e4 ? `${Number((mass / 1e3).toPrecision(4))} t`
-  : `${Number(mass.toPrecision(5))} kg`);
-
-/** @param {number} value @param {string} unit */
-function quantity(value, unit) {
-  const [factor, prefix] = value >= 1e6 ? [1e6, "M"] : value >= 1e3 ? [1e3, "k"] : [1, ""];
-  return `${Number((value / factor).toPrecision(4))} ${prefix}${unit}`;
-}
-
-/** What stands beside things. @param {Layout} made @param {Moment} moment @param {Shape[]} into */
-function name(made, moment, into) {
-  const { scene } = made;
-  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.thick >= 10) nameBody(made, own, moment, into);
-  if (scene.column && scene.tyres.length === 1) return nameWheel(made, scene.tyres[0], moment, into);
-  for (const { x, y, rigid, body: of } of scene.tyres) {
-    const [px, floor] = made.project(x, y, 0);
-    if (rigid || of.kind !== "wheel" || (scene.oblique && y > 0)) continue;
-    into.push(text(px, scene.oblique ? floor + 18 : made.height - 10, inWords(of.name), "quiet", "middle"));
-  }
-}
-
-const LETTER = 6.2; // [px] about as wide
-
-/** The name and the mass of a body: in it, where there is room. @param {Layout} made @param {PlacedBody} own
- * @param {Moment} moment @param {Shape[]} into */
-function nameBody(made, own, moment, into) {
-  const { body: of, z, thick, from, to } = own;
-  const at = (/** @type {number} */ px) => {
-    const [x, y] = point(made, of.x, of.y, z, liftOf(of, px / made.metre, 0, moment.pose));
-    return /** @type {Point} */ ([x + px, y + 4]);
-  };
-  const words = of.kind === "table" ? "table" : inWords(of.name);
-  const weight = of.mass === null ? "" : massText(of.mass);
-  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 56 < to - from && thick >= 15;
-  if (fits && of.kind !== "occupant" && !made.scene.oblique) {
-    into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
-    return;
-  }
-  if (made.scene.oblique && of.kind !== "occupant") {
-    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${weight}`, "beside"));
-    return;
-  }
-  if (made.scene.oblique) {
-    const [x, y] = at(-6);
-    into.push(text(x, y - 0.52 * thick - 6, words, "text", "middle"));
-    return;
-  }
-  const wide = LETTER * Math.max(words.length, weight.length) + 8;
-  const left = made.project(of.x, of.y, 0)[0] + to + wide > made.width || (made.scene.column && of.kind === "body");
-  const [x, y] = at(left ? from - 7 : of.kind === "occupant" ? 26 : to + 7);
-  const anchor = left ? "end" : "start";
-  into.push(text(x, y - 7, words, "text", anchor), text(x, y + 8, weight, "quiet", anchor));
-}
-
-/** @param {Layout} made @param {Tyre} tyre @param {Moment} moment @param {Shape[]} into */
-function nameWheel(made, { x, y, port, body: of, network }, moment, into) {
-  const [px, py] = point(made, x, y, made.radius, heightOf(port, moment.pose));
-  const beside = px + made.radius + 12;
-  if (of.mass !== null) into.push(text(beside, py - 4, `${inWords(of.name)} ${massText(of.mass)}`, "beside"));
-  if (network.kind === "element") into.push(text(beside, py + 11, `tyre ${quantity(network.value, network.unit)}`,
-    "beside"));
-}
-
-/** @param {number} x @param {number} y @param {string} words @param {string} [kind]
- * @param {"start" | "middle" | "end"} [anchor] @returns {Shape} */
-const text = (x, y, words, kind = "text", anchor = "start") =>
-  ({ kind: "text", x, y, text: words, class: kind, anchor });
-

@@ -14,23 +14,27 @@ from inerter.app.answers import optimum
 from inerter.app.comparing import compare_designs
 from inerter.app.deciding import margins_of
 from inerter.app.designs import designs_of
-from inerter.app.documents import study_from
+from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.checking import check_study
 from inerter.files.study.parts import PartResult
+from inerter.files.study.place import Sweep
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
+from inerter.files.study.sweeps import number_of
+from inerter.networks.elements import Element
 from inerter.report.study_data import as_text
 from inerter.report.writing import write_figures_and_report
+from inerter.units import parse_quantity
 
 Body = Mapping[str, Any]
 
 
 def optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    return optimum(study_from(body["study"]), body, tell)
+    return optimum(*study_for(body), tell)
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
@@ -68,7 +72,23 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    return _as_data(_run_study(replace(study, layouts=layouts), folder, tell))
+    result = _as_data(_run_study(replace(study, layouts=layouts), folder, tell))
+    swept = [_describe_sweep(study, one) for one in study.sweeps]
+    return {**result, "swept": swept, "units": study.free_units}
+
+
+def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
+    """Swept number: its name, what it is, its own value in the study, and the unit in which it is written."""
+    element = study.elements.get(swept.label)
+    own = number_of(study, swept.place).value
+    unit = swept.written or swept.unit
+    return {
+        "name": swept.label,
+        "words": f"{element.key} {swept.label}" if isinstance(element, Element) else swept.words,
+        "unit": swept.unit,
+        "own": float(own) if isinstance(own, int | float) else None,
+        "written": {"unit": unit, "factor": parse_quantity(f"1 {unit}", swept.unit) if unit else 1.0},
+    }
 
 
 def _as_data(result: StudyResult) -> Any:
@@ -107,4 +127,4 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:
-    return compare_designs(study_from(body["study"]), body, tell)
+    return compare_designs(*study_for(body), tell)

@@ -131,7 +131,8 @@ def test_a_fit_that_is_withheld_offers_what_can_be_done(
         time.sleep(0.2)
         job = client.get(f"/api/work/{job['id']}").json()
     result = client.get(f"/api/work/{job['id']}/result").json()
-    assert result["reason"] and result["reason"] in result["status"]
+    assert result["reason"]
+    assert result["reason"] in result["status"]
     assert result["device"] is None
     assert all(value == "withheld" and "None" not in interval for value, interval in result["shown"].values())
     offers = [*result["offers"], *(offer for cause in result["causes"] for offer in cause["offers"])]

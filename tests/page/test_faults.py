@@ -242,7 +242,8 @@ def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_pat
     page.get_by_role("button", name="Identify").click()
     fit = _fits(visitor, 1)
     told = fit.inner_text()
-    assert "null" not in told and "undefined" not in told
+    assert "null" not in told
+    assert "undefined" not in told
     assert told.index("times the sensor noise") < told.index("Possible causes") < told.index("95 % interval")
     assert "the device is compliant" in told
     assert fit.locator("td:text-is('withheld')").count() == 3

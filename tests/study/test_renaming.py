@@ -90,7 +90,11 @@ EVERYWHERE: dict[str, Any] = {
     "indices": {
         "stroke": {"kind": "element-stroke", "element": "k"},
         "push": {"kind": "element-force", "element": "c"},
-        "sway": {"kind": "random-response", "outputs": {"c_force": 1.0, "k_force": 0.5}, "excitation": {"force": "load", "intensity": "1 N^2/Hz"}},
+        "sway": {
+            "kind": "random-response",
+            "outputs": {"c_force": 1.0, "k_force": 0.5},
+            "excitation": {"force": "load", "intensity": "1 N^2/Hz"},
+        },
         "gain": {"kind": "peak-response", "input": "load", "output": "k_force"},
     },
     "conditions": [{"k": "30 kN/m", "share": 0.3}, {"elements": {"k": "20 kN/m", "ratio": "950 kg"}, "share": 0.7}],

@@ -1,8 +1,8 @@
 // Where the page begins: the token of its first link, what it knew before, the server's answers from then on.
 
 import { render } from "preact";
-import "uplot/dist/uPlot.min.css";
 import "./page.css";
+import "./vehicles/vehicles.css";
 import { Lost, createApi } from "./api.js";
 import { isUnauthorised, keepAsking } from "./asking.js";
 import { Page } from "./page.js";

@@ -183,7 +183,8 @@ export async function takeFitted(store, api, fit, device) {
 /** What is told before a device that has values which no record supports. @param {any} fit */
 function unidentified({ parameters }) {
   const names = Object.keys(parameters ?? {}).filter((name) => parameters[name].identified === false);
-  return names.length === 0 ? "" : `Not identifiable: ${names.join(", ")}; the records do not support the values taken. `;
+  return names.length === 0 ? ""
+    : `Not identifiable: ${names.join(", ")}; the records do not support the values taken. `;
 }
 
 /** What is told in the place of a device: the values of a fit that is not to be relied on are not given.

@@ -35,7 +35,7 @@ def of_file(
     port: int,
     limits: tuple[int, int],
 ) -> App:
-    """The application that begins with a study: its name, text and file, if any; `root` is where it keeps its things."""
+    """The application that begins with a study (name, text, file), if any; `root` is where it keeps its things."""
     return application(Server(root, Start.of(*file) if file else Start(), quick=quick), token, port, *limits)
 
 

@@ -5,7 +5,7 @@ import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { Select, Table, useChoice, formHandler } from "../parts/controls.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { shown, withUnit } from "../state/scale.js";
+import { shown } from "../state/scale.js";
 import { Files } from "./files.js";
 import { takeFitted, tryToBegin, withheld } from "../working.js";
 import { JobHead } from "./work.js";
@@ -49,7 +49,9 @@ function RecordRow({ store, api, record }) {
   const channels = record.channels ?? [];
   const [picked, setPicked] = useChoice(channels.map(({ name }) => name));
   const channel = channels.find(({ name }) => name === picked);
-  const curves = useMemo(() => (channel ? [{ label: channel.name, values: channel.values }] : []), [channel]);
+  const plot = useMemo(() => channel && { title: `${channel.name} of ${record.name} over time`,
+    x: { what: "time", unit: "s" }, y: { what: channel.name, unit: channel.unit },
+    curves: [{ name: channel.name, x: channel.time, y: channel.values, colour: "s3", unnamed: true }] }, [channel]);
   return html`<li><div class="row"><b>${record.name}</b> ${shown(record.samples)} samples, ${shown(record.duration)} s.
       ${channel && html`<${Select} label="Show" value=${channel.name} choices=${channels.map(({ name }) => name)}
         set=${setPicked} />`}
@@ -58,9 +60,7 @@ function RecordRow({ store, api, record }) {
     <ul>${(record.findings ?? []).map((/** @type {any} */ { severity, about, sentence }) => html`<li
       key=${`${about} ${sentence}`} class="finding" data-severity=${severity}>${sentence}</li>`)}
       ${(record.notes ?? []).map((/** @type {string} */ note) => html`<li key=${note} class="quiet">${note}</li>`)}</ul>
-    ${channel && html`<${Plot} x=${channel.time} curves=${curves} xLabel="time [s]"
-      yLabel=${withUnit(channel.name, channel.unit)} title=${`${channel.name} of ${record.name} over time`}
-        theme=${store.get().view.theme} />`}</li>`;
+    ${plot && html`<${Plot} plot=${plot} />`}</li>`;
 }
 
 /** @param {Store} store @param {Api} api @param {string} id */

@@ -19,9 +19,11 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
  * seconds since 1970, by the clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
- * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean}} View 
+ * playing: boolean, compared: string[], against: string, seconds: number, seed: number, across: boolean,
+ * tall: boolean, ghosts: string[]}} View  `index`: by which layouts are ranked, the first of the study where it is none
+ * of them; `ghosts`: designs whose responses are drawn too;
  * `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with;
- * `across`: the drawing over the width of the page */
+ * `across`: the drawing over the width of the page; `tall`: the tabs over the height of it */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
@@ -65,8 +67,8 @@ export const initial = () => ({
   history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
   parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [], typed: null,
   view: {
-    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 1, playing: false,
-    compared: [], against: "", seconds: 10, seed: 0, across: false,
+    path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
+    compared: [], against: "", seconds: 10, seed: 0, across: false, tall: false, ghosts: [],
   },
 });
 

@@ -90,9 +90,7 @@ class ConditionEntry:
     numbers: Mapping[str, Any]
 
 
-def rename_places(
-    table: Any, names: Mapping[str, str], *, keys: Collection[str] = (), entries: bool = False
-) -> Any:
+def rename_places(table: Any, names: Mapping[str, str], *, keys: Collection[str] = (), entries: bool = False) -> Any:
     """A table by places, written in either way, with other names of elements in them; `entries` as of `by_place`.
 
     `keys` are no places. An element whose name alone would be one of them, or a section, is named with its section.

@@ -34,7 +34,7 @@ def _fill(visitor: Visitor, place: str, text: str) -> None:
 
 
 def _layout(visitor: Visitor, name: str) -> None:
-    visitor.page.locator(f"[aria-label=Layouts] button[title^='{name}']").first.click()
+    visitor.page.locator(f"[aria-label=Layouts] .pick[title='{name}']").click()
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Pa
     page = visitor.page
     assert visitor.text == "constructor | toString - valueOf"
     assert visitor.values()["J1"] > 0.0
-    assert page.locator(".answers [data-better]").inner_text().endswith("%")
+    assert "%" in page.inner_text(".answers tr.on")
     _fill(visitor, "elements.toString", "3 kN s/m")
     visitor.settled()
     _layout(visitor, "S1")
@@ -116,8 +116,11 @@ def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Pa
 
 def _rename(visitor: Visitor, old: str, new: str) -> None:
     page = visitor.page
+    page.evaluate("() => document.querySelectorAll('details[open].menu').forEach(menu => { menu.open = false; })")
     page.locator(f".drawing [aria-label^='{old},']").first.click()
     page.wait_for_function("old => document.getElementById('element-name').value === old", arg=old)
+    if not page.is_visible("#element-name"):
+        page.get_by_text("Part", exact=True).click()
     page.fill("#element-name", new)
     page.keyboard.press("Enter")
 
@@ -159,7 +162,7 @@ def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None
     page.locator("form:has-text('New name') input").fill("S1")
     page.keyboard.press("Enter")
     page.wait_for_selector(".notice:has-text('another layout')")
-    assert page.locator("[aria-label=Layouts] button[title^='S1']").count() == 1
+    assert page.locator("[aria-label=Layouts] .pick[title='S1']").count() == 1
 
 
 def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Visitor) -> None:
@@ -174,10 +177,10 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     visitor.settled()
     wait_until(lambda: page.locator("td[data-index]").first.get_attribute("data-value") not in (None, ""))
     assert visitor.values() == before
-    assert "%" in page.locator(".answers [data-better]").first.inner_text()
-    assert page.locator(".plot canvas").count() > 0
-    told = page.locator(".answers .problems").inner_text()
-    assert told.count("layouts.S3e") == 1
+    assert "%" in page.inner_text(".answers tr.on")
+    assert page.locator("#tab-panel .plot path").count() > 0
+    assert page.inner_text(".problems").count("layouts.S3e") == 1
+    assert page.locator(".answers .pick").count() == 5
 
 
 def test_a_file_that_another_program_changes_is_told_and_read_again(
@@ -268,7 +271,7 @@ def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_pat
 
 
 MARKUP = "<img src=//evil.example/x onerror=window.struck=1>"
-NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "‮txt.exe", "${window.struck=1}", "javascript:window.struck=1"]
+NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "\u202etxt.exe", "${window.struck=1}", "javascript:struck=1"]
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -284,11 +287,11 @@ def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, nam
     _rename(visitor, "k", name)
     page.wait_for_selector("form:has(#element-name) .problem")
     page.fill("#network-text", f"k | {name}")
-    page.wait_for_selector(".network .problem")
+    page.wait_for_selector("#network-problem")
     page.keyboard.press("Control+z")
     for spoilt in (
-        text.replace('[layouts]', f"[layouts]\n{quoted} = \"k | c\""),
-        text.replace('[elements]', f"[elements]\n{quoted} = {quoted}"),
+        text.replace("[layouts]", f'[layouts]\n{quoted} = "k | c"'),
+        text.replace("[elements]", f"[elements]\n{quoted} = {quoted}"),
         text.replace('speed = "25 m/s"', f"speed = {quoted}"),
         f"[{quoted}]\n{quoted} = {quoted}\n" + text,
         f"= {quoted}",
@@ -297,12 +300,12 @@ def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, nam
         path.write_text(spoilt)
         visitor.open(path)
         page.wait_for_timeout(400)
-    (tmp_path / "record.csv").write_text(f"time [s],{quoted},force [{name}]\n" + "".join(
-        f"{0.001 * i},{i % 7},{i % 5}\n" for i in range(300)
-    ))
+    (tmp_path / "record.csv").write_text(
+        f"time [s],{quoted},force [{name}]\n" + "".join(f"{0.001 * i},{i % 7},{i % 5}\n" for i in range(300))
+    )
     visitor.open(tmp_path / "record.csv")
     page.wait_for_timeout(800)
-    assert page.evaluate("() => [window.struck, document.querySelectorAll('main img, main svg[onload]').length]") == [
+    assert page.evaluate("() => [window.struck, document.querySelectorAll('body img, body svg[onload]').length]") == [
         None,
         0,
     ]
@@ -314,13 +317,16 @@ def _shown(visitor: Visitor) -> Any:
     visitor.settled()
     visitor.drawn()
     return visitor.page.evaluate(
-        """() => ({
-          numbers: [...document.querySelectorAll(".answers [data-value], .answers [data-better]")]
-            .map(each => [each.dataset.index, each.dataset.value, each.dataset.better]),
-          names: [...document.querySelectorAll(".answers th")].map(each => each.textContent.trim()),
-          doubts: [...document.querySelectorAll(".answers .problem, .answers .doubts, .answers .unchosen")]
-            .map(each => each.textContent.trim()),
-        })"""
+        """() => {
+          const texts = (selector) => [...document.querySelectorAll(selector)].map(each => each.textContent.trim());
+          return {
+            numbers: [...document.querySelectorAll(".answers [data-value], .answers [data-better]")]
+              .map(each => [each.dataset.index, each.dataset.value, each.dataset.better]),
+            names: texts(".answers th"),
+            verdict: texts("#verdict"),
+            doubts: texts(".problem, .doubts, .unchosen"),
+          };
+        }"""
     )
 
 
@@ -344,7 +350,7 @@ def _alone(visitors: Windows, served: Served, name: str) -> Any:
 def _example(visitor: Visitor, name: str) -> None:
     visitor.open(EXAMPLES / f"{name}.toml")
     visitor.page.wait_for_selector(f".notice:has-text('{name}.toml is open')")
-    visitor.page.wait_for_selector(".answers [data-being=current], .answers [data-being=none]", timeout=120_000)
+    visitor.page.wait_for_selector(".answers[data-being=current], .answers[data-being=none]", timeout=120_000)
 
 
 @pytest.mark.parametrize(("first", "other"), sampled(PAIRS, always=[("train", "half-car"), ("seat", "absorber")],
@@ -370,11 +376,12 @@ def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visi
     for tab in ("history", "response"):
         page.click(f"#tab-{tab}")
         visitor.drawn()
-        assert "in the middle of their" in page.inner_text(".answers .unchosen")
+        assert "in the middle of their" in page.inner_text("#tab-panel .unchosen")
+        assert "chosen yet" in page.inner_text("#verdict")
     assert "%" not in page.inner_text(".answers table")
     with page.expect_request("**/api/panel/optimise"):
         visitor.open(EXAMPLES / "half-car.toml")
     page.wait_for_selector(".notice:has-text('half-car.toml is open')")
     visitor.settled()
     assert page.locator(".unchosen").count() == 0
-    assert page.locator(".answers [data-better]").first.inner_text().endswith("%")
+    assert "%" in page.inner_text(".answers table")

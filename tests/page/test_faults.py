@@ -385,3 +385,16 @@ def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visi
     visitor.settled()
     assert page.locator(".unchosen").count() == 0
     assert "%" in page.inner_text(".answers table")
+
+
+def test_a_tolerance_that_the_method_neglects_has_no_number(visitor: Visitor) -> None:
+    page = visitor.page
+    _example(visitor, "ball_screw")
+    visitor.settled()
+    page.click("#tab-tolerance")
+    page.locator("#tab-panel").get_by_role("button", name="Compute").click()
+    row = page.locator("[aria-label='Which value matters'] tr:has(th:text-is('f'))")
+    row.wait_for()
+    assert "%" not in row.inner_text()
+    told = page.inner_text("#tab-panel")
+    assert told.index("ignores the tolerance of f") < told.index("nominal")

@@ -85,7 +85,7 @@ def _tree(entry: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class FrontPart(StudyPart["FrontResult"]):
+class NetworkFrontPart(StudyPart["NetworkFrontResult"]):
     """A network of a layout that is searched between its single optima, for the front."""
 
     layout: str
@@ -100,7 +100,7 @@ class FrontPart(StudyPart["FrontResult"]):
         """Name of the part in messages."""
         return f"{self.layout} front {self.network}"
 
-    def compute(self, study: Study, designs: Designs, threads: int) -> FrontResult:
+    def compute(self, study: Study, designs: Designs, threads: int) -> NetworkFrontResult:
         """Points of the network closest to the aims of the front."""
         assert self.task is not None
         assert self.plan is not None
@@ -108,18 +108,18 @@ class FrontPart(StudyPart["FrontResult"]):
         (points,) = front_group(self.plan, self.scale, [self.task])
         return self._result(points)
 
-    def failed_result(self, study: Study, message: str) -> FrontResult:
+    def failed_result(self, study: Study, message: str) -> NetworkFrontResult:
         """Result without points."""
         assert self.task is not None
         return self._result(NetworkPoints(self.task.topology, reason=message))
 
-    def _result(self, points: NetworkPoints) -> FrontResult:
+    def _result(self, points: NetworkPoints) -> NetworkFrontResult:
         entry = {**vars(points), "topology": points.topology.tree}
-        return FrontResult(self.layout, self.wave, self.network, entry, points.reason)
+        return NetworkFrontResult(self.layout, self.wave, self.network, entry, points.reason)
 
 
 @dataclass(frozen=True)
-class FrontResult(PartResult):
+class NetworkFrontResult(PartResult):
     """Points of a network; all of it survives JSON."""
 
     layout: str
@@ -129,9 +129,9 @@ class FrontResult(PartResult):
     message: str = ""
 
     @property
-    def part(self) -> FrontPart:
+    def part(self) -> NetworkFrontPart:
         """Part to which the result belongs."""
-        return FrontPart(self.layout, self.wave, self.network)
+        return NetworkFrontPart(self.layout, self.wave, self.network)
 
     @property
     def kind(self) -> str:
@@ -238,7 +238,7 @@ class RealResult(PartResult):
 
 def result_of(entry: Mapping[str, Any]) -> PartResult:
     """The result that a line of the journal of a search has."""
-    for key, kind in (("networks", GroupResult), ("points", FrontResult), ("kept", RealResult)):
+    for key, kind in (("networks", GroupResult), ("points", NetworkFrontResult), ("kept", RealResult)):
         if key in entry:
             made: PartResult = kind(**entry)
             return made

@@ -21,9 +21,9 @@ from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED, VERSIONS, Progress, origins
 from inerter.files.study.search_parts import (
-    FrontPart,
-    FrontResult,
     GroupResult,
+    NetworkFrontPart,
+    NetworkFrontResult,
     NetworkGroup,
     RealPart,
     RealResult,
@@ -181,10 +181,10 @@ def _fronts(
             while True:
                 sent = replace(plan, plans=tuple(map(replace, plan.plans)))
                 parts = [
-                    FrontPart(layout, number, plan.plans[0].topology_text(one.topology), one, sent, scale)
+                    NetworkFrontPart(layout, number, plan.plans[0].topology_text(one.topology), one, sent, scale)
                     for one in tasks
                 ]
-                found = [one for one in work.compute(parts) if isinstance(one, FrontResult)]
+                found = [one for one in work.compute(parts) if isinstance(one, NetworkFrontResult)]
                 scale, tasks = waves.send([one.network_points() for one in found])
                 number += 1
         except StopIteration as end:

@@ -53,8 +53,7 @@ from inerter.files.study.place import ELEMENTS, Sweep, place_of
 from inerter.files.study.task_registry import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
-from inerter.methods.statistical_linearisation import StatisticalLinearisation
+from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches, with_gradients
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements.registry import format_unit_kinds
 from inerter.registry import cache_until_registration
@@ -65,6 +64,7 @@ _MOST_ROADS = 100_000
 _MOST_OF_FRONT = 1000
 OVER = ("mean", "worst")
 _SHAFT = RealInerter()
+_QUICK = with_gradients("exact")[0].name  # of the quick methods the one that models most
 SPACINGS = ("linear", "log")
 POINTS = 25  # of a front
 ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
@@ -204,7 +204,7 @@ class RealInerters:
         some_of("a method", METHODS),
         "Methods, each of which optimises the values for real inerters; norm neglects their friction.",
         'methods = ["statistical-linearisation", "expected-value"]',
-        default=(StatisticalLinearisation.name,),
+        default=(_QUICK,),
     )
     best: int = key(
         whole(1, 1000),

@@ -203,7 +203,7 @@ class RealInerters:
     methods: tuple[str, ...] = key(
         some_of("a method", METHODS),
         "Methods, each of which optimises the values for real inerters; norm neglects their friction.",
-        'methods = ["statistical-linearisation", "expected-value"]',
+        'methods = ["expected-value"]',
         default=(_QUICK,),
     )
     best: int = key(
@@ -296,7 +296,7 @@ class Settings:
     real_inerters: RealInerters | None = key(
         table_of(RealInerters, about=RealInerters.__doc__),
         "Real inerters with which inerter search optimises its best networks once more.",
-        'real_inerters = { friction = "10 N", stiffness = "1 MN/m", damping = "3.2 kN s/m" }',
+        'real_inerters = { friction = "10 N", best = 3 }',
         default=None,
     )
     tolerance: Mapping[str, float] = key(

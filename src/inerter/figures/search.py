@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from math import isfinite, nan
 from pathlib import Path
@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label, capital, title_with_name
 from inerter.figures.networks import draw_networks
 from inerter.figures.style import add_legend, colour, marker, new_figure, save, style_context
 from inerter.files.study.searching import LayoutFront, LayoutSearch, StudySearch, searched_mounts
@@ -61,7 +61,9 @@ def draw_search(found: StudySearch, folder: Path) -> list[Path]:
 
 
 def front_curves(found: StudySearch, one: LayoutFront, pair: tuple[int, int], ax: Axes) -> Axes:
-    """Fronts of the networks of up to each number of elements in two indices, and designs without a free network.
+    """Fronts in two indices of the networks of up to each number of elements, and designs without a free network.
+
+    A front of three indices is that over all networks, by network.
 
     Designs that are farther than `_FAR` ranges of the front over all networks from its ends are not in the picture.
     """
@@ -73,15 +75,15 @@ def front_curves(found: StudySearch, one: LayoutFront, pair: tuple[int, int], ax
     least, size = own.min(axis=0), np.ptp(own, axis=0)
     size = np.where(size > 0.0, size, np.abs(least))
     inside = [own]
-    line = "-" if len(result.symbols) == 2 else ""
-    for number, (count, front) in enumerate(_distinct_fronts(one)):
+    two = len(result.symbols) == 2
+    for number, (label, front) in enumerate(_series(one)):
         table = np.array([[point.values[i] for i in pair] for point in front]) * factors
         if np.all(table.min(axis=0) <= least + _FAR * size):
-            look: dict[str, Any] = {"linestyle": line, "marker": marker(number), "color": colour(number)}
+            look: dict[str, Any] = {"marker": marker(number), "color": colour(number), "linestyle": "-" if two else ""}
             changes = [i for i in range(1, len(front)) if front[i].layout != front[i - 1].layout]
             for part in np.split(table, changes):  # no line from one network to another
                 ax.plot(*part.T, markersize=3.0, **look)
-            ax.plot([], [], label=f"up to {count} element{'' if count == 1 else 's'}", markersize=3.0, **look)
+            ax.plot([], [], label=label, markersize=3.0, **look)
             inside.append(table)
     for layout in dict.fromkeys(each.layout for each in found.fixed):
         at = np.array(_fixed_values(found, layout, names)) * factors
@@ -89,12 +91,13 @@ def front_curves(found: StudySearch, one: LayoutFront, pair: tuple[int, int], ax
             ax.plot(*at[:, None], linestyle="", marker="x", markersize=6.0, color="black", zorder=3)
             ax.annotate(layout, (at[0], at[1]), xytext=(5.0, 5.0), textcoords="offset points")
             inside.append(at[None])
-    _name_networks(one, pair, factors, ax)
+    if two:
+        _name_networks(one, pair, factors, ax)
     highest = np.minimum(np.concatenate(inside).max(axis=0), least + _FAR * size)
     margin = 0.05 * (highest - least)
     ax.set(
         **{
-            f"{which}label": axis_label(f"{capital(study.index(name).title)} ({name})", scale.unit)
+            f"{which}label": axis_label(capital(title_with_name(study.index(name).title, name)), scale.unit)
             for which, name, scale in zip("xy", names, scales, strict=True)
         },
         xlim=(least[0] - 5.0 * margin[0], highest[0] + margin[0]),  # room for the names of networks
@@ -103,12 +106,16 @@ def front_curves(found: StudySearch, one: LayoutFront, pair: tuple[int, int], ax
     return ax
 
 
-def _distinct_fronts(one: LayoutFront) -> Iterator[tuple[int, tuple[FrontNetwork, ...]]]:
-    """Fronts by number of elements, without those that are equal to the one before."""
+def _series(one: LayoutFront) -> Iterator[tuple[str, Sequence[FrontNetwork]]]:
+    """Fronts by number of elements, without those that are equal to the one before; of three indices networks."""
+    if len(one.result.symbols) > 2:
+        for layout in one.result.networks:
+            yield layout, [point for point in one.result.front if point.layout == layout]
+        return
     before: tuple[FrontNetwork, ...] = ()
     for count, front in one.result.by_elements.items():
         if front != before:
-            yield count, front
+            yield f"up to {count} element{'' if count == 1 else 's'}", front
         before = front
 
 

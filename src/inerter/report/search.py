@@ -211,10 +211,12 @@ def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
             f"{capital(one.heading)}: the best network for each number of elements, with its values."
         )
     for front in found.fronts:
+        what = "Pareto fronts of all networks of up to each number of elements; the networks of the outermost are named"
+        if len(front.result.symbols) > 2:
+            what = "the Pareto front over all networks, two indices at a time"
         captions[front_figure(front)] = (
-            f"{capital(front.heading)}: Pareto fronts of all networks of up to each number of elements. The networks "
-            "of the outermost front are named; x marks layouts without a free network. Designs that are far from that "
-            "front are not in the picture."
+            f"{capital(front.heading)}: {what}. A cross marks a layout without a free network. Designs far from the "
+            "front over all networks are not in the picture."
         )
     for name, caption in captions.items():
         file = folder / f"{name}.svg"

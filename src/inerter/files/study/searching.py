@@ -175,7 +175,8 @@ def _fronts(
         plan = FrontPlan(tuple(replace(plans[layout, index]) for index in study.trade_off), study.points)
         own = {one.index: one.result for one in searches if one.layout == layout}
         waves, number = front_waves(plan, [own[index] for index in study.trade_off]), 0
-        heading = f"Trade-off between {' and '.join(study.index(index).title for index in study.trade_off)}"
+        *titles, last = (study.index(index).title for index in study.trade_off)
+        heading = f"trade-off between {', '.join(titles)} and {last}"
         try:
             scale, tasks = next(waves)
             while True:

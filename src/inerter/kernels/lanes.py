@@ -1,8 +1,8 @@
 """Several designs side by side: numbers of compiled code that are `WIDTH` numbers, one of each design.
 
-Parts that are written for numbers serve for these too: `in_lanes` makes an array of them, all arithmetic is that of each
-lane, and a number alone stands for one that is equal in all lanes. Each operation is rounded as it is for one number.
-There are no branches: what is compared becomes a number by `is_between`.
+Parts that are written for numbers serve for these too: `in_lanes` makes an array of them, all arithmetic is that of
+each lane, and a number alone stands for one that is equal in all lanes. Each operation is rounded as it is for one
+number. There are no branches: a comparison becomes a number by `is_between`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def larger(typing: Any, x: Any, y: Any) -> Any:
 
 
 def _choose(condition: float, x: Any, y: Any) -> Any:
-    """x where the condition is not zero, else y."""
+    """The first of two numbers where the condition is not zero, else the second."""
     return x if condition != 0.0 else y
 
 
@@ -61,7 +61,11 @@ def largest_lane(typing: Any, x: Any) -> Any:
     return numba_lanes().largest_lane(x)
 
 
-@instruction(np.sqrt)
+def _root(x: float) -> float:
+    return np.sqrt(x)  # type: ignore[no-any-return]
+
+
+@instruction(_root)
 def root(typing: Any, x: Any) -> Any:
     """Compile the square root, of each lane."""
     return numba_lanes().root(x)

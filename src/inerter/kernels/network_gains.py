@@ -1,9 +1,9 @@
 """Peak gains of many designs of one network, side by side, compiled; see `network_norms` and `lanes`.
 
-A march from zero upwards looks at the gain |b(j omega) / a(j omega)|. Between two of its points the denominator changes
-by less than half, which its Taylor coefficients bound, so that every resonance is resolved, however sharp; it ends where
-the coefficients bound all that comes below the highest gain so far. The highest local maxima are refined by Newton's
-method on the slope of the gain's logarithm.
+A march from zero upwards looks at the gain |b(j omega) / a(j omega)|. Between two of its points the denominator
+changes by less than half, which its Taylor coefficients bound, so that every resonance is resolved, however sharp; it
+ends where the coefficients bound all that comes below the highest gain so far. The highest local maxima are refined by
+Newton's method on the slope of the gain's logarithm. Where any of this fails the gain is unknown.
 """
 
 from __future__ import annotations
@@ -158,7 +158,9 @@ def _peak(n: int, roundings: float, space: GainSpace) -> Any:
             left = choose(is_between(curvature, -np.inf, 0.0), -0.5 * slope * slope / curvature, 1.0)
             left = choose(is_between(omega, -1.0, 1e-300), 0.0, left)  # the gain is even
             change = -slope / curvature
-            change = choose(is_between(change, -reach, reach), change, choose(is_between(slope, 0.0, np.inf), reach, -reach) * 0.5)
+            change = choose(
+                is_between(change, -reach, reach), change, choose(is_between(slope, 0.0, np.inf), reach, -reach) * 0.5
+            )
             if step < _STEPS:
                 omega = larger(omega + choose(is_between(left, 0.0, np.inf), change, 0.0), 0.0)
         size, above, _ = _sizes(n, space, omega)

@@ -54,9 +54,7 @@ def lane_space(program: Program, port: Port) -> NormSpace:
         line(full),
         line(full),
     )
-    return NormSpace(
-        network, fraction, line(groups), line(groups), _table(functions, size), _table(functions, size)
-    )
+    return NormSpace(network, fraction, line(groups), line(groups), _table(functions, size), _table(functions, size))
 
 
 @kernel("indices of many designs of a network", typed=True)

@@ -167,7 +167,7 @@ def _rounding(program: Program, fine: bool) -> float:
     """Relative error of the coefficients, which are sums of positive products."""
     last = program.parts.shape[0] - 1
     roundings = 2.0 * last + program.parts[last, TOP] + program.parts[last, BOTTOM] + 6.0
-    return roundings * (_FINE_EPS if fine else _EPS)
+    return float(roundings * (_FINE_EPS if fine else _EPS))
 
 
 @part(borrowing=True)

@@ -1,32 +1,37 @@
-"""The compiler's type of a number in several lanes: vectors of LLVM, and arithmetic for them."""
+"""The compiler's type of numbers in several lanes (a vector of LLVM), its arithmetic, and the code of `lanes`."""
 
 from __future__ import annotations
 
 import operator
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
+import numba
 from llvmlite import ir
-from numba import types
-from numba.core import cgutils
+from numba.core import cgutils as _cgutils
 from numba.core.registry import cpu_target
 from numba.core.typeconv import Conversion
-from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
-from numba.extending import lower_builtin, lower_cast, make_attribute_wrapper, models, register_model  # noqa: F401
-from numba.np.arrayobj import make_array, populate_array
+from numba.core.typing import templates as _templates
+from numba.np import arrayobj as _arrays
 
+types: Any = numba.types
+extending: Any = numba.extending
+cgutils: Any = _cgutils
+templates: Any = _templates
+arrays: Any = _arrays
+
+Definition = tuple[Any, Callable[..., Any]]  # a signature, and the function that writes the code
 ARITHMETIC = {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}
+_LINE = 64  # bytes of a line of the processor's cache
 
 
 class LanesType(types.Type):  # type: ignore[misc]
-    """As many numbers as there are lanes."""
+    """As many numbers as there are lanes; a number alone is one that is equal in all of them."""
 
     def __init__(self, width: int) -> None:
         super().__init__(name=f"Lanes({width})")
         self.width = width
-
-    @property
-    def key(self) -> int:
-        return self.width
 
     def can_convert_from(self, typingctx: Any, other: Any) -> Any:
         return Conversion.safe if isinstance(other, (types.Float, types.Integer)) else None
@@ -35,188 +40,182 @@ class LanesType(types.Type):  # type: ignore[misc]
         return self if isinstance(other, (types.Float, types.Integer)) else None
 
 
-@register_model(LanesType)
-class _LanesModel(models.PrimitiveModel):  # type: ignore[misc]
+@extending.register_model(LanesType)
+class _LanesModel(extending.models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, ir.VectorType(ir.DoubleType(), kind.width))
 
 
-LANES: dict[int, Any] = {}
-
-
-@lower_cast(types.Float, LanesType)
-@lower_cast(types.Integer, LanesType)
 def _spread(context: Any, builder: Any, given: Any, wanted: Any, value: Any) -> Any:
-    number = context.cast(builder, value, given, types.float64)
-    vector = ir.VectorType(ir.DoubleType(), wanted.width)
-    one = builder.insert_element(ir.Constant(vector, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-    mask = ir.Constant(ir.VectorType(ir.IntType(32), wanted.width), [0] * wanted.width)
-    return builder.shuffle_vector(one, ir.Constant(vector, ir.Undefined), mask)
+    """A number in all lanes."""
+    number, vector = context.cast(builder, value, given, types.float64), ir.VectorType(ir.DoubleType(), wanted.width)
+    nothing = ir.Constant(vector, ir.Undefined)
+    first = builder.insert_element(nothing, number, _places([0]).constant[0])
+    return builder.shuffle_vector(first, nothing, _places([0] * wanted.width))
 
 
+def _places(lanes: list[int]) -> Any:
+    """Numbers of lanes, as a constant."""
+    return ir.Constant(ir.VectorType(ir.IntType(32), len(lanes)), [ir.Constant(ir.IntType(32), lane) for lane in lanes])
+
+
+@cache
 def lanes_type(width: int) -> Any:
-    """The type of numbers in `width` lanes, with its arithmetic."""
-    if width not in LANES:
-        LANES[width] = kind = LanesType(width)
-        _declare(kind)
-        cpu_target.typing_context.refresh()
-        cpu_target.target_context.refresh()
-    return LANES[width]
-
-
-def _declare(kind: Any) -> None:
+    """The type of numbers in `width` lanes; from now on the compiler knows its arithmetic."""
+    kind = LanesType(width)
+    for scalar in (types.Float, types.Integer):
+        extending.lower_cast(scalar, LanesType)(_spread)
     for name, instruction in ARITHMETIC.items():
         for prefix in ("", "i"):
-            _binary(getattr(operator, prefix + name), kind, instruction)
-    _unary(operator.neg, kind, lambda builder, x: builder.fneg(x))
-    _unary(abs, kind, lambda builder, x: builder.call(_intrinsic(builder, "llvm.fabs", x), [x]))
+            _declare(getattr(operator, prefix + name), kind, 2, _instruction, instruction)
+    _declare(operator.neg, kind, 1, _instruction, "fneg")
+    _declare(abs, kind, 1, _call, "llvm.fabs")
+    cpu_target.typing_context.refresh()
+    cpu_target.target_context.refresh()
+    return kind
 
 
-def _binary(of: Any, kind: Any, instruction: str) -> None:
-    @infer_global(of)
-    class _Typing(ConcreteTemplate):  # type: ignore[misc]
-        cases = [signature(kind, kind, kind)]  # noqa: RUF012
-
-    @lower_builtin(of, kind, kind)
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        return getattr(builder, instruction)(*given)
+def _instruction(name: str, *given: Any) -> Callable[[Any], Any]:
+    """An instruction of LLVM."""
+    return operator.methodcaller(name, *given)
 
 
-def _unary(of: Any, kind: Any, make: Any) -> None:
-    @infer_global(of)
-    class _Typing(ConcreteTemplate):  # type: ignore[misc]
-        cases = [signature(kind, kind)]  # noqa: RUF012
+def _call(name: str, *given: Any) -> Callable[[Any], Any]:
+    """Call of a function of LLVM for the type of its arguments."""
 
-    @lower_builtin(of, kind)
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        return make(builder, *given)
+    def make(builder: Any) -> Any:
+        kind = given[0].type
+        suffix = f"v{kind.count}f64" if isinstance(kind, ir.VectorType) else "f64"
+        declared = ir.FunctionType(kind, [kind] * len(given))
+        return builder.call(cgutils.get_or_insert_function(builder.module, declared, f"{name}.{suffix}"), list(given))
 
-
-def _intrinsic(builder: Any, name: str, *given: Any) -> Any:
-    kind = given[0].type
-    suffix = f"v{kind.count}f64" if isinstance(kind, ir.VectorType) else "f64"
-    return cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind] * len(given)), f"{name}.{suffix}")
+    return make
 
 
-def _same(*given: Any) -> Any:
+def _declare(of: Any, kind: Any, arity: int, make: Any, instruction: str) -> None:
+    """Declare an operator of Python for lanes: `make` gives its code from the instruction and its arguments."""
+    operands = (kind,) * arity
+
+    class _Typing(templates.ConcreteTemplate):  # type: ignore[misc]
+        cases = [templates.signature(kind, *operands)]  # noqa: RUF012
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return make(instruction, *given)(builder)
+
+    templates.infer_global(of)(_Typing)
+    extending.lower_builtin(of, *operands)(code)
+
+
+def _common(*given: Any) -> Any:
     """The type in which numbers meet: that of lanes if one of them has it."""
     return next((each for each in given if isinstance(each, LanesType)), types.float64)
 
 
-def is_between(x: Any, low: Any, high: Any) -> Any:
-    """Signature and code of `lanes.is_between`."""
-    kind = _same(x, low, high)
+def _constant(context: Any, builder: Any, kind: Any, value: float) -> Any:
+    return context.cast(builder, context.get_constant(types.float64, value), types.float64, kind)
 
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
+
+def is_between(x: Any, low: Any, high: Any) -> Definition:
+    """Definition of `lanes.is_between`."""
+    kind = _common(x, low, high)
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         value, below, above = given
-        one, zero = (context.cast(builder, context.get_constant(types.float64, v), types.float64, kind) for v in (1.0, 0.0))
-        inside = builder.and_(
-            builder.fcmp_ordered("<", below, value), builder.fcmp_ordered("<", value, above)
-        )
-        return builder.select(inside, one, zero)
+        inside = builder.and_(builder.fcmp_ordered("<", below, value), builder.fcmp_ordered("<", value, above))
+        return builder.select(inside, *(_constant(context, builder, kind, number) for number in (1.0, 0.0)))
 
     return kind(kind, kind, kind), code
 
 
-def larger(x: Any, y: Any) -> Any:
-    """Signature and code of `lanes.larger`."""
-    kind = _same(x, y)
+def choose(condition: Any, x: Any, y: Any) -> Definition:
+    """Definition of `lanes.choose`."""
+    kind = _common(condition, x, y)
 
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.select(
+            builder.fcmp_unordered("!=", given[0], _constant(context, builder, kind, 0.0)), *given[1:]
+        )
+
+    return kind(kind, kind, kind), code
+
+
+def larger(x: Any, y: Any) -> Definition:
+    """Definition of `lanes.larger`."""
+    kind = _common(x, y)
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         return builder.select(builder.fcmp_ordered(">", *given), *given)
 
     return kind(kind, kind), code
 
 
-def choose(condition: Any, x: Any, y: Any) -> Any:
-    """Signature and code of `lanes.choose`."""
-    kind = _same(condition, x, y)
+def largest_lane(x: Any) -> Definition:
+    """Definition of `lanes.largest_lane`: halves against each other."""
 
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        zero = context.cast(builder, context.get_constant(types.float64, 0.0), types.float64, kind)
-        return builder.select(builder.fcmp_unordered("!=", given[0], zero), given[1], given[2])
-
-    return kind(kind, kind, kind), code
-
-
-def largest_lane(x: Any) -> Any:
-    """Signature and code of `lanes.largest_lane`."""
-
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        value = given[0]
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        (value,) = given
         if not isinstance(value.type, ir.VectorType):
             return value
-        while value.type.count > 1:  # halves against each other
-            half, places = value.type.count // 2, ir.IntType(32)
-            parts = [
-                builder.shuffle_vector(
-                    value, value, ir.Constant(ir.VectorType(places, half), list(range(start, start + half)))
-                )
-                for start in (0, half)
-            ]
-            value = builder.select(builder.fcmp_ordered(">", *parts), *parts)
-        return builder.extract_element(value, ir.Constant(ir.IntType(32), 0))
+        while value.type.count > 1:
+            half = value.type.count // 2
+            halves = [builder.shuffle_vector(value, value, _places(list(range(k, k + half)))) for k in (0, half)]
+            value = builder.select(builder.fcmp_ordered(">", *halves), *halves)
+        return builder.extract_element(value, _places([0]).constant[0])
 
-    return types.float64(_same(x)), code
+    return types.float64(_common(x)), code
 
 
-def fused_multiply_add(a: Any, b: Any, c: Any) -> Any:
-    """Signature and code of `double_double.fused_multiply_add`."""
-    kind = _same(a, b, c)
-
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        return builder.call(_intrinsic(builder, "llvm.fma", *given), list(given))
-
-    return kind(kind, kind, kind), code
+def root(x: Any) -> Definition:
+    """Definition of `lanes.root`."""
+    return _definition_of("llvm.sqrt", x)
 
 
-def root(x: Any) -> Any:
-    """Signature and code of `lanes.root`."""
-    kind = _same(x)
-
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        return builder.call(_intrinsic(builder, "llvm.sqrt", given[0]), list(given))
-
-    return kind(kind), code
+def fused_multiply_add(a: Any, b: Any, c: Any) -> Definition:
+    """Definition of `double_double.fused_multiply_add`."""
+    return _definition_of("llvm.fma", a, b, c)
 
 
-def in_lanes(flat: Any, shape: Any, width: int) -> Any:
-    """Signature and code of `lanes.in_lanes`: the room is used from the first multiple of 64 bytes on."""
+def _definition_of(name: str, *operands: Any) -> Definition:
+    kind = _common(*operands)
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return _call(name, *given)(builder)
+
+    return kind(*[kind] * len(operands)), code
+
+
+def in_lanes(flat: Any, shape: Any, width: int) -> Definition:
+    """Definition of `lanes.in_lanes`: the room is used from where the first line of the cache begins."""
     kind = types.Array(lanes_type(width), shape.count, "C", aligned=False)
 
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        room = make_array(flat)(context, builder, given[0])
-        address = builder.ptrtoint(room.data, cgutils.intp_t)
-        data = builder.and_(builder.add(address, cgutils.intp_t(63)), cgutils.intp_t(-64))
-        sizes = cgutils.unpack_tuple(builder, given[1])
-        return _view(context, builder, room, data, kind, sizes, 8 * width)
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        room = arrays.make_array(flat)(context, builder, given[0])
+        address = builder.add(builder.ptrtoint(room.data, cgutils.intp_t), cgutils.intp_t(_LINE - 1))
+        start, sizes = builder.and_(address, cgutils.intp_t(-_LINE)), cgutils.unpack_tuple(builder, given[1])
+        return _view(context, builder, room, start, kind, sizes, 8 * width)
 
     return kind(flat, shape), code
 
 
-def in_numbers(lanes: Any) -> Any:
-    """Signature and code of `lanes.in_numbers`."""
+def in_numbers(lanes: Any) -> Definition:
+    """Definition of `lanes.in_numbers`."""
     kind, width = types.Array(types.float64, 2, "C"), lanes.dtype.width
 
-    def code(context: Any, builder: Any, sig: Any, given: Any) -> Any:
-        room = make_array(lanes)(context, builder, given[0])
-        data = builder.ptrtoint(room.data, cgutils.intp_t)
-        (count,) = cgutils.unpack_tuple(builder, room.shape)
-        return _view(context, builder, room, data, kind, [count, cgutils.intp_t(width)], 8)
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        room = arrays.make_array(lanes)(context, builder, given[0])
+        start, (count,) = builder.ptrtoint(room.data, cgutils.intp_t), cgutils.unpack_tuple(builder, room.shape)
+        return _view(context, builder, room, start, kind, [count, cgutils.intp_t(width)], 8)
 
     return kind(lanes), code
 
 
-def _view(context: Any, builder: Any, room: Any, data: Any, kind: Any, sizes: list[Any], item: int) -> Any:
-    """Array of another type in the memory of one, from an address on."""
-    result = make_array(kind)(context, builder)
-    stride, strides = cgutils.intp_t(item), list[Any]()
+def _view(context: Any, builder: Any, room: Any, start: Any, kind: Any, sizes: list[Any], item: int) -> Any:
+    """Array of another type in the memory of `room`, from an address on."""
+    result, stride, strides = arrays.make_array(kind)(context, builder), cgutils.intp_t(item), list[Any]()
     for size in reversed(sizes):
         strides.insert(0, stride)
         stride = builder.mul(stride, size)
-    place = builder.inttoptr(data, result.data.type)
-    memory = room.meminfo
-    populate_array(result, place, sizes, strides, cgutils.intp_t(item), memory)
-    if context.enable_nrt:
-        context.nrt.incref(builder, types.MemInfoPointer(types.voidptr), memory)
+    place, memory = builder.inttoptr(start, result.data.type), room.meminfo
+    arrays.populate_array(result, place, sizes, strides, cgutils.intp_t(item), memory)
+    context.nrt.incref(builder, types.MemInfoPointer(types.voidptr), memory)
     return result._getvalue()

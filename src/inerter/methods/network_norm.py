@@ -284,7 +284,8 @@ class _CompiledStrut:
         """
         rows = np.empty((len(self.elements), count))
         for row, element in zip(rows, self.elements, strict=True):
-            row[:] = points[str(element.value.name)] if isinstance(element.value, Free) else element.value
+            value: Any = element.value
+            row[:] = points[str(value.name)] if isinstance(value, Free) else value
         own, errors, in_lanes = (self.program, self.port), np.empty(count), compiler_mode() == TUNED
         if self.is_peak:
             peaks = (peaks_in_lanes if in_lanes else peaks_in_turn)(rows, *own, errors)
@@ -308,7 +309,7 @@ def _compile_strut(vehicle: Vehicle, index: Index) -> _CompiledStrut | None:
     return _CompiledStrut(elements, program.program, port, over.is_peak)
 
 
-_remembered = lru_cache(64)(_compile_strut)  # designs of one layout may come in parts
+_remembered: Any = lru_cache(64)(_compile_strut)  # designs of one layout may come in parts
 
 
 def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array | None:

@@ -8,10 +8,10 @@ from functools import cache
 from typing import Any
 
 import numba
-from llvmlite import ir
+from llvmlite import ir as _ir
 from numba.core import cgutils as _cgutils
+from numba.core import typeconv as _typeconv
 from numba.core.registry import cpu_target
-from numba.core.typeconv import Conversion
 from numba.core.typing import templates as _templates
 from numba.np import arrayobj as _arrays
 
@@ -20,6 +20,8 @@ extending: Any = numba.extending
 cgutils: Any = _cgutils
 templates: Any = _templates
 arrays: Any = _arrays
+ir: Any = _ir
+Conversion: Any = _typeconv.Conversion  # type: ignore[attr-defined]
 
 Definition = tuple[Any, Callable[..., Any]]  # a signature, and the function that writes the code
 ARITHMETIC = {"add": "fadd", "sub": "fsub", "mul": "fmul", "truediv": "fdiv"}

@@ -324,6 +324,6 @@ def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]
         strut = _compile_strut(vehicle, index)
     if strut is None:
         return None
-    values = strut.values(points, next(iter(points.values())).size)
+    values: Array = strut.values(points, next(iter(points.values())).size)
     values[np.isinf(values)] = np.nan
     return values

@@ -54,7 +54,9 @@ def lane_space(program: Program, port: Port) -> NormSpace:
         line(full),
         line(full),
     )
-    return NormSpace(network, fraction, line(groups), line(groups), _table(functions, size), _table(functions, size))
+    return NormSpace(
+        network, fraction, line(groups), line(groups), line(groups), _table(functions, size), _table(functions, size)
+    )
 
 
 @kernel("indices of many designs of a network", typed=True)

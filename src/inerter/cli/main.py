@@ -309,7 +309,7 @@ def export(
     /,
     *,
     to: Annotated[
-        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, spice, svg, pdf, latex; control and scipy in Python.")
+        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex.")
     ],
     layout: Annotated[str | None, Parameter(help="Layout; may be left out if there is one.")] = None,
     index: Annotated[str | None, Parameter(help="Index whose best design is exported, if values are free.")] = None,

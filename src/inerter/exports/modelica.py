@@ -97,7 +97,7 @@ class _Source:
 
     def _joined(self, title: str) -> str:
         quoted = title.replace("\\", "\\\\").replace('"', '\\"')
-        package = f"{_identifier(title)}_" if _identifier(title) in _KEYWORDS else _identifier(title)
+        package = f"{identifier(title)}_" if identifier(title) in _KEYWORDS else identifier(title)
         lines = [f'package {package} "{quoted}, written by inerter"', _INERTER.rstrip(), *self.models]
         body = [*self.inputs, *self.parts, *self.outputs]
         lines += ["  model Vehicle", *(f"    {line}" for line in body), "  equation"]
@@ -105,7 +105,7 @@ class _Source:
         return "\n".join([*lines, '  annotation (uses(Modelica(version="4.0.0")));', f"end {package};", ""])
 
     def _name(self, wanted: str) -> str:
-        stem = _identifier(wanted)
+        stem = identifier(wanted)
         name, number = stem, 1
         while name in self.names:
             number += 1
@@ -243,7 +243,8 @@ def _motions_of(coordinate: Coordinate) -> dict[str, tuple[str, int]]:
     return found
 
 
-def _identifier(text: str) -> str:
+def identifier(text: str) -> str:
+    """A name in the syntax of Modelica and C."""
     name = re.sub(r"\W", "_", text, flags=re.ASCII)
     return name if name[:1].isalpha() else f"v_{name}"
 

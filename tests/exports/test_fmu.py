@@ -108,7 +108,9 @@ def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master
 def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = design(number), 1e-3
     signal, height, slope = road(0.5, step, number)
-    shown = tuple(f"{mount.name}_{'force' if isinstance(mount, it.Strut) else 'load'}" for mount in vehicle.mechanism().mounts())
+    shown = tuple(
+        f"{mount.name}_{'force' if isinstance(mount, it.Strut) else 'load'}" for mount in vehicle.mechanism().mounts()
+    )
     expected = simulated(vehicle, signal, step, 0.5, shown)
     seen = np.sqrt(np.mean(expected**2, axis=0)) > 1e-9 * np.sqrt(np.mean(expected**2))
     found = driven(opened(masters, vehicle, "fmu", tmp_path), height, slope, step, shown)
@@ -166,7 +168,10 @@ def test_derivatives_of_fmi_2_are_of_one_step(masters: list[Master], tmp_path: P
 @pytest.mark.parametrize("kind", KINDS)
 def test_directional_derivatives_are_what_acts_at_once(kind: str, masters: list[Master], tmp_path: Path) -> None:
     master = opened(masters, CAR, kind, tmp_path)
-    known, unknown = [master.references["sprung_force"]], [master.references[n] for n in ("sprung_acceleration", "tyre_load")]
+    known, unknown = (
+        [master.references["sprung_force"]],
+        [master.references[n] for n in ("sprung_acceleration", "tyre_load")],
+    )
     assert list(master.fmu.getDirectionalDerivative(unknown, known, [1.0])) == [1.0 / 181.75, 0.0]
 
 

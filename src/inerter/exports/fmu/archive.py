@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
@@ -19,12 +20,15 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError, WorkError
 from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
+from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
 from inerter.exports.kind import ExportKind
 from inerter.exports.modelica import identifier
-from inerter.exports.named_system import NamedSystem
 from inerter.exports.request import ExportSpec
-from inerter.systems.linear import LinearSystem
+from inerter.networks.elements import Element
+from inerter.systems.graph import switching
+from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import main_outputs
+from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
 _OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
@@ -52,21 +56,39 @@ def _make_3(request: ExportSpec, suffix: str) -> bytes:
     return fmu_archive(_system(request), request.title, FMI_3)
 
 
-def _system(request: ExportSpec) -> NamedSystem:
+def _system(request: ExportSpec) -> SwitchingSystem:
     """The state space, by default with displacements that drift with the road too: they begin at zero."""
-    if request.outputs is None and not isinstance(request.of, LinearSystem):
-        request = replace(request, outputs=main_outputs(request.mechanism))
-    return replace(request, form="").system()
+    if isinstance(request.of, LinearSystem):
+        return without_reactions(replace(request, form="").system())
+    mechanism = request.mechanism
+    if not request.linear and _is_nonlinear(mechanism):
+        wanted = None if request.outputs is None else check_names("outputs", request.outputs)
+        return switching_system(mechanism, wanted, request.title)
+    if request.outputs is None:
+        request = replace(request, outputs=main_outputs(mechanism))
+    return without_reactions(replace(request, form="").system())
 
 
-def fmu_archive(system: NamedSystem, title: str, version: FmiVersion) -> bytes:
-    """An FMU of a state space.
+def _is_nonlinear(mechanism: Mechanism) -> bool:
+    """Whether a linear model leaves something out."""
+    return any(element.switch is not None for element in _elements(mechanism))
+
+
+def _elements(mechanism: Mechanism) -> Iterator[Element]:
+    """Elements of the mechanism as simulation has them."""
+    for mount in switching(mechanism).mounts():
+        yield from mount.network.elements()
+
+
+def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> bytes:
+    """An FMU of a linear or a switching system.
 
     Raises `ExportError` where there is no C compiler, or on other platforms than Linux on x86-64; `WorkError` if the
     compiler fails.
     """
     name = identifier(title or "vehicle")
-    header = _header(system)
+    header = _header(switches)
+    system = replace(switches.system, inputs=switches.inputs)
     told = "".join([header, *(one.label for one in (*system.inputs, *system.outputs)), name, str(version.number)])
     token = hashlib.sha256(told.encode()).hexdigest()[:32]
     sources = {"model.h": f'#define TOKEN "{token}"\n{header}'}
@@ -110,14 +132,21 @@ def _compile(sources: dict[str, str], main: str) -> bytes:
         return (Path(folder) / "model.so").read_bytes()
 
 
-def _header(system: NamedSystem) -> str:
-    sizes = {"NX": len(system.states), "NU": len(system.inputs), "NY": len(system.outputs)}
+def _header(switches: SwitchingSystem) -> str:
+    system, reactions = switches.system, len(switches.is_gap)
+    sizes = {"NX": len(system.states), "NU": len(switches.inputs), "NR": reactions, "NY": len(system.outputs)}
     lines = [f"#define {name} {size}" for name, size in sizes.items()]
     for what, several in (("states", system.states), ("inputs", system.inputs), ("outputs", system.outputs)):
         lines.append(f"/* {what}: {', '.join(one.label for one in several)} */")
     lines += [f"/* {note} */" for note in system.notes]
-    for name in "ABCD":
-        lines.append(_array(name, getattr(system, name)))
+    lines += [_array(name, getattr(system, name)) for name in "ABCD"]
+    lines.append(_array("Q", switches.Q))
+    limits = {"LOW": switches.lower, "HIGH": switches.upper, "GAP": np.array(switches.is_gap, dtype=float)}
+    for name, values in limits.items():
+        numbers = ", ".join(
+            "HUGE_VAL" if x == np.inf else "-HUGE_VAL" if x == -np.inf else repr(x) for x in values.tolist()
+        )
+        lines.append(f"static const double {name}[{max(reactions, 1)}] = {{{numbers or '0.0'}}};")
     return "\n".join([*lines, ""])
 
 

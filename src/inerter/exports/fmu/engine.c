@@ -1,7 +1,10 @@
 /* Exact flow of x' = A x + B u, y = C x + D u over a step in which every input is a cubic polynomial of time.
 
-   Written by inerter. model.h has NX, NU, NY, A, B, C and D. The inputs of a step are u and its first three derivatives
-   at its begin; at its end, the inputs are those polynomials there. */
+   Written by inerter. model.h has NX, NU, NR, NY, A, B, C and D. The inputs of a step are u and its first three derivatives
+   at its begin; at its end, the inputs are those polynomials there. NR reactions of friction and gaps are held over a
+   step, and such that their laws hold at its end (Moreau's time stepping). A step in which one of them changes its state
+   is halved, down to 2^(1 - LEVELS) of the whole; the flows of its parts are powers of each other. What reactions are at
+   the end of a step, for outputs, tells the smallest step from there. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,19 +13,33 @@
 #include "model.h"
 
 #define ORDERS 4
-#define WIDTH (NX + ORDERS * NU)
+#define WIDTH (NX + ORDERS * NU + NR)
+#define SWEEPS 10000
+#define LONGEST 1e-4 /* s, with reactions */
+#if NR > 0
+#define LEVELS 11
+#else
+#define LEVELS 1
+#endif
 #define TERMS 20
 
 typedef struct {
     double time;
     double x[NX + 1];
     double u[ORDERS][NU + 1];
+    double r[NR + 1];   /* in tension, over the last step */
+    double end[NR + 1]; /* and at its end */
 } State;
 
 typedef struct {
-    State now;
-    double step;              /* of the flow below; 0 for none */
     double flow[NX + 1][WIDTH + 1];
+    double weight[NR + 1][NR + 1]; /* of the reactions in the motions of friction and gaps at the end of the step */
+} Flow;
+
+typedef struct {
+    State now;
+    double step; /* of the first flow; 0 for none. Each flow is of half the step of that before */
+    Flow flows[LEVELS];
 } Model;
 
 static void multiply(const double *a, const double *b, double *c)
@@ -34,6 +51,18 @@ static void multiply(const double *a, const double *b, double *c)
             const double value = a[i * WIDTH + k];
             if (value != 0.0)
                 for (j = 0; j < WIDTH; j++) c[i * WIDTH + j] += value * b[k * WIDTH + j];
+        }
+}
+
+static void keep(Flow *flow, const double *whole)
+{
+    int i, j, k;
+    for (i = 0; i < NX; i++)
+        for (j = 0; j < WIDTH; j++) flow->flow[i][j] = whole[i * WIDTH + j];
+    for (i = 0; i < NR; i++)
+        for (j = 0; j < NR; j++) {
+            flow->weight[i][j] = Q[i][NX + NU + j];
+            for (k = 0; k < NX; k++) flow->weight[i][j] += Q[i][k] * flow->flow[k][NX + ORDERS * NU + j];
         }
 }
 
@@ -49,14 +78,15 @@ static int discretise(Model *model, double step)
     for (i = 0; i < NX; i++) {
         for (j = 0; j < NX; j++) m[i * WIDTH + j] = step * A[i][j];
         for (j = 0; j < NU; j++) m[i * WIDTH + NX + j] = step * B[i][j];
+        for (j = 0; j < NR; j++) m[i * WIDTH + NX + ORDERS * NU + j] = step * B[i][NU + j];
     }
-    for (i = NX; i < WIDTH - NU; i++) m[i * WIDTH + i + NU] = step;
+    for (i = NX; i < NX + (ORDERS - 1) * NU; i++) m[i * WIDTH + i + NU] = step;
     for (i = 0; i < WIDTH; i++) {
         double row = 0.0;
         for (j = 0; j < WIDTH; j++) row += fabs(m[i * WIDTH + j]);
         if (row > norm) norm = row;
     }
-    while (ldexp(norm, -halvings) > 0.5) halvings++;
+    while (halvings < LEVELS - 1 || ldexp(norm, -halvings) > 0.5) halvings++;
     for (i = 0; i < WIDTH * WIDTH; i++) m[i] = ldexp(m[i], -halvings);
     for (i = 0; i < WIDTH; i++) sum[i * WIDTH + i] = 1.0;
     for (k = TERMS; k > 0; k--) { /* I + m/1 (I + m/2 (I + ...)) */
@@ -65,37 +95,101 @@ static int discretise(Model *model, double step)
         for (i = 0; i < WIDTH; i++) other[i * WIDTH + i] += 1.0;
         swap = sum, sum = other, other = swap;
     }
-    for (k = 0; k < halvings; k++) {
+    for (k = halvings; k >= 0; k--) { /* the flow of step / 2^k */
+        if (k < LEVELS) keep(&model->flows[k], sum);
+        if (k == 0) break;
         multiply(sum, sum, other);
         swap = sum, sum = other, other = swap;
     }
-    for (i = 0; i < NX; i++)
-        for (j = 0; j < WIDTH; j++) model->flow[i][j] = sum[i * WIDTH + j];
     model->step = step;
     free(m);
     return 1;
 }
 
-static int advance(Model *model, double step)
+/* Reactions by their laws, from the motions that there would be without any; by Gauss-Seidel from the last ones. */
+static void react(const Flow *flow, double *r, const double *free_motion)
 {
-    State *now = &model->now;
-    double next[NX + 1];
+    int i, j, sweep;
+    for (sweep = 0; sweep < SWEEPS; sweep++) {
+        double change = 0.0, size = 0.0;
+        for (i = 0; i < NR; i++) {
+            const double own = flow->weight[i][i], before = r[i];
+            double motion = free_motion[i];
+            for (j = 0; j < NR; j++)
+                if (j != i) motion += flow->weight[i][j] * r[j];
+            if (!(own < 0.0)) continue;
+            if (GAP[i]) r[i] = motion > HIGH[i] ? (HIGH[i] - motion) / own : motion < LOW[i] ? (LOW[i] - motion) / own : 0.0;
+            else r[i] = fmin(fmax(-motion / own, LOW[i]), HIGH[i]);
+            change = fmax(change, fabs(r[i] - before));
+            size = fmax(size, fabs(r[i]));
+        }
+        if (change <= 1e-14 * size) return;
+    }
+}
+
+/* -1, 0 or 1 of a friction that slips down, sticks or slips up, and of a gap in contact or not. */
+static int contact(const double *r, int i)
+{
+    if (GAP[i]) return (r[i] > 0.0) - (r[i] < 0.0);
+    return (r[i] >= HIGH[i]) - (r[i] <= LOW[i]);
+}
+
+/* The end of a step from a state: states and inputs there, with the reactions of the step. */
+static void follow(const Flow *flow, double step, State *now)
+{
+    double next[NX + 1], motion[NR + 1];
     int i, j, k;
-    if (step != model->step && !discretise(model, step)) return 0;
     for (i = 0; i < NX; i++) {
         next[i] = 0.0;
-        for (j = 0; j < NX; j++) next[i] += model->flow[i][j] * now->x[j];
+        for (j = 0; j < NX; j++) next[i] += flow->flow[i][j] * now->x[j];
         for (k = 0; k < ORDERS; k++)
-            for (j = 0; j < NU; j++) next[i] += model->flow[i][NX + k * NU + j] * now->u[k][j];
+            for (j = 0; j < NU; j++) next[i] += flow->flow[i][NX + k * NU + j] * now->u[k][j];
     }
-    for (i = 0; i < NX; i++) now->x[i] = next[i];
     for (j = 0; j < NU; j++) {
         double *const u[ORDERS] = {&now->u[0][j], &now->u[1][j], &now->u[2][j], &now->u[3][j]};
         *u[0] += step * (*u[1] + step * (*u[2] / 2.0 + step * *u[3] / 6.0));
         *u[1] += step * (*u[2] + step * *u[3] / 2.0);
         *u[2] += step * *u[3];
     }
-    now->time += step;
+    for (i = 0; i < NR; i++) {
+        motion[i] = 0.0;
+        for (j = 0; j < NX; j++) motion[i] += Q[i][j] * next[j];
+        for (j = 0; j < NU; j++) motion[i] += Q[i][NX + j] * now->u[0][j];
+    }
+    if (NR > 0) react(flow, now->r, motion);
+    for (i = 0; i < NX; i++) {
+        now->x[i] = next[i];
+        for (j = 0; j < NR; j++) now->x[i] += flow->flow[i][NX + ORDERS * NU + j] * now->r[j];
+    }
+}
+
+static void advance_part(Model *model, double step, int level)
+{
+    State before = model->now;
+    int i, changed = 0;
+    follow(&model->flows[level], step, &model->now);
+    if (level == LEVELS - 1) return;
+    for (i = 0; i < NR; i++) changed |= contact(before.r, i) != contact(model->now.r, i);
+    if (!changed) return;
+    model->now = before;
+    advance_part(model, step / 2.0, level + 1);
+    advance_part(model, step / 2.0, level + 1);
+}
+
+static int advance(Model *model, double step)
+{
+    const int parts = NR > 0 ? (int)ceil(step / LONGEST - 1e-9) : 1;
+    const double part = step / parts, begin = model->now.time;
+    State trial;
+    int i;
+    if (part != model->step && !discretise(model, part)) return 0;
+    for (i = 0; i < parts; i++) advance_part(model, part, 0);
+    model->now.time = begin + step;
+    if (NR > 0) {
+        trial = model->now;
+        follow(&model->flows[LEVELS - 1], ldexp(part, 1 - LEVELS), &trial);
+        memcpy(model->now.end, trial.r, sizeof trial.r);
+    }
     return 1;
 }
 
@@ -105,6 +199,7 @@ static double output(const Model *model, int number)
     int j;
     for (j = 0; j < NX; j++) y += C[number][j] * model->now.x[j];
     for (j = 0; j < NU; j++) y += D[number][j] * model->now.u[0][j];
+    for (j = 0; j < NR; j++) y += D[number][NU + j] * model->now.end[j];
     return y;
 }
 

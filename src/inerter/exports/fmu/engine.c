@@ -1,10 +1,12 @@
 /* Exact flow of x' = A x + B u, y = C x + D u over a step in which every input is a cubic polynomial of time.
 
    Written by inerter. model.h has NX, NU, NR, NY, A, B, C and D. The inputs of a step are u and its first three derivatives
-   at its begin; at its end, the inputs are those polynomials there. NR reactions of friction and gaps are held over a
-   step, and such that their laws hold at its end (Moreau's time stepping). A step in which one of them changes its state
-   is halved, down to 2^(1 - LEVELS) of the whole; the flows of its parts are powers of each other. What reactions are at
-   the end of a step, for outputs, tells the smallest step from there. */
+   at its begin; at its end, the inputs are those polynomials there.
+
+   NR reactions of friction and gaps are such that their laws hold at the end of a step. From their values at its begin they
+   change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
+   state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
+   each other. Reactions at an instant are those of the smallest step from there. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,7 +15,8 @@
 #include "model.h"
 
 #define ORDERS 4
-#define WIDTH (NX + ORDERS * NU + NR)
+#define HELD (NX + ORDERS * NU) /* columns of the reactions, and of their rates */
+#define WIDTH (HELD + 2 * NR)
 #define SWEEPS 10000
 #define LONGEST 1e-4 /* s, with reactions */
 #if NR > 0
@@ -27,13 +30,13 @@ typedef struct {
     double time;
     double x[NX + 1];
     double u[ORDERS][NU + 1];
-    double r[NR + 1];   /* in tension, over the last step */
-    double end[NR + 1]; /* and at its end */
+    double r[NR + 1]; /* in tension */
 } State;
 
 typedef struct {
     double flow[NX + 1][WIDTH + 1];
-    double weight[NR + 1][NR + 1]; /* of the reactions in the motions of friction and gaps at the end of the step */
+    double held[NR + 1][NR + 1]; /* weights of reactions in the motions of friction and gaps at the end of the step */
+    double ramp[NR + 1][NR + 1]; /* and of reactions that grow to them from zero */
 } Flow;
 
 typedef struct {
@@ -54,15 +57,18 @@ static void multiply(const double *a, const double *b, double *c)
         }
 }
 
-static void keep(Flow *flow, const double *whole)
+static void keep(Flow *flow, const double *whole, double step)
 {
     int i, j, k;
     for (i = 0; i < NX; i++)
         for (j = 0; j < WIDTH; j++) flow->flow[i][j] = whole[i * WIDTH + j];
     for (i = 0; i < NR; i++)
         for (j = 0; j < NR; j++) {
-            flow->weight[i][j] = Q[i][NX + NU + j];
-            for (k = 0; k < NX; k++) flow->weight[i][j] += Q[i][k] * flow->flow[k][NX + ORDERS * NU + j];
+            flow->held[i][j] = flow->ramp[i][j] = Q[i][NX + NU + j];
+            for (k = 0; k < NX; k++) {
+                flow->held[i][j] += Q[i][k] * flow->flow[k][HELD + j];
+                flow->ramp[i][j] += Q[i][k] * flow->flow[k][HELD + NR + j] / step;
+            }
         }
 }
 
@@ -78,9 +84,10 @@ static int discretise(Model *model, double step)
     for (i = 0; i < NX; i++) {
         for (j = 0; j < NX; j++) m[i * WIDTH + j] = step * A[i][j];
         for (j = 0; j < NU; j++) m[i * WIDTH + NX + j] = step * B[i][j];
-        for (j = 0; j < NR; j++) m[i * WIDTH + NX + ORDERS * NU + j] = step * B[i][NU + j];
+        for (j = 0; j < NR; j++) m[i * WIDTH + HELD + j] = step * B[i][NU + j];
     }
     for (i = NX; i < NX + (ORDERS - 1) * NU; i++) m[i * WIDTH + i + NU] = step;
+    for (i = HELD; i < HELD + NR; i++) m[i * WIDTH + i + NR] = step;
     for (i = 0; i < WIDTH; i++) {
         double row = 0.0;
         for (j = 0; j < WIDTH; j++) row += fabs(m[i * WIDTH + j]);
@@ -96,7 +103,7 @@ static int discretise(Model *model, double step)
         swap = sum, sum = other, other = swap;
     }
     for (k = halvings; k >= 0; k--) { /* the flow of step / 2^k */
-        if (k < LEVELS) keep(&model->flows[k], sum);
+        if (k < LEVELS) keep(&model->flows[k], sum, ldexp(step, -k));
         if (k == 0) break;
         multiply(sum, sum, other);
         swap = sum, sum = other, other = swap;
@@ -107,16 +114,16 @@ static int discretise(Model *model, double step)
 }
 
 /* Reactions by their laws, from the motions that there would be without any; by Gauss-Seidel from the last ones. */
-static void react(const Flow *flow, double *r, const double *free_motion)
+static void react(double weight[][NR + 1], double *r, const double *free_motion)
 {
     int i, j, sweep;
     for (sweep = 0; sweep < SWEEPS; sweep++) {
         double change = 0.0, size = 0.0;
         for (i = 0; i < NR; i++) {
-            const double own = flow->weight[i][i], before = r[i];
+            const double own = weight[i][i], before = r[i];
             double motion = free_motion[i];
             for (j = 0; j < NR; j++)
-                if (j != i) motion += flow->weight[i][j] * r[j];
+                if (j != i) motion += weight[i][j] * r[j];
             if (!(own < 0.0)) continue;
             if (GAP[i]) r[i] = motion > HIGH[i] ? (HIGH[i] - motion) / own : motion < LOW[i] ? (LOW[i] - motion) / own : 0.0;
             else r[i] = fmin(fmax(-motion / own, LOW[i]), HIGH[i]);
@@ -134,10 +141,10 @@ static int contact(const double *r, int i)
     return (r[i] >= HIGH[i]) - (r[i] <= LOW[i]);
 }
 
-/* The end of a step from a state: states and inputs there, with the reactions of the step. */
-static void follow(const Flow *flow, double step, State *now)
+/* The end of a step from a state, with the reactions there; these are held, or ramps from those of the state. */
+static void follow(Flow *flow, double step, int held, State *now)
 {
-    double next[NX + 1], motion[NR + 1];
+    double next[NX + 1], motion[NR + 1], before[NR + 1];
     int i, j, k;
     for (i = 0; i < NX; i++) {
         next[i] = 0.0;
@@ -152,44 +159,57 @@ static void follow(const Flow *flow, double step, State *now)
         *u[2] += step * *u[3];
     }
     for (i = 0; i < NR; i++) {
+        before[i] = now->r[i];
         motion[i] = 0.0;
         for (j = 0; j < NX; j++) motion[i] += Q[i][j] * next[j];
         for (j = 0; j < NU; j++) motion[i] += Q[i][NX + j] * now->u[0][j];
+        if (!held)
+            for (j = 0; j < NR; j++) motion[i] += (flow->held[i][j] - flow->ramp[i][j]) * now->r[j];
     }
-    if (NR > 0) react(flow, now->r, motion);
+    if (NR > 0) react(held ? flow->held : flow->ramp, now->r, motion);
     for (i = 0; i < NX; i++) {
         now->x[i] = next[i];
-        for (j = 0; j < NR; j++) now->x[i] += flow->flow[i][NX + ORDERS * NU + j] * now->r[j];
+        for (j = 0; j < NR; j++) {
+            const double first = held ? now->r[j] : before[j];
+            now->x[i] += flow->flow[i][HELD + j] * first;
+            now->x[i] += flow->flow[i][HELD + NR + j] * (now->r[j] - first) / step;
+        }
     }
+}
+
+/* Reactions at the instant of a state: what they are in the smallest step from there. */
+static void look(Model *model)
+{
+    State trial = model->now;
+    if (NR == 0) return;
+    follow(&model->flows[LEVELS - 1], ldexp(model->step, 1 - LEVELS), 1, &trial);
+    memcpy(model->now.r, trial.r, sizeof trial.r);
 }
 
 static void advance_part(Model *model, double step, int level)
 {
-    State before = model->now;
+    const State before = model->now;
     int i, changed = 0;
-    follow(&model->flows[level], step, &model->now);
-    if (level == LEVELS - 1) return;
+    follow(&model->flows[level], step, level == LEVELS - 1, &model->now);
     for (i = 0; i < NR; i++) changed |= contact(before.r, i) != contact(model->now.r, i);
-    if (!changed) return;
-    model->now = before;
-    advance_part(model, step / 2.0, level + 1);
-    advance_part(model, step / 2.0, level + 1);
+    if (changed && level < LEVELS - 1) {
+        model->now = before;
+        advance_part(model, step / 2.0, level + 1);
+        advance_part(model, step / 2.0, level + 1);
+        return;
+    }
+    look(model);
 }
 
 static int advance(Model *model, double step)
 {
     const int parts = NR > 0 ? (int)ceil(step / LONGEST - 1e-9) : 1;
     const double part = step / parts, begin = model->now.time;
-    State trial;
     int i;
     if (part != model->step && !discretise(model, part)) return 0;
+    look(model); /* inputs may have jumped */
     for (i = 0; i < parts; i++) advance_part(model, part, 0);
     model->now.time = begin + step;
-    if (NR > 0) {
-        trial = model->now;
-        follow(&model->flows[LEVELS - 1], ldexp(part, 1 - LEVELS), &trial);
-        memcpy(model->now.end, trial.r, sizeof trial.r);
-    }
     return 1;
 }
 
@@ -199,7 +219,7 @@ static double output(const Model *model, int number)
     int j;
     for (j = 0; j < NX; j++) y += C[number][j] * model->now.x[j];
     for (j = 0; j < NU; j++) y += D[number][j] * model->now.u[0][j];
-    for (j = 0; j < NR; j++) y += D[number][NU + j] * model->now.end[j];
+    for (j = 0; j < NR; j++) y += D[number][NU + j] * model->now.r[j];
     return y;
 }
 

@@ -124,8 +124,9 @@ def _check(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch]) -> No
             raise ExportError(f"An FMU has no {what} on the road itself. Put it between moving parts.")
         if np.any(np.abs(branch.nodes @ loose) > 1e-9):
             raise ExportError(
-                f"An FMU needs a mass, inerter or damper at both ends of the {what}, where only springs are. Put a damper "
-                "beside the spring, or leave friction and gaps out with linear=True, on the command line --linear."
+                f"An FMU needs a mass, inerter or damper at both ends of the {what}, where only springs are. Put a "
+                "damper beside the spring, or leave friction and gaps out with linear=True, on the command line "
+                "--linear."
             )
 
 
@@ -174,14 +175,16 @@ def _mounts(
         force, travel = (name for name in main_outputs(mechanism) if name.rpartition("_")[0] == mount.name)
         of = graph.mounts[mount.name]
         carried = [(graph.branches[i], sign) for i, sign in of.carriers.items()]
-        found[force] = sum(
-            sign * rows[f"reaction_{numbers[id(b)]}" if id(b) in numbers else f"{names[id(b)]}_force"]
-            for b, sign in carried
-        )
-        ends = zip(mechanism.coordinates, of.nodes, strict=False)
-        found[travel] = sum(lever * rows[f"{c.name}_displacement"] for c, lever in ends if lever != 0.0)
-        found[travel] = found[travel] + sum(
-            lever * rows[road.name] for road, lever in zip(mechanism.roads, of.roads, strict=True) if lever != 0.0
-        )
+        nothing = np.zeros_like(next(iter(rows.values())))
+        found[force], found[travel] = nothing.copy(), nothing.copy()
+        for branch, sign in carried:
+            name = f"reaction_{numbers[id(branch)]}" if id(branch) in numbers else f"{names[id(branch)]}_force"
+            found[force] += sign * rows[name]
+        for coordinate, lever in zip(mechanism.coordinates, of.nodes, strict=False):
+            if lever != 0.0:
+                found[travel] += lever * rows[f"{coordinate.name}_displacement"]
+        for road, lever in zip(mechanism.roads, of.roads, strict=True):
+            if lever != 0.0:
+                found[travel] += lever * rows[road.name]
         assert {force, travel} <= set(known)
     return found

@@ -22,6 +22,7 @@ from inerter.systems.outputs import input_unit, of_mount, velocity_of
 from inerter.vehicle.mechanism import Coordinate, Force, Mechanism, Port, Strut
 
 _T, _R = "Modelica.Mechanics.Translational", "Modelica.Mechanics.Rotational"
+_LONGEST = 60  # characters of the name of a package
 _PARTS = {
     LinearRole.STIFFNESS: (f"{_T}.Components.Spring", "c"),
     LinearRole.DAMPING: (f"{_T}.Components.Damper", "d"),
@@ -97,7 +98,7 @@ class _Source:
 
     def _joined(self, title: str) -> str:
         quoted = title.replace("\\", "\\\\").replace('"', '\\"')
-        package = f"{identifier(title)}_" if identifier(title) in _KEYWORDS else identifier(title)
+        package = package_name(title)
         lines = [f'package {package} "{quoted}, written by inerter"', _INERTER.rstrip(), *self.models]
         body = [*self.inputs, *self.parts, *self.outputs]
         lines += ["  model Vehicle", *(f"    {line}" for line in body), "  equation"]
@@ -243,9 +244,15 @@ def _motions_of(coordinate: Coordinate) -> dict[str, tuple[str, int]]:
     return found
 
 
+def package_name(title: str) -> str:
+    """A short name of a package or file after a title."""
+    name = identifier(title)[:_LONGEST].rstrip("_")
+    return f"{name}_" if name in _KEYWORDS else name
+
+
 def identifier(text: str) -> str:
     """A name in the syntax of Modelica and C."""
-    name = re.sub(r"\W", "_", text, flags=re.ASCII)
+    name = re.sub(r"\W+", "_", text, flags=re.ASCII)
     return name if name[:1].isalpha() else f"v_{name}"
 
 

@@ -22,7 +22,7 @@ from inerter.errors import ExportError, WorkError
 from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
 from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
 from inerter.exports.kind import ExportKind
-from inerter.exports.modelica import identifier
+from inerter.exports.modelica import package_name
 from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Element
 from inerter.systems.graph import switching
@@ -86,7 +86,7 @@ def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> b
     Raises `ExportError` where there is no C compiler, or on other platforms than Linux on x86-64; `WorkError` if the
     compiler fails.
     """
-    name = identifier(title or "vehicle")
+    name = package_name(title or "vehicle")
     header = _header(switches)
     system = replace(switches.system, inputs=switches.inputs)
     told = "".join([header, *(one.label for one in (*system.inputs, *system.outputs)), name, str(version.number)])

@@ -98,7 +98,8 @@ def build_description(model: FmuModel, source: str) -> str:
 
 
 def _head(model: FmuModel, version: str, token: str) -> list[str]:
-    description = " ".join([model.title, *model.system.notes])
+    text = " ".join([model.title, *model.system.notes])
+    description = "".join(one for one in text if one.isprintable())  # XML has no control characters
     return [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<fmiModelDescription fmiVersion="{version}" modelName={quoteattr(model.name)} {token}'

@@ -16,6 +16,15 @@ from inerter.field_metadata import choice_field as choice_field
 from inerter.field_metadata import mount as mount
 from inerter.field_metadata import quantity as quantity
 from inerter.field_metadata import typed_field as typed_field
+from inerter.figures.plots import plot_admittance as plot_admittance
+from inerter.figures.plots import plot_bode as plot_bode
+from inerter.figures.plots import plot_front as plot_front
+from inerter.figures.plots import plot_loop as plot_loop
+from inerter.figures.plots import plot_network as plot_network
+from inerter.figures.plots import plot_nyquist as plot_nyquist
+from inerter.figures.plots import plot_poles as plot_poles
+from inerter.figures.plots import plot_step_response as plot_step_response
+from inerter.figures.plots import plot_trajectory as plot_trajectory
 from inerter.files.common.folder import WriteMode as WriteMode
 from inerter.files.common.folder import open_results as open_results
 from inerter.files.common.signal_kinds import SIGNALS as SIGNALS
@@ -76,6 +85,8 @@ from inerter.methods.static_stiffness import static_stiffness as static_stiffnes
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.network_search.admittance import AdmittanceResult as AdmittanceResult
 from inerter.network_search.admittance import optimise_admittance as optimise_admittance
+from inerter.network_search.front_results import FrontNetwork as FrontNetwork
+from inerter.network_search.front_results import NetworkFront as NetworkFront
 from inerter.network_search.real_inerters import RealInerter as RealInerter
 from inerter.network_search.real_inerters import RealNetwork as RealNetwork
 from inerter.network_search.real_inerters import with_friction_and_elasticity as with_friction_and_elasticity

@@ -29,9 +29,10 @@ SHOWN = """() => {
   return {
     numbers: [...document.querySelectorAll("[data-value], [data-better]")]
       .flatMap(each => [each.dataset.value, each.dataset.better]).filter(each => each && !isNaN(each)),
-    curves: document.querySelectorAll(".plot canvas, .motion canvas, .histogram").length,
+    curves: document.querySelectorAll(".plot .drawn, .motion canvas").length,
     texts: [...texts(".limits li"), ...texts(".budget [role=status]"), ...texts(".optimise [role=status]"),
-      ...texts(".notice"), ...texts(".problem"), ...texts(".doubts")].filter(each => each),
+      ...texts(".notice"), ...texts(".problem"), ...texts(".doubts"),
+      ...texts(".verdict:not(.wait) > b"), ...texts(".verdict:not(.wait) .caveat")].filter(each => each),
   };
 }"""
 FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
@@ -73,12 +74,12 @@ def _follows(visitor: Visitor, first: str, other: str) -> list[Any]:
             shown["texts"] = [text for text in shown["texts"] if not text.startswith(f"{other}.toml is open")]
             if shown != NOTHING:
                 found.append((first, other, tab, shown))
-        assert page.locator(".answers [data-being=coming]").count() == 1, (first, other)
+        assert page.locator(".answers[data-being=coming]").count() == 1, (first, other)
         for _ in range(3 if other == SIMULATED else 1):  # which chooses a layout besides
             if page.input_value(".title") != title:
                 page.get_by_role("button", name="Undo").click()
                 page.evaluate(FRAMES)
-        page.wait_for_function("() => document.querySelector('.answers [data-being=current]')")
+        page.wait_for_function("() => document.querySelector('.answers[data-being=current]')")
         assert page.evaluate(SHOWN)["numbers"] == before["numbers"]  # at once: they are those of this very question
     return found
 
@@ -107,7 +108,7 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
     page.click("#tab-tolerance")
     page.locator("#tab-panel").get_by_role("button", name="Compute").click()
     page.wait_for_selector("table[data-scatter]")
-    page.get_by_text("Break-even values").click()
+    page.click("#tab-margins")
     page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
     assert len(page.evaluate(SHOWN)["texts"]) > 0
@@ -127,7 +128,7 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
     waiting: list[Any] = []
     page.route("**/api/panel/optimise", lambda route: waiting.append(route))  # noqa: PLW0108
     with page.expect_request("**/api/panel/optimise"):
-        page.get_by_role("button", name="Optimise").click()
+        page.get_by_role("button", name="Find best").click()
     page.wait_for_timeout(200)
     assert len(waiting) == 1
     page.unroute("**/api/panel/optimise")
@@ -163,10 +164,7 @@ def _save(name: str) -> Callable[[Any], None]:
 
 def _find_out(tab: str) -> Callable[[Any], None]:
     def ask(page: Any) -> None:
-        if tab == "budget":
-            page.get_by_text("Break-even values").click()
-        else:
-            page.click(f"#tab-{tab}")
+        page.click(f"#tab-{'margins' if tab == 'budget' else tab}")
         page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Compute").click()
 
     return ask
@@ -175,7 +173,7 @@ def _find_out(tab: str) -> Callable[[Any], None]:
 ASKING: dict[str, Callable[[Any], None]] = {
     "a slider": _slide,
     "a road": lambda page: page.click("#tab-history"),
-    "an optimum": lambda page: page.get_by_role("button", name="Optimise").click(),
+    "an optimum": lambda page: page.get_by_role("button", name="Find best").click(),
     "a budget": _find_out("budget"),
     "a tolerance": _find_out("tolerance"),
     "a picture": _save("On the road (PNG)"),
@@ -205,17 +203,17 @@ def test_nothing_is_silent_for_two_seconds(what: str, visitor: Visitor) -> None:
 def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
-    page.wait_for_selector(".answers [data-being=current]")
+    page.wait_for_selector(".answers[data-being=current]")
     before = page.evaluate(SHOWN)["numbers"]
     with held(visitor):
         _slide(page)
-        page.wait_for_selector(".answers [data-being=coming]")
+        page.wait_for_selector(".answers[data-being=coming]")
         assert page.evaluate(SHOWN)["numbers"] == before  # those of the step before, and said to be
         assert page.locator(".answers table.stale").count() == 1
         page.fill("#network-text", "")
         page.wait_for_selector(".answers table.stale", state="detached")
         assert page.evaluate(SHOWN)["numbers"] == []
-    page.wait_for_selector(".answers [data-being=none]")
+    page.wait_for_selector(".answers[data-being=none]")
     assert page.evaluate(SHOWN)["numbers"] == []
     assert page.evaluate(SHOWN)["curves"] == 0
 
@@ -241,7 +239,7 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     assert "%" not in page.inner_text("[aria-label=Comparison]")
     assert page.locator("td.best").count() == 0
     for layout in ("S1", "S3"):
-        page.locator("[aria-label=Layouts] .chip", has_text=layout).click()
+        page.locator("[aria-label=Layouts] .pick", has_text=layout).click()
         for name in re.findall(r"(\w+)(?:,| of)", page.inner_text(".answers .unchosen").split("Not chosen yet: ")[1]):
             entry = page.locator(f"[id='entry elements.{name}']")
             if entry.count() and entry.is_visible():
@@ -322,7 +320,7 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
     assert told.index("Unreliable") < told.index("network")
     assert page.locator("td.best, .difference.good, .difference.bad").count() == 0
 
-    page.get_by_text("Break-even values").click()
+    page.click("#tab-margins")
     page.locator(".budget [name=parameter]").select_option("f")
     page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")

@@ -140,12 +140,11 @@ def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) ->
     page = visitor.page
     _open(visitor, _two_struts(), tmp_path)
     before = visitor.values()
-    page.locator("[data-place='elements.c'] summary").click()
-    page.locator("[data-place='elements.c']").get_by_role("button", name="free").click()
+    page.locator("[data-place='elements.c'] input[type=checkbox]").check()
     visitor.settled()
     assert page.locator(".problem").count() == 0
     assert visitor.values() == before
-    page.get_by_role("button", name="Optimise").click()
+    page.get_by_role("button", name="Find best").click()
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
     assert visitor.values()["J1"] < before["J1"]
     path = visitor.download("Study file", tmp_path)
@@ -157,7 +156,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     page = visitor.page
     text = _two_struts(f'{ONE_INDEX}\noptimise = "norm"', c='{ from = "100 N s/m", to = "100 kN s/m" }')
     _open(visitor, text, tmp_path)
-    page.get_by_text("Indices and limits").click()
+    page.click("#step-2")
     page.get_by_role("group", name="Indices of the study").get_by_role("button", name="J3", exact=True).click()
     page.wait_for_selector("td[data-index=J3]")
     asked = page.locator(".asked")
@@ -174,7 +173,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     entry.fill("60 kN/m")
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
-    page.get_by_role("button", name="Optimise").click()
+    page.get_by_role("button", name="Find best").click()
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
     page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
     study = tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
@@ -224,7 +223,7 @@ def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any,
             rows = list(csv.reader(stream))
         assert any(column in head for head in rows[0]), name
         assert len(rows) > 100, name
-    page.get_by_text("Link", exact=True).click()
+    page.get_by_text("Share", exact=True).click()
     page.wait_for_function("() => document.querySelector('#shared-link')?.value.includes('#state=')")
     other = visitors(visitor.served, context=page.context).visit(page.input_value("#shared-link"))
     other.page.wait_for_selector("#tab-history[aria-selected=true]")
@@ -262,7 +261,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     found = answers[0].json()
     told = page.locator(".records .finding").all_inner_texts()
     assert told == [each["sentence"] for each in found["findings"]]
-    page.wait_for_selector(".records .plot canvas")
+    page.wait_for_selector(".records .plot .drawn")
     assert page.locator(".records select option").all_inner_texts() == [each["name"] for each in found["channels"]]
     page.get_by_role("button", name="Remove noise.csv").click()
     page.wait_for_selector(".records .plot", state="detached")
@@ -318,7 +317,7 @@ TABBABLE = """() => [
 @pytest.mark.parametrize("backwards", sampled([False, True], seldom=[False]))
 def test_the_keyboard_reaches_all_and_is_nowhere_trapped(backwards: bool, visitor: Visitor) -> None:
     page = visitor.page
-    for tab in ("response", "history", "compare", "tolerance", "work", "rig"):
+    for tab in ("response", "history", "compare", "margins", "tolerance", "work", "rig"):
         page.click(f"#tab-{tab}")
         visitor.settled()
         visitor.drawn()
@@ -359,7 +358,7 @@ def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[.
     visitor = visitors(served).visit()
     page = visitor.page
     page.fill("#network-text", " | ".join(["k - (c | b)"] * 13))
-    page.get_by_role("button", name="Across the page").click()
+    page.get_by_role("button", name="Lay out wide").click()
     wait_until(lambda: page.locator(".network.across").count() == 1)
     for _ in range(2):
         hidden = page.evaluate(
@@ -378,7 +377,7 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     text = _two_struts(inerter="k | d - (b | f)", **{name: f'"{value}"' for name, value in values.items()})
     _open(visitor, text, tmp_path)
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
-    page.get_by_text("Break-even values").click()
+    page.click("#tab-margins")
     asked: list[Any] = []
     page.on("request", lambda request: asked.append(request.post_data_json) if "panel/budget" in request.url else None)
     page.locator(".budget").get_by_role("button", name="Compute").click()

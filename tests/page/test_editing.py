@@ -48,11 +48,9 @@ def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_p
     page = visitor.page
     visitor.settled()
     before = visitor.values()["J3"]
-    row = page.locator("[data-place='vehicle.tyre_stiffness'] details.bounds")
-    row.locator("summary").click()
-    row.get_by_role("button", name="free").click()
-    assert page.locator("[data-place='road.speed'] details.bounds button").count() == 0  # which no optimiser chooses
-    page.get_by_role("button", name="Optimise").click()
+    page.locator("[data-place='vehicle.tyre_stiffness'] input[type=checkbox]").check()
+    assert page.locator("[data-place='road.speed'] input[type=checkbox]").count() == 0  # which no optimiser chooses
+    page.get_by_role("button", name="Find best").click()
     page.wait_for_function(
         "() => document.querySelector(\"[id='entry vehicle.tyre_stiffness']\").title.startsWith('12000.0 ')"
     )
@@ -75,12 +73,10 @@ def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_p
 def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor: Any) -> None:
     page = visitor.page
     visitor.settled()
-    row = page.locator("[data-place='elements.k'] details.bounds")
-    row.locator("summary").click()
     page.evaluate("() => { window.requestAnimationFrame = () => 0; }")  # a frame that does not come
-    row.get_by_role("button", name="free").click()
+    page.locator("[data-place='elements.k'] input[type=checkbox]").click()
     with page.expect_request("**/api/panel/optimise") as asked:
-        page.get_by_role("button", name="Optimise").click()
+        page.get_by_role("button", name="Find best").click()
     assert set(asked.value.post_data_json["study"]["elements"]["k"]) == {"from", "to"}
 
 

@@ -57,32 +57,27 @@ def _study(visitor: Visitor) -> Any:
 
 def _by_mouse(visitor: Visitor) -> None:
     page = visitor.page
-    page.get_by_role("button", name="+ layout").click()
+    page.get_by_role("button", name="Add a layout").click()
     page.locator(".element[data-name=c]").click()
     page.get_by_role("button", name="in series").click()
     page.get_by_role("button", name="Add a inerter").click()
-    bounds = page.locator("[data-place='elements.b'] details.bounds")
-    bounds.locator("summary").click()
-    bounds.get_by_role("button", name="free").click()
-    page.get_by_role("button", name="Optimise").click()
+    page.locator("[data-place='elements.b'] input[type=checkbox]").check()
+    page.get_by_role("button", name="Find best").click()
 
 
 def _by_keyboard(visitor: Visitor) -> None:
     page = visitor.page
     keys = page.keyboard
-    page.get_by_role("button", name="+ layout").focus()
+    page.get_by_role("button", name="Add a layout").focus()
     keys.press("Enter")
     page.locator(".element[data-name=k]").focus()
     page.wait_for_selector(".element.chosen[data-name=k]")
     keys.press("ArrowRight")
     page.wait_for_selector(".element.chosen[data-name=c]")
-    keys.press("b")
-    summary = page.locator("[data-place='elements.b'] summary")
-    summary.focus()
-    keys.press("Enter")
-    page.locator("[data-place='elements.b']").get_by_role("button", name="free").focus()
-    keys.press("Enter")
-    page.get_by_role("button", name="Optimise").focus()
+    keys.press("i")
+    page.locator("[data-place='elements.b'] input[type=checkbox]").focus()
+    keys.press("Space")
+    page.get_by_role("button", name="Find best").focus()
     keys.press("Enter")
 
 
@@ -140,7 +135,7 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(visitor: Visitor, vi
     page, served = visitor.page, visitor.served
     optimum = _built_compared_and_undone(visitor, tmp_path, _by_mouse, _press)
 
-    page.get_by_text("Link", exact=True).click()
+    page.get_by_text("Share", exact=True).click()
     page.wait_for_function("() => document.querySelector('#shared-link')?.value.includes('#state=')")
     link = page.input_value("#shared-link")
     assert served.token not in link
@@ -184,8 +179,8 @@ def test_every_example_opens(visitor: Visitor) -> None:
         chosen = not study.free_networks  # else a search has to choose a network first
         assert told.startswith(f"{path.name} is open{'.' if chosen else ';'}"), (path.name, told)
         visitor.settled()
-        shown = page.get_by_role("group", name="Layouts").locator(".chip").all_inner_texts()
-        assert [text.removesuffix(" ★") for text in shown] == list(study.layouts)
+        shown = page.get_by_role("group", name="Layouts").locator(".pick").all_inner_texts()
+        assert sorted(text.strip() for text in shown) == sorted(study.layouts)
     assert opened >= 4
 
 
@@ -268,6 +263,7 @@ def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
     page.fill("#network-text", "k | c | b")
     page.locator(".element[data-name=b]").click()
     page.get_by_role("tab", name="Road").click()
+    page.evaluate("() => { document.getElementById('part-menu').open = true; }")
     for field in ("#element-name", ".title", "label:has-text('for [s]') input"):
         page.locator(field).fill("12")
         page.evaluate(
@@ -292,6 +288,7 @@ def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
     page.mouse.move(target["x"] + target["width"] / 2, target["y"] + target["height"] * 0.9, steps=8)
     page.mouse.up()
     visitor.wait_for_text("k | c - b")
+    page.get_by_text("Part", exact=True).click()
     page.fill("#element-name", "flywheel")
     page.keyboard.press("Enter")
     visitor.wait_for_text("k | c - flywheel")
@@ -410,7 +407,7 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     assert form.locator("[name=from]").input_value() == "12.5 m/s"
     form.locator("[name=points]").fill("2")
     form.get_by_role("button", name="Begin").click()
-    page.wait_for_selector(".job[data-state=done] .plot canvas", timeout=120_000)
+    page.wait_for_selector(".job[data-state=done] .plot .drawn", timeout=120_000)
 
 
 @pytest.mark.campaign

@@ -20,7 +20,7 @@ AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
 SERIOUS = ("serious", "critical")
 SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
 THEMES = {"light": SIZES, "dark": {"wide": SIZES["wide"]}}  # whose layout is the same
-TABS = ("response", "history", "compare", "tolerance", "work", "rig")
+TABS = ("response", "history", "compare", "margins", "tolerance", "work", "rig")
 DOCUMENTED = {("quarter-car", "wide", "light", "response"), ("ball_screw", "wide", "dark", "history")}
 INDICES = 'indices = ["J1", "J3", "J5"]'
 

@@ -19,3 +19,10 @@ export const methodOf = (state, name) => methodsOf(state).find((method) => metho
 
 /** The one by which the page judges. @param {Pick<State, "about" | "view">} state */
 export const judging = (state) => methodOf(state, state.view.method);
+
+/** A method in words, with its name. @param {Method} method */
+export function methodTitle({ name, sees }) {
+  const words = { neither: "without friction and gaps", friction: "with friction",
+    both: "with friction and gaps" }[sees] ?? "";
+  return `${words || name} (${name.replaceAll("-", " ")})`;
+}

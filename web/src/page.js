@@ -1,38 +1,45 @@
-// The page: its parts, what the keyboard does everywhere, and what is dropped on it.
+// The page: its frame, what the keyboard does everywhere, and what is dropped on it.
 
 import { AnswersPanel } from "./panels/answers.js";
 import { ComparePanel } from "./panels/compare.js";
+import { DecisionLine, goTo } from "./panels/decision.js";
 import { HistoryPanel } from "./panels/history.js";
+import { MarginsPanel } from "./panels/margins.js";
 import { Menu } from "./panels/memory.js";
 import { NetworkPanel } from "./panels/network.js";
 import { ResponsePanel } from "./panels/response.js";
 import { RigPanel } from "./panels/rig.js";
+import { Start } from "./panels/start.js";
 import { TolerancePanel } from "./panels/tolerance.js";
-import { ValuesPanel } from "./panels/values.js";
+import { ValuesPanel, otherProblems, problemsOf } from "./panels/values.js";
+import { MotionPanel } from "./panels/motion.js";
 import { WorkPanel } from "./panels/work.js";
 import { Clock, Moving } from "./parts/clock.js";
 import { Field } from "./parts/field.js";
-import { Select, formHandler } from "./parts/controls.js";
+import { Chip, Select, formHandler } from "./parts/controls.js";
 import { html, useEffect, useState } from "./parts/html.js";
+import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
+import { answerOf } from "./questions.js";
 import { open } from "./remembering.js";
-import { openStudy } from "./working.js";
 
 /** @import { Store } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
 
-/** What is below the strut and its answers: a tab a row. */
+/** What is below the vehicle in motion: a tab a row. */
 const TABS = [
-  { key: "response", title: "Frequency response", Panel: ResponsePanel },
+  { key: "response", title: "Response", Panel: ResponsePanel },
   { key: "history", title: "On the road", Panel: HistoryPanel },
   { key: "compare", title: "Compare", Panel: ComparePanel },
+  { key: "margins", title: "Break-even", Panel: MarginsPanel },
   { key: "tolerance", title: "Tolerances", Panel: TolerancePanel },
-  { key: "work", title: "Work", Panel: WorkPanel },
+  { key: "work", title: "Jobs", Panel: WorkPanel },
   { key: "rig", title: "Rig", Panel: RigPanel },
 ];
 
 /** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
 export function Page({ store, api, enter }) {
   const [, setState] = useState(store.get());
+  const [keys, setKeys] = useState(false);
   useEffect(() => {
     const { soon, now } = inFrames(() => setState(store.get()));
     for (const act of ACTS) addEventListener(act, now, { capture: true });
@@ -42,29 +49,27 @@ export function Page({ store, api, enter }) {
       for (const act of ACTS) removeEventListener(act, now, { capture: true });
     };
   }, [store]);
-  useEffect(() => listen(store, api), [store, api]);
+  useEffect(() => listen(store, api, () => setKeys(true)), [store, api]);
   const state = store.get();
-  const { study } = state.history.present;
-  const blank = Object.keys(study).length === 0;
-  return html`<a class="skip" href="#answers-title">To the answers</a>
+  const blank = Object.keys(state.history.present.study).length === 0;
+  return html`<a class="skip" href="#verdict">To the verdict</a>
     <header>
       <h1><span class="product">inerter</span> <${Title} store=${store} /></h1>
       <${Menu} store=${store} api=${api} />
+      <button type="button" onClick=${() => setKeys(true)}>Keys <kbd>?</kbd></button>
       <${Theme} store=${store} />
     </header>
-    <${Bar} store=${store} api=${api} enter=${enter} />
-    ${blank
-      ? html`<main class="blank"><h2>No study is open</h2>
-        <p>Open an example or a study file above, drop one anywhere on this page, or start a quarter car:</p>
-        <button class="main" type="button" onClick=${() => start(store, api)}>Start with a quarter car</button></main>`
+    <${DecisionLine} store=${store} />
+    <${Bar} store=${store} enter=${enter} />
+    ${blank ? html`<${Start} store=${store} api=${api} />`
       : html`<main>
-          <div class="columns">
-            <${NetworkPanel} store=${store} api=${api} />
-            <${ValuesPanel} store=${store} />
-            <${AnswersPanel} store=${store} api=${api} />
-          </div>
-          <${Tabs} store=${store} api=${api} />
-        </main>`}`;
+          <div class="col left"><${AnswersPanel} store=${store} /><${NetworkPanel} store=${store} api=${api} /></div>
+          <div class=${`col middle ${state.view.tall ? "tall" : ""}`}>
+            <${MotionPanel} store=${store} api=${api} /><${Tabs} store=${store} api=${api} /></div>
+          <div class="col"><${ValuesPanel} store=${store} api=${api} /></div>
+        </main>`}
+    <footer class="keys"><${KeysOfFocus} /><${Standing} store=${store} api=${api} /></footer>
+    <${AllKeys} open=${keys} close=${() => setKeys(false)} />`;
 }
 
 const ACTS = ["keydown", "click", "change", "submit"];
@@ -86,17 +91,10 @@ function inFrames(told) {
   return { soon, now };
 }
 
-/** @param {Store} store @param {Api} api */
-async function start(store, api) {
-  const { examples } = await api.get("examples");
-  const first = examples.find((/** @type {any} */ { name }) => name === "quarter-car") ?? examples[0];
-  if (first) await openStudy(store, api, (await api.get(`examples/${encodeURIComponent(first.name)}`)).study);
-}
-
 /** @param {{store: Store}} props */
 function Title({ store }) {
   const { study } = store.get().history.present;
-  if (Object.keys(study).length === 0) return null;
+  if (Object.keys(study).length === 0) return "No study yet";
   return html`<${Field} class="title" aria-label="Title of the study" placeholder="Untitled study"
     text=${study.title ?? ""}
     done=${(/** @type {string} */ title) => store.change({ type: "placed", place: ["title"], value: title
@@ -114,8 +112,8 @@ const SAID = {
 const AT_WORK = 1000; // [ms] that an answer may take before the page says that it waits
 const LOOK = 500; // [ms]
 
-/** That the server is at work, whatever was asked, as soon as one waits. @param {{api: Api}} props */
-function AtWork({ api }) {
+/** Since when the server has been at work, whatever was asked, as soon as one waits. @param {Api} api */
+function useWork(api) {
   const [since, setSince] = useState(/** @type {number | null} */ (null));
   useEffect(() => {
     const looking = setInterval(() => {
@@ -124,25 +122,55 @@ function AtWork({ api }) {
     }, LOOK);
     return () => clearInterval(looking);
   }, [api]);
-  return since !== null && html`<p class="at-work">
-    <${Moving} key=${since} what="The server is at work" since=${since} /></p>`;
+  return since;
 }
 
-/** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
-function Bar({ store, api, enter }) {
-  const { connection, messages, about } = store.get();
+/** How the answers stand, and how many messages there are. @param {{store: Store, api: Api}} props */
+function Standing({ store, api }) {
+  const state = store.get();
+  const since = useWork(api);
+  const { connection, messages } = state;
+  const { is } = answerOf(state, "decision");
+  const count = messages.length + problemsOf(state).length;
+  const lost = connection === "lost" || connection === "refused";
+  const blank = Object.keys(state.history.present.study).length === 0;
+  const ready = blank ? "ready" : STANDING[is];
+  const told = lost ? "no server" : connection === "ready" ? ready : connection;
+  return html`<span role="status">${since !== null
+      && html`<span class="at-work"><${Moving} key=${since} what="The server is at work" since=${since} /></span> · `}
+    ${count > 0 && html`<b>${count === 1 ? "1 message" : `${count} messages`}</b> <kbd>F8</kbd> · `}
+    <span class="dot" data-is=${lost ? "none" : blank ? "current" : is}></span>${told}</span>`;
+}
+
+/** @type {{[is: string]: string}} */
+const STANDING = { current: "answers are of this study", coming: "computing", none: "no answer" };
+
+/** What the page has to say: each stays until its cause is gone, or until it is closed.
+ * @param {{store: Store, enter: (token: string) => void}} props */
+function Bar({ store, enter }) {
+  const state = store.get();
+  const { connection, messages, about } = state;
   const kernels = connection === "compiling" ? about?.kernels : null;
+  const problems = otherProblems(state);
   return html`<div class="bar" aria-live="polite" data-connection=${connection}>
-    ${connection !== "ready" && html`<p class="notice">
+    ${connection !== "ready" && html`<p class=${`notice ${connection}`}><span>
       ${SAID[connection]} ${kernels?.title ?? ""} ${kernels?.total ? `(${kernels.number} of ${kernels.total})`
-        : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</p>`}
+        : ""} ${connection !== "refused" && html`<${Clock} key=${connection} />`}</span></p>`}
     ${connection === "refused" &&
-    html`<form class="row" onSubmit=${formHandler((form) => enter(String(form.get("token"))))}>
-      <label>Link or token <input name="token" autocomplete="off" /></label> <button>Connect</button></form>`}
-    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}>
-      ${text} <button type="button" class="link" aria-label="Close the message"
+    html`<form class="row notice" onSubmit=${formHandler((form) => enter(String(form.get("token"))))}>
+      <label>Link or token <input name="token" autocomplete="off" /></label> <button class="edged">Connect</button>
+    </form>`}
+    ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
+      ${problems.map((problem) => html`<li class="problem">${problem.sentence.startsWith(problem.place.join(".")) ? ""
+        : html`<code>${problem.place.join(".")}</code> `}${problem.sentence}</li>`)}</ul></div>`}
+    ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
+      ${offer && html`<button type="button" class="edged" onClick=${() => {
+        store.dispatch({ type: "closed", about: key });
+        offer.act();
+      }}>${offer.label}</button>`}
+      <button type="button" class="link" aria-label="Close the message"
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
-  </div><${AtWork} api=${api} />`;
+  </div>`;
 }
 
 /** @param {{store: Store, api: Api}} props */
@@ -157,12 +185,13 @@ function Tabs({ store, api }) {
     store.look({ tab: next.key });
     document.getElementById(`tab-${next.key}`)?.focus();
   }
-  return html`<section class="panel tabs">
-    <div role="tablist" aria-label="More answers" onKeyDown=${turn}>
+  return html`<section class="panel tabs" data-keys="Tabs">
+    <div class="head"><div role="tablist" aria-label="More answers" onKeyDown=${turn}>
       ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key}
         aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1}
           onClick=${() => store.look({ tab: key })}>${title}</button>`)}
-    </div>
+    </div><${Chip} on=${view.tall} set=${() => store.look({ tall: !view.tall })}
+      aria-label="Enlarge" title="Enlarge: the whole height">⤢<//></div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
       <${shown.Panel} store=${store} api=${api} /></div>
   </section>`;
@@ -170,31 +199,35 @@ function Tabs({ store, api }) {
 
 const THEMES = /** @type {const} */ (["auto", "light", "dark"]);
 
+const DARK = matchMedia("(prefers-color-scheme: dark)");
+
 /** @param {{store: Store}} props */
 function Theme({ store }) {
   const { theme } = store.get().view;
   useEffect(() => {
-    document.documentElement.dataset.theme = theme;
+    const show = () => {
+      document.documentElement.dataset.theme = theme !== "auto" ? theme : DARK.matches ? "dark" : "light";
+    };
+    show();
+    DARK.addEventListener("change", show);
+    return () => DARK.removeEventListener("change", show);
   }, [theme]);
-  return html`<label class="theme">Colours <${Select} value=${theme} choices=${THEMES}
+  return html`<label class="theme"><${Select} value=${theme} aria-label="Colours" choices=${THEMES}
     set=${(/** @type {typeof THEMES[number]} */ chosen) => store.look({ theme: chosen })} /></label>`;
 }
 
-/** What the whole page listens to. @param {Store} store @param {Api} api */
-function listen(store, api) {
+const MENUS = "details.menu[open], details.bounds[open]";
+
+/** What the whole page listens to. @param {Store} store @param {Api} api @param {() => void} showKeys */
+function listen(store, api, showKeys) {
   const off = new AbortController();
   const { signal } = off;
   addEventListener("keydown", (event) => {
-    const menu = event.key === "Escape"
-      && /** @type {Element} */ (event.target).closest("details.menu[open], details.bounds[open]");
-    if (menu) {
-      menu.removeAttribute("open");
-      menu.querySelector("summary")?.focus();
-    }
-    const key = event.key.toLowerCase();
-    if (!(event.ctrlKey || event.metaKey) || !["z", "y"].includes(key)) return;
+    if (event.defaultPrevented) return;
+    const act = event.ctrlKey || event.metaKey ? withControl(store, event) : alone(store, event, showKeys);
+    if (!act) return;
     event.preventDefault();
-    store.dispatch({ type: key === "y" || event.shiftKey ? "redone" : "undone" });
+    act();
   }, { signal });
   addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault(),
     { signal });
@@ -204,11 +237,61 @@ function listen(store, api) {
     void filesOf(event.dataTransfer).then((files) => open(store, api, files));
   }, { signal });
   addEventListener("click", (event) => {
-    for (const menu of document.querySelectorAll("details.menu[open], details.bounds[open]")) {
+    for (const menu of document.querySelectorAll(MENUS)) {
       if (!menu.contains(/** @type {Node} */ (event.target))) menu.removeAttribute("open");
     }
   }, { signal });
   return () => off.abort();
+}
+
+/** What a key does with Ctrl. @param {Store} store @param {KeyboardEvent} event */
+function withControl(store, { key, shiftKey }) {
+  /** @type {{[key: string]: () => void}} */
+  const acts = {
+    z: () => store.dispatch({ type: shiftKey ? "redone" : "undone" }),
+    y: () => store.dispatch({ type: "redone" }),
+    o: () => openMenu("open-menu"),
+    s: () => openMenu("save-menu"),
+  };
+  return acts[key.toLowerCase()];
+}
+
+/** What a key does alone; letters and digits only where no text is typed.
+ * @param {Store} store @param {KeyboardEvent} event @param {() => void} showKeys */
+function alone(store, { key, target, altKey }, showKeys) {
+  const menu = /** @type {Element} */ (target).closest?.(MENUS);
+  if (key === "Escape" && menu) return () => {
+    menu.removeAttribute("open");
+    menu.querySelector("summary")?.focus();
+  };
+  if (key === "F8") return nextMessage;
+  if (key.startsWith("Arrow") && target === document.body)
+    return () => /** @type {HTMLElement | null} */ (document.querySelector(".card"))?.focus();
+  if (altKey || isTyped(target) || document.querySelector("dialog[open]")) return undefined;
+  if (key === " ") return isPressed(target) ? undefined : () => store.look({ playing: !store.get().view.playing });
+  if (["1", "2", "3", "4"].includes(key)) return () => goTo(store, Number(key));
+  return { "?": showKeys, v: showVerdict, o: () => document.getElementById("find-best")?.click() }[key.toLowerCase()];
+}
+
+/** @param {string} id */
+function openMenu(id) {
+  const menu = document.getElementById(id);
+  menu?.setAttribute("open", "");
+  menu?.querySelector("summary")?.focus();
+}
+
+/** The verdict with all that speaks against it. */
+function showVerdict() {
+  document.querySelector("#verdict details")?.setAttribute("open", "");
+  /** @type {HTMLElement | null} */ (document.querySelector("#caveats-all") ?? document.querySelector("#verdict"))
+    ?.focus();
+}
+
+/** The focus goes to the next message, or to what is wrong. */
+function nextMessage() {
+  const all = [...document.querySelectorAll(".notice button, [aria-invalid=true]")];
+  const next = all[(all.indexOf(/** @type {Element} */ (document.activeElement)) + 1) % all.length];
+  /** @type {HTMLElement | undefined} */ (next)?.focus();
 }
 
 /** The files that were dropped, and of a folder the files in it. @param {DataTransfer} transfer

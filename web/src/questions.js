@@ -3,23 +3,34 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, strutsOf, entryAt } from "./state/document.js";
+import { isRange, own, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
 /** @import { Document, Study } from "./state/document.js" */
 /** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
- * tells.
- * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, learnt?: (value: any) => Action}} Row */
+ * tells; `rest`: how long the state must have been the same before it is asked [ms].
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, rest?: number,
+ * learnt?: (value: any) => Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
-export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
+export const designOf = ({ layout, values }) => ({ layout, values: own(values, layout) ?? {}, name: layout });
 
 /** The design that it is compared with. @param {Document} document */
 export function baselineOf({ study, values }) {
   const layout = study.study?.baseline ?? Object.keys(study.layouts ?? {})[0] ?? "";
-  return { layout, values: values[layout] ?? {}, name: layout };
+  return { layout, values: own(values, layout) ?? {}, name: layout };
+}
+
+/** All layouts of the study as designs. @param {Document} document */
+export const allDesigns = (document) =>
+  Object.keys(document.study.layouts ?? {}).map((layout) => designOf({ ...document, layout }));
+
+/** The index by which designs are ranked. @param {State} state @returns {string | undefined} */
+export function goalOf({ view, history }) {
+  const indices = history.present.study.study?.indices ?? [];
+  return indices.includes(view.index) ? view.index : indices[0];
 }
 
 /** The design that is edited and the one that it is compared with; that one alone if it is edited.
@@ -55,15 +66,39 @@ const ROWS = [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
     { panel: "check", path: "study/check", body: { study } },
   ],
-  (state, document) => [ofDesigns("indices", { ...about(document), methods: methodNames(state) })],
+  (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
-  ({ view: { tab, seconds, seed } }, document) => (tab !== "history" ? [] : [
-    ofDesigns("history", { ...presentDesign(document), duration: seconds, seed }),
+  (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
+  ({ view: { seconds, seed } }, document) => [
+    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
+      rest: 300 },
     ofDesigns("mechanism", presentDesign(document)),
-  ]),
+  ],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
+  typedText,
 ];
+
+/** Whether what was typed into a field is a quantity of its unit. @param {State} state @returns {Row[]} */
+function typedText({ typed }) {
+  if (typed === null || typed.sentence !== undefined) return [];
+  const { text, unit } = typed;
+  return [{ panel: "typed", path: "quantity", body: { text, unit },
+    learnt: ({ sentence }) => ({ type: "read", typed, sentence }) }];
+}
+
+/** What is drawn beside the design that is edited and the baseline. @param {State} state @returns {Choice[]} */
+export function ghostsOf({ view, history: { present } }) {
+  const drawn = shownDesigns(present).map(({ layout }) => `layout ${layout}`);
+  return choicesOf(present).filter(({ key }) => view.ghosts.includes(key) && !drawn.includes(key));
+}
+
+/** The panel of such a design, whose answers are kept by it. @param {string} key */
+export const ghostPanel = (key) => `response of ${key}`;
+
+/** @param {Choice} choice @returns {Row} */
+const ghostly = ({ key, study, design }) =>
+  ({ panel: ghostPanel(key), path: "panel/response", ofDesigns: true, body: { study, designs: [design] } });
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });
@@ -102,6 +137,8 @@ export function soughtOf(state, panel) {
 
 /** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
 const SOUGHT = {
+  margins: (state, document, asked) =>
+    ({ ...presentDesign(document), baseline: baselineOf(document), index: goalOf(state), ...asked }),
   budget: (state, document, asked) =>
     ({ ...presentDesign(document), baseline: baselineOf(document), ...asked, ...seeing(state) }),
   tolerance: (state, document, asked) =>
@@ -131,12 +168,19 @@ function effortOf(state, scattering) {
 }
 
 /** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
-export const bodyOf = (state, panel) =>
+export const bodyOf = (state, panel) => panel === "indices" ? indicesBody(state) :
   questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
 
 /** The method by which the page judges; none where the server has told of none, and then those of the study.
  * @param {State} state */
 const methodNames = (state) => [judging(state)?.name ?? []].flat();
+
+/** What the decision is asked of: all layouts. @param {State} state @param {Document} document */
+const decided = (state, document) => ({ study: document.study, designs: allDesigns(document),
+  baseline: baselineOf(document), methods: methodNames(state), index: goalOf(state) });
+
+/** What a table of the indices is asked of. @param {State} state */
+const indicesBody = (state) => ({ ...about(state.history.present), methods: methodNames(state) });
 
 /** @param {Document} document */
 const about = (document) =>
@@ -144,6 +188,9 @@ const about = (document) =>
 
 /** @param {Document} document */
 const presentDesign = (document) => ({ study: document.study, design: designOf(document) });
+
+/** The baseline, where that is another design. @param {Document} document */
+const beside = (document) => (shownDesigns(document).length > 1 ? { baseline: baselineOf(document) } : {});
 
 /** @param {State} state @returns {Row[]} */
 function comparison(state) {
@@ -184,8 +231,8 @@ export function unitsIn(state, { study, values, ranges }) {
   };
   for (const { path, unit, name } of numbersOf(state)) {
     const entry = entryAt(study, path);
-    const bounds = ranges[path.join(".")];
-    const chosen = name === "" ? [] : Object.values(values).map((of) => of[name]);
+    const bounds = own(ranges, path.join("."));
+    const chosen = name === "" ? [] : Object.values(values).map((of) => own(of, name));
     for (const text of [...(isRange(entry) ? [entry.from, entry.to] : [entry]), bounds?.from, bounds?.to, ...chosen]) {
       add(text, unit);
     }
@@ -198,5 +245,5 @@ export function unitsIn(state, { study, values, ranges }) {
 export function mountsOf(about, { study, layout }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
   const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);
-  return mounts.length > 1 ? mounts : strutsOf(study.layouts?.[layout]);
+  return mounts.length > 1 ? mounts : strutsOf(own(study.layouts, layout));
 }

@@ -85,7 +85,11 @@ export function keepRemembering(store) {
     clearTimeout(due);
     due = setTimeout(() => sessionStorage.setItem(KEPT, JSON.stringify(present)), 200);
   });
-  addEventListener("pagehide", () => sessionStorage.setItem(KEPT, JSON.stringify(store.get().history.present)));
+  addEventListener("pagehide", () => {
+    const { present } = store.get().history;
+    sessionStorage.setItem(KEPT, JSON.stringify(present));
+    if (Object.keys(present.study).length > 0) noteOpened(present.study);
+  });
 }
 
 /** The document of before a reload, or null. @returns {Document | null} */
@@ -189,4 +193,29 @@ async function openRecord(store, api, file) {
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
   store.say(`${file.name} was read.`, file.name);
+}
+
+const BEFORE = "inerter.opened";
+const FEW = 5; // studies that were opened before
+
+/** The studies that were opened before on this machine, newest first.
+ * @returns {{title: string, at: number, study: any}[]} */
+export function openedBefore() {
+  try {
+    return JSON.parse(localStorage.getItem(BEFORE) ?? "[]").filter((/** @type {any} */ each) => each?.study);
+  } catch {
+    return [];
+  }
+}
+
+/** Notes a study that is left, or edited for a while. @param {any} study */
+function noteOpened(study) {
+  const title = String(study.title ?? "Untitled study");
+  const others = openedBefore().filter((each) => each.title !== title);
+  const all = [{ title, at: Date.now(), study }, ...others].slice(0, FEW);
+  try {
+    localStorage.setItem(BEFORE, JSON.stringify(all));
+  } catch {
+    localStorage.removeItem(BEFORE); // the studies are too large to be kept
+  }
 }

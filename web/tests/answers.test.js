@@ -5,7 +5,7 @@ import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
-import { budgetTold } from "../src/panels/answers.js";
+import { budgetTold } from "../src/panels/margins.js";
 import { createStore } from "../src/state/store.js";
 import { partsOf } from "./reading.js";
 
@@ -22,7 +22,7 @@ const ABOUT = {
   elements: [],
   methods: [{ name: "norm", sees: "neither", searches: true, averages: false }],
 };
-const PANELS = ["parts", "check", "indices", "response"];
+const PANELS = ["parts", "check", "decision", "response"];
 
 /** A generator of numbers in [0, 1) from a seed (mulberry32). */
 function random(seed) {
@@ -107,43 +107,43 @@ test("whatever is opened, changed, undone and answered, no panel shows the answe
 });
 
 test("an answer is current, coming, or none, and says so at once", () => {
-  let state = ask(opened({ title: "seat" }), "indices");
-  const first = keyOf(state, "indices");
-  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
-  state = tell(state, "indices", first);
-  assert.equal(answerOf(state, "indices").is, "current");
+  let state = ask(opened({ title: "seat" }), "decision");
+  const first = keyOf(state, "decision");
+  assert.deepEqual(answerOf(state, "decision"), { is: "coming", value: null, sentence: null, before: false });
+  state = tell(state, "decision", first);
+  assert.equal(answerOf(state, "decision").is, "current");
   state = change(state, { type: "placed", place: ["elements", "k"], value: "7 kN/m" });
-  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: { to: first }, sentence: null, before: true });
+  assert.deepEqual(answerOf(state, "decision"), { is: "coming", value: { to: first }, sentence: null, before: true });
   const cleared = change(state, { type: "drawn", text: "" });
-  assert.deepEqual(answerOf(cleared, "indices"), { is: "coming", value: null, sentence: null, before: false });
-  const question = keyOf(cleared, "indices");
-  const refused = reduce(reduce(cleared, { type: "asked", panel: "indices", question }), {
+  assert.deepEqual(answerOf(cleared, "decision"), { is: "coming", value: null, sentence: null, before: false });
+  const question = keyOf(cleared, "decision");
+  const refused = reduce(reduce(cleared, { type: "asked", panel: "decision", question }), {
     type: "refused",
-    panel: "indices",
+    panel: "decision",
     question,
     sentence: "no network",
   });
-  assert.deepEqual(answerOf(refused, "indices"), { is: "none", value: null, sentence: "no network", before: false });
+  assert.deepEqual(answerOf(refused, "decision"), { is: "none", value: null, sentence: "no network", before: false });
   // it was asked before
-  assert.equal(answerOf(reduce(reduce(refused, { type: "undone" }), { type: "undone" }), "indices").value.to, first);
+  assert.equal(answerOf(reduce(reduce(refused, { type: "undone" }), { type: "undone" }), "decision").value.to, first);
 });
 
 test("a copy of a study with other numbers is another study", () => {
-  let state = ask(opened({ title: "same", k: "1 kN/m" }), "indices");
-  state = tell(state, "indices", keyOf(state, "indices"));
+  let state = ask(opened({ title: "same", k: "1 kN/m" }), "decision");
+  state = tell(state, "decision", keyOf(state, "decision"));
   state = change(state, { type: "opened", study: study({ title: "same", k: "2 kN/m" }) });
-  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
+  assert.deepEqual(answerOf(state, "decision"), { is: "coming", value: null, sentence: null, before: false });
 });
 
 test("an answer that comes when another study is open is not of that, and is there when the first is opened again",
   () => {
-  let state = ask(opened({ title: "seat" }), "indices");
-  const late = keyOf(state, "indices");
+  let state = ask(opened({ title: "seat" }), "decision");
+  const late = keyOf(state, "decision");
   state = change(state, { type: "opened", study: study({ title: "train" }) });
-  state = tell(state, "indices", late);
-  assert.deepEqual(answerOf(state, "indices"), { is: "coming", value: null, sentence: null, before: false });
+  state = tell(state, "decision", late);
+  assert.deepEqual(answerOf(state, "decision"), { is: "coming", value: null, sentence: null, before: false });
   state = reduce(state, { type: "undone" });
-  assert.equal(answerOf(state, "indices").value.to, late);
+  assert.equal(answerOf(state, "decision").value.to, late);
 });
 
 test("what a button asked is told of the design that it was asked of, and of no other", () => {

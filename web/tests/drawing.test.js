@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { HALF_HEIGHT, HALF_WIDTH, drawing } from "../src/network/drawing.js";
-import { underside } from "../src/panels/motion.js";
 import { read } from "./reading.js";
 
 const MANY = Array.from({ length: 40 }, (_, i) => `e${i}`).join(" | ");
@@ -40,14 +39,4 @@ test("every end of a line meets a symbol's lead, another line, or an end of the 
       }
     }
   });
-});
-
-test("a body has an overhang on both sides of its mounts, be they one or many", () => {
-  for (const mounts of [[[100, 50]], [[100, 50], [300, 90]], [[0, 1], [10, 1], [20, 5]]]) {
-    const [left, ...others] = underside(mounts);
-    const right = others[others.length - 1];
-    assert.equal(mounts[0][0] - left[0], right[0] - mounts[mounts.length - 1][0]);
-    assert.ok(left[0] < mounts[0][0]);
-    assert.deepEqual(others.slice(0, -1), mounts);
-  }
 });

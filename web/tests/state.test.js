@@ -162,7 +162,7 @@ test("questions follow from the state alone, and nothing of the page's own goes 
   const asked = questions(store.get());
   assert.deepEqual(
     asked.map(({ panel }) => panel),
-    ["parts", "check", "indices", "response"],
+    ["parts", "check", "decision", "response", "history", "mechanism"],
   );
   for (const { body } of asked.slice(1, 4)) assert.deepEqual(body.study, STUDY);
 });

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design, baseline_of, design_of, designs_of
-from inerter.app.documents import study_from
+from inerter.app.designs import baseline_of, designs_of, one_design
+from inerter.app.documents import study_for
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
@@ -32,6 +32,7 @@ from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import budget_method, element_break_even
 from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.registry import VEHICLES
 
 Body = Mapping[str, Any]
@@ -67,7 +68,9 @@ def answer_panel(key: str, body: Body) -> Answer:
     """
     with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
-        return answer(study_from(body["study"]), body)
+        study, asked = study_for(body)
+        left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
+        return {**answer(study, asked), **left_out}
 
 
 def response(study: Study, body: Body) -> Answer:
@@ -75,37 +78,56 @@ def response(study: Study, body: Body) -> Answer:
     designs, indices = designs_of(study, body), tuple(body.get("indices") or study.indices)
     numbered = {str(number): design for number, design in enumerate(designs)}
     each = replace(study, indices=indices, layouts={n: study.layouts[design.layout] for n, design in numbered.items()})
-    data = responses(each, {Case(n, index): design.values for n, design in numbered.items() for index in indices})
+    found = {Case(n, index): design.values for n, design in numbered.items() for index in indices}
+    data = responses(each, found, phases=True)
     curves = [
         {
             "name": design.name,
             "layout": design.layout,
             "index": index,
-            "title": gains.attrs["long_name"],
+            "title": title,
             "unit": gains.attrs["units"],
             "label": label,
             "gain": gain,
+            "phase": phase,
         }
         for index in indices
         if (gains := data.get(f"gain_{index}")) is not None
-        for design, several in zip(designs, gains.values, strict=True)
-        for label, gain in zip(data[f"output_{index}"].values.tolist(), several, strict=True)
+        for design, several, angles in zip(designs, gains.values, data[f"phase_{index}"].values, strict=True)
+        for title, label, gain, phase in zip(*_output_titles(data, index), several, angles, strict=True)
     ]
     return {"frequency": data.omega.values / (2.0 * np.pi), "curves": curves}
 
 
+def _output_titles(data: Any, index: str) -> tuple[list[str], list[str]]:
+    """Titles and labels of the outputs of an index: its response in words, of several outputs that of each."""
+    words, labels = data[f"gain_{index}"].attrs["long_name"], data[f"output_{index}"].values.tolist()
+    if len(labels) == 1:
+        return [words], labels
+    _, per, source = words.partition(" per ")
+    names = [label.replace("_", " ") for label in labels]
+    return [f"{name} per {source}" if per else f"{name}: {words}" for name in names], labels
+
+
 def mechanism(study: Study, body: Body) -> Answer:
     design = one_design(study, body)
-    mechanism = design.mechanism
+    return {**design.describe_values(), **describe_mechanism(design.mechanism)}
+
+
+def describe_mechanism(mechanism: Mechanism) -> Answer:
+    """Coordinates, struts, tyres, roads, forces and outputs of a mechanism as data."""
     angles = {c.name for c in mechanism.coordinates if c.angle}
+    rolling = {name for name, other in mechanism.mirror if name == other}
 
     def end(port: Mapping[str, float]) -> Answer:
-        return {"port": dict(port), "x": sum(lever for name, lever in port.items() if name in angles)}
+        return {"port": dict(port), "x": sum(lever for name, lever in port.items() if name in angles - rolling)}
 
     known = outputs(mechanism, full_graph(mechanism))
     return {
-        **design.describe_values(),
-        "coordinates": [{"name": c.name, "inertia": c.inertia, "angle": c.angle} for c in mechanism.coordinates],
+        "coordinates": [
+            {"name": c.name, "inertia": c.inertia, "angle": c.angle, "roll": c.name in rolling}
+            for c in mechanism.coordinates
+        ],
         "struts": [
             {"name": s.name, "upper": end(s.upper), "lower": end(s.lower), "network": tree_of(s.network)}
             for s in mechanism.struts
@@ -113,7 +135,7 @@ def mechanism(study: Study, body: Body) -> Answer:
         "tyres": [
             {"name": t.name, **end(t.port), "road": t.road, "network": tree_of(t.network)} for t in mechanism.tyres
         ],
-        "roads": [{"name": r.name, "distance": r.distance} for r in mechanism.roads],
+        "roads": [{"name": r.name, "distance": r.distance, "side": r.side} for r in mechanism.roads],
         "forces": [{"name": f.name, **end(f.port)} for f in mechanism.forces],
         "outputs": [{"name": o.name, "unit": o.unit, "title": o.title} for o in known.values()],
     }
@@ -257,12 +279,3 @@ def required_value(body: Body, key: str) -> Any:
 
 def motion(study: Study, body: Body) -> Answer:
     return history(study, one_design(study, body), body)
-
-
-def one_design(study: Study, body: Body) -> Design:
-    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
-    given = body.get("design")
-    if given:
-        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
-    layout = body.get("layout") or next(iter(study.layouts))
-    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})

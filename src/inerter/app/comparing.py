@@ -30,7 +30,7 @@ _VEHICLE, _DIGITS = "vehicle", 5
 
 
 @dataclass(frozen=True)
-class _IndexResult:
+class DesignEstimate:
     """Design with its estimate of one index by one method."""
 
     design: Design
@@ -44,7 +44,7 @@ class _IndexResult:
         value, status = self.estimate.value, self.estimate.status
         return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
 
-    def beside(self, other: _IndexResult) -> Comparison | None:
+    def beside(self, other: DesignEstimate) -> Comparison | None:
         """Comparison with another design on the same roads.
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
@@ -66,14 +66,13 @@ def indices(study: Study, body: Body) -> Answer:
     designs = designs_of(study, body)
     baseline = baseline_of(study, body, designs)
     asked = _index_method_pairs(study, body)
-    base = [None if baseline is None else _evaluate_design(baseline, *each) for each in asked]
+    base = [None if baseline is None else evaluate_design(baseline, *each) for each in asked]
     return {
         "designs": [
             {
                 **design.describe_values(),
                 "results": [
-                    _describe_result(_evaluate_design(design, *each), one)
-                    for each, one in zip(asked, base, strict=True)
+                    describe_result(evaluate_design(design, *each), one) for each, one in zip(asked, base, strict=True)
                 ],
                 "limits": limits_at(study, design, asked[0][1]),
             }
@@ -97,10 +96,10 @@ def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
     if not _FEWEST <= len(designs) <= _MOST:
         raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
     asked = _index_method_pairs(study, body)
-    found: list[list[_IndexResult]] = []
+    found: list[list[DesignEstimate]] = []
     for i, design in enumerate(designs):
         tell(i, len(designs), design.name)
-        found.append([_evaluate_design(design, *each) for each in asked])
+        found.append([evaluate_design(design, *each) for each in asked])
     tell(len(designs), len(designs), "")
     best = [_best(column) for column in zip(*found, strict=True)]
     return {
@@ -110,7 +109,7 @@ def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
                 "network": LayoutCodec().dump(one[0].design.study.layouts[one[0].design.layout]),
                 "numbers": _numbers(one[0].design),
                 "results": [
-                    {**_describe_result(each, base), "best": i in least}
+                    {**describe_result(each, base), "best": i in least}
                     for each, base, least in zip(one, found[0], best, strict=True)
                 ],
             }
@@ -155,13 +154,13 @@ def _index_method_pairs(study: Study, body: Body) -> list[tuple[str, str]]:
     return [(index, method) for index in indices for method in methods]
 
 
-def _evaluate_design(design: Design, index: str, method: str) -> _IndexResult:
-    return _IndexResult(
+def evaluate_design(design: Design, index: str, method: str) -> DesignEstimate:
+    return DesignEstimate(
         design, index, method, estimate_index(design.vehicle, design.resolve_index(index), design.study.method(method))
     )
 
 
-def _best(found: Sequence[_IndexResult]) -> list[int]:
+def _best(found: Sequence[DesignEstimate]) -> list[int]:
     """Numbers of the designs that do not differ significantly from the best one.
 
     None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
@@ -176,11 +175,11 @@ def _best(found: Sequence[_IndexResult]) -> list[int]:
     return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_tie)]
 
 
-def _describe_result(one: _IndexResult, baseline: _IndexResult | None) -> Answer:
+def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Answer:
     """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
     study, estimate = one.design.study, one.estimate
     two = None if baseline is None else one.beside(baseline)
-    better, error = (None, None) if two is None else _improvement(two)
+    better, error = (None, None) if two is None else improvement_percent(two)
     return {
         "index": one.index,
         "title": study.index(one.index).title,
@@ -201,7 +200,7 @@ def _describe_result(one: _IndexResult, baseline: _IndexResult | None) -> Answer
     }
 
 
-def _improvement(two: Comparison) -> tuple[float, float | None]:
+def improvement_percent(two: Comparison) -> tuple[float, float | None]:
     """Improvement of the first design over the second [%], and its standard error; None without random roads.
 
     Without scatter it is rounded as results of a study are.

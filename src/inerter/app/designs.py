@@ -29,6 +29,7 @@ class Design:
     vehicle: Vehicle
     values: dict[str, float] = field(compare=False)  # of what was free, in SI units
     unchosen: tuple[str, ...] = field(default=(), compare=False)  # of these, what nobody gave a value
+    free: dict[str, Free] = field(default_factory=dict, compare=False, repr=False)  # bounds of what was free
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -73,7 +74,7 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
         key: _number(key, values[key], units[key]) if key in values else _middle(free) for key, free in all_free.items()
     }
     unchosen = tuple(key for key in all_free if key not in values)
-    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen)
+    return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen, all_free)
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
@@ -89,6 +90,15 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
         return [design_of(study, d["layout"], d.get("values") or {}, d.get("name") or "") for d in body["designs"]]
     values = body.get("values") or {}
     return [design_of(study, layout, values.get(layout) or {}) for layout in body.get("layouts") or study.layouts]
+
+
+def one_design(study: Study, body: Mapping[str, Any]) -> Design:
+    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
+    given = body.get("design")
+    if given:
+        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+    layout = body.get("layout") or next(iter(study.layouts))
+    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})
 
 
 def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]) -> Design | None:

@@ -41,7 +41,8 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(csv_rows(table)))
     tell(len(layouts), len(layouts), "")
     told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
-    return {"indices": told, "fronts": [_describe_front(asked, one) for one in found]}
+    baseline = study.baseline or next(iter(study.layouts))
+    return {"indices": told, "baseline": baseline, "fronts": [_describe_front(asked, one) for one in found]}
 
 
 def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:

@@ -7,14 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design
-from inerter.errors import StudyError
+from inerter.app.designs import Design, baseline_of
+from inerter.errors import InerterError, StatusKind, StudyError
 from inerter.figures.curves import thin_curve
 from inerter.files.common.roads import road_values
 from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.study.study import Study
 from inerter.formatting import format_alike
+from inerter.simulation.elongations import elongations
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
 from inerter.vehicle.mechanism import Mechanism
@@ -26,10 +27,26 @@ _DURATION, _STEP = 10.0, 5e-4  # [s]
 
 
 def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
-    """The motion of a design over a random road of the study.
+    """The motion of a design over a random road of the study, and of the `baseline` of the request on the same road.
 
-    Raises what `simulation_request` raises, and `simulate`.
+    A baseline whose motion cannot be computed has a status only. Raises what `simulation_request` raises, and
+    `simulate`.
     """
+    found = _one_history(study, design, body)
+    if body.get("baseline"):
+        found["baseline"] = _history_or_status(study, baseline_of(study, body, []), body)
+    return found
+
+
+def _history_or_status(study: Study, design: Design | None, body: Mapping[str, Any]) -> dict[str, Any]:
+    assert design is not None
+    try:
+        return _one_history(study, design, body)
+    except InerterError as problem:
+        return {**design.describe_values(), "status": StatusKind.FAILED.value, "message": str(problem)}
+
+
+def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     asked = simulation_request(study, design, body)
     run, mechanism = asked.run(), design.mechanism
     names = body.get("outputs") or main_outputs(mechanism)
@@ -88,13 +105,18 @@ def _signal_curve(run: Trajectory, name: str) -> dict[str, Any]:
 
 
 def _motion(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
-    """Coordinates and roads at even times, as many a second as a screen shows."""
+    """Coordinates, roads and elongations of elements at even times, as many a second as a screen shows."""
     time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
+    inside = elongations(run, mechanism)
     at = {name: np.interp(time, run.time, run[output]) for name, output in _coordinate_outputs(mechanism).items()}
     return {
         "time": time,
         "coordinates": {c.name: at[c.name] for c in mechanism.coordinates},
         "roads": {r.name: at[r.name] for r in mechanism.roads},
+        "elements": {
+            mount: {label: np.interp(time, run.time, values) for label, values in elements.items()}
+            for mount, elements in inside.items()
+        },
     }
 
 

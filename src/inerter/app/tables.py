@@ -46,10 +46,11 @@ def _indices(answer: Mapping[str, Any]) -> Rows:
 
 def _response(answer: Mapping[str, Any]) -> Rows:
     curves = answer["curves"]
-    yield ["frequency [Hz]", *(label_with_unit(f"{c['name']} {c['index']} {c['label']}", c["unit"]) for c in curves)]
-    yield from (
-        list(row) for row in zip(answer["frequency"].tolist(), *(c["gain"].tolist() for c in curves), strict=True)
-    )
+    names = [f"{c['name']} {c['index']} {c['label']}" for c in curves]
+    gains = [label_with_unit(name, curve["unit"]) for name, curve in zip(names, curves, strict=True)]
+    yield ["frequency [Hz]", *gains, *(label_with_unit(f"phase of {name}", "rad") for name in names)]
+    columns = [answer["frequency"], *(curve[what] for what in ("gain", "phase") for curve in curves)]
+    yield from (list(row) for row in zip(*(column.tolist() for column in columns), strict=True))
 
 
 def _history(answer: Mapping[str, Any]) -> Rows:

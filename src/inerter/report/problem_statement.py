@@ -12,7 +12,7 @@ import numpy as np
 from inerter.field_metadata import Field, fields_of
 from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
-from inerter.files.study.limits import StudyLimit, each_of
+from inerter.files.study.limits import StudyLimit, each_of, key_in_words
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.places import places
 from inerter.files.study.quantity_texts import as_written
@@ -129,11 +129,6 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
     for task in tasks():
         given |= task.description(study)
     return [(what, ", ".join(told)) for what, told in given.items() if told]
-
-
-def key_in_words(words: str) -> str:
-    """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
-    return words.replace("-", " ").replace(".", " of ")
 
 
 def of_each(name: str, each: str) -> str:

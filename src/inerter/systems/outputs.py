@@ -99,6 +99,19 @@ def stroke_of(label: str) -> str:
     return f"{label}_stroke"
 
 
+def rename_output(output: str, elements: Mapping[str, str]) -> str:
+    """Name of an output once elements have other names, by the old ones.
+
+    >>> rename_output("k_force", {"k": "spring"}), rename_output("sprung_velocity", {"k": "spring"})
+    ('spring_force', 'sprung_velocity')
+    """
+    for old, new in elements.items():
+        for output_of in (force_of, velocity_of, stroke_of):
+            if output == output_of(old):
+                return output_of(new)
+    return output
+
+
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
     found = [
@@ -191,16 +204,22 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
     return found
 
 
+def positioned_rows(mechanism: Mechanism, graph: Graph) -> Matrix:
+    """Displacements that are known, over the nodes: elongations of springs and gaps, and coordinates."""
+    placed = [b.nodes for b in graph.branches if _determines_elongation(b)]
+    return np.vstack([*placed, np.eye(len(mechanism.coordinates), len(graph.nodes))])
+
+
+def _determines_elongation(branch: Branch) -> bool:
+    return branch.element.linear is LinearRole.STIFFNESS or branch.element.switches_by(GuardRole.ELONGATION)
+
+
 def _positioned_nodes(mechanism: Mechanism, graph: Graph) -> NDArray[np.bool_]:
     """Nodes whose place is known: coordinates, and what springs and gaps join to them. Others, such as that between a
     damper and an inerter, have velocities only.
     """
     known = np.arange(len(graph.nodes)) < len(mechanism.coordinates)
-    joining = [
-        b.nodes != 0.0
-        for b in graph.branches
-        if b.element.linear is LinearRole.STIFFNESS or b.element.switches_by(GuardRole.ELONGATION)
-    ]
+    joining = [b.nodes != 0.0 for b in graph.branches if _determines_elongation(b)]
     while not known.all():
         alone = [row & ~known for row in joining if np.count_nonzero(row & ~known) == 1]
         if not alone:

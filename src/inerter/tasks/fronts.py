@@ -12,7 +12,7 @@ import numpy as np
 from inerter.errors import StatusKind
 from inerter.figures.labels import format_list
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.limits import limits_in
+from inerter.files.study.limits import key_in_words, limits_in
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
@@ -20,7 +20,6 @@ from inerter.formatting import format_quantity, label_with_unit
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
-from inerter.report.problem_statement import key_in_words
 from inerter.table import Column, Quantity, Row, Table, cells
 
 if TYPE_CHECKING:

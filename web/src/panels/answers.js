@@ -1,54 +1,126 @@
-// The indices of the strut beside the baseline, and what may be done about them at once.
+// Which layout: all of them ranked by the goal, each with its network, its value, and what it is against the baseline.
 
-import { elementsIn, kindOf } from "../library.js";
-import { seek } from "../asking.js";
-import { judging, methodsOf, quickMethod } from "../methods.js";
-import { answerOf, baselineOf, shownDesigns, soughtAnswer } from "../questions.js";
-import { estimated, placed, printed, shown, withUnit } from "../state/scale.js";
-import { Being, Moving } from "../parts/clock.js";
-import { Doubts, Unchosen, doubted, isOk } from "../parts/doubts.js";
-import { Select, Table, useChoice, formHandler } from "../parts/controls.js";
+import { treeOf, unchosenIn } from "../library.js";
+import { judging, methodTitle, methodsOf } from "../methods.js";
+import { allDesigns, answerOf, baselineOf, goalOf } from "../questions.js";
+import { nextLayout, textOf } from "../state/document.js";
+import { estimated, placed, shown, withUnit } from "../state/scale.js";
+import { DropDown, Select, formHandler } from "../parts/controls.js";
+import { isOk } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
+import { layoutColour } from "../parts/colours.js";
 import { useShown } from "../parts/shown.js";
-import { AskedPanel } from "./asked.js";
-import { otherProblems, problemsOf } from "./values.js";
-import { optimise } from "../working.js";
+import { Sketch } from "./sketch.js";
+import { problemsOf } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
-/** @import { Api } from "../api.js" */
-/** @import { Document } from "../state/document.js" */
 
-/** @param {{store: Store, api: Api}} props */
-export function AnswersPanel({ store, api }) {
+/** @param {{store: Store}} props */
+export function AnswersPanel({ store }) {
   const state = store.get();
-  const shown = answerOf(state, "indices");
-  const { value, sentence } = shown;
-  const document = state.history.present;
-  const baseline = baselineOf(document).layout;
-  const problems = problemsOf(state);
-  useShown("indices", state);
-  return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${shown.is === "coming"}>
-    <div class="head"><h2 id="answers-title">Answers</h2><${Being} shown=${shown} /></div>
-    <div class="row"><${Select} label="Judged" value=${judging(state)?.name}
-      choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
-      set=${(/** @type {string} */ method) => store.look({ method })} /></div>
-    ${sentence && problems.length === 0 && html`<p class="problem" role="alert">${sentence}</p>`}
-    <${Unchosen} state=${state} designs=${shownDesigns(document)} />
-    <${Doubts} members=${membersOf(value)} />
-    <${Indices} state=${state} shown=${shown} layout=${document.layout} baseline=${baseline} />
-    <${Limits} value=${value} />
-    <${AskedPanel} store=${store} />
-    <${Optimise} store=${store} api=${api} indices=${indicesOf(state)} />
-    <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />
-    <${OtherProblems} state=${state} />
+  const answer = answerOf(state, "decision");
+  const { value, sentence } = answer;
+  useShown("decision", state);
+  return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${answer.is === "coming"}
+    data-being=${answer.is} data-keys="Ranking">
+    <div class="head"><h2 id="answers-title">Layouts by ${goalOf(state) ?? "no index"}</h2>
+      <${Select} aria-label="Method" value=${judging(state)?.name}
+        choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
+        set=${(/** @type {string} */ method) => store.look({ method })} /></div>
+    ${sentence && problemsOf(state).length === 0 && html`<p class="problem pad" role="alert">${sentence}</p>`}
+    <${Ranking} store=${store} answer=${answer} />
+    <${Limits} limits=${value?.rows.find((/** @type {any} */ row) =>
+      row.layout === state.history.present.layout)?.limits ?? []} />
+    <${Layouts} store=${store} />
   </section>`;
 }
 
-/** @param {import("../methods.js").Method} method */
-export function methodTitle({ name, sees }) {
-  const words = { neither: "without friction and gaps", friction: "with friction",
-    both: "with friction and gaps" }[sees] ?? "";
-  return `${words || name} (${name.replaceAll("-", " ")})`;
+/** The rows of the answer, or the layouts of the study in their order until it comes.
+ * @param {State} state @param {any} value @returns {any[]} */
+function rowsOf(state, value) {
+  const document = state.history.present;
+  const designs = allDesigns(document);
+  /** @type {any[]} */
+  const rows = (value?.rows ?? []).filter((/** @type {any} */ { layout }) =>
+    designs.some((design) => design.layout === layout));
+  const missing = designs.filter(({ layout }) => !rows.some((row) => row.layout === layout));
+  return [...rows, ...missing.map((design) => ({ layout: design.layout, unchosen: unchosenIn(state, design),
+    is_baseline: design.layout === baselineOf(document).layout, others: [] }))];
+}
+
+/** @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
+function Ranking({ store, answer: { is, value, before } }) {
+  const state = store.get();
+  const document = state.history.present;
+  const rows = rowsOf(state, value);
+  const others = (value?.rows?.[0]?.others ?? []).map((/** @type {any} */ each) => each);
+  const baseline = baselineOf(document).layout;
+  const { goal } = value ?? {};
+  /** @param {KeyboardEvent} event */
+  const turn = (event) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const all = [.../** @type {Element} */ (event.currentTarget).querySelectorAll(".pick")];
+    const next = step && all[all.indexOf(/** @type {Element} */ (event.target)) + step];
+    if (!next) return;
+    event.preventDefault();
+    /** @type {HTMLElement} */ (next).focus();
+  };
+  return html`<div class="scroll" role="group" aria-label="Layouts" onKeyDown=${turn}>
+    <table class=${before ? "stale" : ""}><thead><tr><th scope="col">layout</th>
+      <th scope="col" title=${goal && withUnit(goal.title, goal.unit)}>${goal ? withUnit(goal.index, goal.unit)
+        : goalOf(state)}</th>
+      <th scope="col">against ${baseline}</th>
+      ${others.map((/** @type {any} */ { index, title, unit }) => html`<th scope="col" key=${index}
+        title=${withUnit(title, unit)}>${withUnit(index, unit)}</th>`)}</tr></thead>
+    <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row}
+      missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;
+}
+
+/** @param {{store: Store, row: any, missing: string}} props */
+function Row({ store, row, missing }) {
+  const state = store.get();
+  const { layout, is_baseline: isBaseline, unchosen = [], others } = row;
+  const document = state.history.present;
+  const on = layout === document.layout;
+  const select = () => on || store.change({ type: "selected", layout });
+  const text = textOf({ ...document, layout, strut: Object.keys(Object(document.study.layouts?.[layout]))[0] });
+  const goal = goalOf(state);
+  return html`<tr class=${on ? "on" : ""} onClick=${select}>
+    <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
+      <${Sketch} state=${state} tree=${treeOf(state, text)} />
+      <span style=${{ color: layoutColour(document, layout) }}>${layout}
+        ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
+    <td class="number" title=${row.message} data-index=${on && row.value !== undefined ? goal : undefined}
+      data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
+    <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
+      <${Against} row=${row} unchosen=${unchosen.length > 0} /></td>
+    ${others.map((/** @type {any} */ other) => html`<td class=${`number ${unchosen.length ? "" : better(other)}`}
+      key=${other.index} data-index=${on ? other.index : undefined} data-value=${other.value} title=${other.message}>
+      ${!isBaseline && unchosen.length === 0 && typeof other.improvement_percent === "number"
+        && html`${signed(other.improvement_percent)}${other.tie && html`<div class="scatter">as good</div>`}`}
+      ${isOk(other.status) ? "" : html`<div class="doubt">${other.status}</div>`}
+      <div class="scatter">${amountText(other)}</div></td>`)}
+  </tr>`;
+}
+
+/** By how much the goal is better than of the baseline; first what makes that doubtful.
+ * @param {{row: any, unchosen: boolean}} props */
+function Against({ row: { is_baseline: isBaseline, improvement_percent: value, improvement_error_percent: error,
+  improvement_status: status, tie }, unchosen }) {
+  if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
+  if (isBaseline || typeof value !== "number") return null;
+  const [number, scatter] = error ? estimated(value, error) : [signed(value), ""];
+  return html`${isOk(status) ? "" : html`<div class="doubt">${status}</div>`}
+    ${error && value > 0 ? "+" : ""}${number}${error ? " %" : ""}
+    ${error && html`<div class="scatter">± ${scatter} %</div>`}${tie && html`<div class="scatter">as good</div>`}`;
+}
+
+/** A change in per cent, with its sign. @param {number | null | undefined} value @param {number} [places] */
+export function signed(value, places) {
+  if (typeof value !== "number") return "–";
+  const size = Math.abs(value);
+  const digits = places ?? (size < 0.1 ? 2 : size < 100 ? 1 : 0);
+  return `${value < 0 ? "−" : "+"}${size.toFixed(digits)} %`;
 }
 
 /** The indices that the study asks for. @param {State} state @returns {{symbol: string, title: string}[]} */
@@ -70,35 +142,6 @@ export const membersOf = (value) =>
     ...limits.map((/** @type {any} */ { title, status, message }) => ({ of: `${title}, of ${name}`, status, message })),
   ]);
 
-/** The indices of the study: each with its value, or with a mark in its place.
- * @param {{state: State, shown: import("../state/answers.js").Shown, layout: string, baseline: string}} props */
-function Indices({ state, shown: { is, value, before }, layout, baseline }) {
-  const design = value?.designs?.find((/** @type {any} */ each) => each.layout === layout);
-  const other = value?.designs?.find((/** @type {any} */ each) => each.layout === baseline);
-  const alone = layout === baseline;
-  const rows = design?.results ?? indicesOf(state).map(({ symbol, title }) => ({ index: symbol, title, unit: null }));
-  if (rows.length === 0 || layout === "") return null;
-  const missing = is === "coming" ? "…" : "–";
-  /** @param {any} result */
-  const measured = (result) => (result ? html`<${Measured} result=${result} />` : missing);
-  const heads = [["index"], [layout, layout],
-    ...(alone ? [] : [[`${baseline} ★`, `${baseline}, the baseline`], ["better by"]])];
-  return html`<${Table} label="Indices" class=${before ? "stale" : ""} heads=${heads}>
-    ${rows.map((/** @type {any} */ result) => {
-      const reference = other?.results?.find((/** @type {any} */ each) => each.index === result.index);
-      return html`<tr key=${result.index}>
-        <th scope="row"><b>${result.index}</b> <span class="quiet">${withUnit(result.title, result.unit)}</span>
-          ${" "}${design && html`<${Notes} result=${result} />`}</th>
-        <td class="number" data-index=${result.index} data-value=${result.value}>${measured(design && result)}</td>
-        ${!alone && html`<td class="number">${measured(reference)}</td>
-          <td class=${`number ${better(result)}`} data-better=${result.improvement_percent}>
-            ${design && other ? html`<${Improvement} result=${result}
-              unchosen=${[design, other].some(({ unchosen }) => unchosen.length > 0)} />` : missing}${result.tie
-                ? html`<div class="scatter">as good</div>` : null}</td>`}
-      </tr>`;
-    })}<//>`;
-}
-
 /** A value, above it its status where that is not ok, and below it its standard error where that is more than its
  * other errors.
  * @param {{result: {value: any, status?: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
@@ -114,16 +157,8 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 
-/** By how much it is better, and below that the standard error; first what makes that doubtful.
- * @param {{result: any, unchosen: boolean}} props */
-function Improvement({ result: { improvement_percent: value, improvement_error_percent: error,
-  improvement_status: status }, unchosen }) {
-  if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
-  const doubt = isOk(status) ? null : html`<div class="doubt">${status}</div>`;
-  if (typeof value !== "number" || !error) return html`${typeof value === "number" && doubt}${percent(value)}`;
-  const [number, scatter] = estimated(value, error);
-  return html`${doubt}${number} %<div class="scatter">± ${scatter} %</div>`;
-}
+/** @param {{value: any}} result */
+const amountText = ({ value }) => (typeof value === "string" ? value.replace("inf", "∞") : shown(value, 4));
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {
@@ -137,23 +172,14 @@ export function percent(value, error) {
 const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
   (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
-/** @param {{result: any}} props */
-function Notes({ result }) {
-  const texts = [result.status !== "ok" && result.message, ...(result.notes ?? [])].filter(Boolean);
-  return texts.length === 0 ? null : html`<details class="notes"><summary>note</summary><ul>
-    ${texts.map((text) => html`<li>${text}</li>`)}</ul></details>`;
-}
-
-/** Which limits are kept. @param {{value: any}} props */
-function Limits({ value }) {
-  const limits = value?.designs?.[0]?.limits ?? [];
+/** Which limits the design satisfies. @param {{limits: any[]}} props */
+function Limits({ limits }) {
   return limits.length === 0
     ? null
-    : html`<h3>Limits</h3><ul class="limits">
-      ${limits.map((/** @type {any} */ limit) => html`<li key=${limit.title}
-        class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept] : "quiet"}>
-          ${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text
-            && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
+    : html`<ul class="limits" aria-label="Limits">
+      ${limits.map((limit) => html`<li key=${limit.title} class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept]
+        : "quiet"}>${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text
+          && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
 }
 
 /** @type {{[kept: string]: string}} */
@@ -161,69 +187,33 @@ const LIMIT_WORDS = { true: "kept", false: "broken", null: "not known" };
 /** @type {{[kept: string]: string}} */
 const LIMIT_CLASSES = { true: "good", false: "bad", null: "quiet" };
 
-/** @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
-function Optimise({ store, api, indices }) {
-  const state = store.get();
-  const { study, layout } = state.history.present;
-  const [chosen, setIndex] = useChoice(indices.map(({ symbol }) => symbol));
-  const nothing = { text: "", of: null };
-  const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
-  const here = judging(state);
-  const method = here?.searches ? here : quickMethod(state);
-  if (!chosen || !method) return null;
-  return html`<form class="row optimise" onSubmit=${formHandler(async (_, { submitter }) => {
-    const all = submitter?.getAttribute("value") === "all";
-    setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
-    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
-      index: chosen, method: method.name });
-    const { present } = store.get().history;
-    setTold(present.study === study ? { text, of: present } : nothing);
-  })}>
-    <${Select} label="Best values for" name="index" value=${chosen} choices=${indexChoices(indices)} set=${setIndex} />
-    <button class="main" value="one">Optimise</button> <button value="all">All layouts</button>
-    <p class="quiet" role="status">${told.of === state.history.present && told.text}</p>
-  </form>`;
-}
-
-/** How much of an element the design bears before the baseline is as good.
- * @param {{store: Store, api: Api, indices: {symbol: string, title: string}[]}} props */
-function Budget({ store, api, indices }) {
-  const state = store.get();
-  const document = state.history.present;
-  const names = elementsIn(state, document.layout);
+/** Adding, renaming and removing layouts. @param {{store: Store}} props */
+function Layouts({ store }) {
+  const document = store.get().history.present;
+  const layouts = Object.keys(document.study.layouts ?? {});
   const baseline = baselineOf(document).layout;
-  if (names.length === 0 || indices.length === 0 || document.layout === baseline) return null;
-  const switching = names.find((name) => kindOf(state, name)?.switches) ?? names[0];
-  const { is, value, sentence } = soughtAnswer(state, "budget");
-  return html`<details class="budget"><summary>Break-even values</summary>
-    <form class="row" aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
-      void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
-    <${Select} label="How much of" name="parameter" key=${document.layout} choices=${names} selected=${switching} />
-    <${Select} label="by" name="index" choices=${indices.map(({ symbol }) => symbol)} />
-    <button>Compute</button>
-    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
-      ? budgetTold(value, document.layout, baseline) : sentence}</p>
-  </form></details>`;
-}
-
-/** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout
- * @param {string} baseline */
-export function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
-  if (typeof value !== "number") return message || "There is no break-even value.";
-  const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
-  const doubts = doubted([{ of: "the budget", status, message }]);
-  return `${doubts}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;
-}
-
-/** What is wrong with the study at places that have no field on the page. @param {{state: State}} props */
-function OtherProblems({ state }) {
-  const problems = otherProblems(state);
-  /** A sentence that begins with its place needs no other. @param {{place: string[], sentence: string}} problem */
-  const placed = ({ place, sentence }) => (sentence.startsWith(place.join(".")) ? "" : html`<code>${place.join(".")}
-    </code> `);
-  return problems.length === 0
-    ? null
-    : html`<div class="problems" role="alert"><h3>In the study</h3><ul>
-      ${problems.map((problem) => html`<li class="problem">${placed(problem)}${problem.sentence}
-        </li>`)}</ul></div>`;
+  const [renaming, setRenaming] = useState(false);
+  return html`<div class="foot layouts">
+    <button type="button" title="A new layout like this one"
+      onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>Add a layout</button>
+    ${document.layout && html`<${DropDown} title="This layout">
+      <button type="button" onClick=${() => setRenaming(!renaming)}>Rename…</button>
+      ${renaming && html`<form onSubmit=${formHandler((form) => {
+        const name = String(form.get("name")).trim();
+        if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
+        else if (name && name !== document.layout)
+          store.say(`Got ${name}, the name of another layout; expected an unused name.`, "layout name");
+        setRenaming(false);
+      })}>
+        <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}
+          autocomplete="off" /></label> <button>Rename</button></form>`}
+      <button type="button" disabled=${document.layout === baseline}
+        onClick=${() => store.change({ type: "placed", place: ["study", "baseline"],
+          value: document.layout })}>Make it the baseline</button>
+      <button type="button" disabled=${layouts.length < 2}
+        onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
+    <//>`}
+    <button type="button" onClick=${() => store.look({ tab: "work" })}>More networks</button>
+    <button type="button" onClick=${() => store.look({ tab: "compare" })}>Compare</button>
+  </div>`;
 }

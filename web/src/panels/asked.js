@@ -27,7 +27,7 @@ export function AskedPanel({ store }) {
   /** @param {Limit} limit @param {string | undefined} value */
   const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE,
     value: limited(study.study?.subject_to, [...path, sense], value) });
-  return html`<details class="asked"><summary>Indices and limits</summary>
+  return html`<div class="asked"><h3>Indices and limits</h3>
     <div class="row" role="group" aria-label="Indices of the study">
       ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
         on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
@@ -52,7 +52,7 @@ export function AskedPanel({ store }) {
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
         autocomplete="off" /> <button>Add</button>
     </form>
-  </details>`;
+  </div>`;
 }
 
 /** The indices that there are, with those that the file has of its own. @param {State} state

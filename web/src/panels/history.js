@@ -1,20 +1,25 @@
-// The simulated road: histories with stick and open gaps shaded, and the car in motion.
+// The simulated road: histories with stick and open gaps shaded, and the car in motion, at one time.
 
-import { Plot } from "../plot.js";
-import { answerOf, designOf } from "../questions.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
 import { Select, useChoice } from "../parts/controls.js";
 import { html, useMemo } from "../parts/html.js";
+import { Plot } from "../plot.js";
+import { layoutColours } from "../plots/colours.js";
+import { answerOf, designOf } from "../questions.js";
+import { clock } from "../state/clock.js";
+import { printed, shown } from "../state/scale.js";
 import { problemsOf } from "./values.js";
-import { Motion } from "./motion.js";
-import { shown, withUnit } from "../state/scale.js";
 
 /** @import { Store } from "../state/store.js" */
-/** @import { Band } from "../plot.js" */
+/** @import { Document } from "../state/document.js" */
+/** @import { Declaration } from "../plots/layout.js" */
+/** @typedef {{name: string, label: string, unit: string, time: number[], values: number[]}} Signal */
+/** @typedef {{element: string, state: string, intervals: [number, number][]}} Shaded */
 
-const SHADED = ["stick", "open"];
+/** @type {{[state: string]: string}} */
+const SHADED = { stick: "sticks", open: "open" };
 
 /** @param {{store: Store}} props */
 export function HistoryPanel({ store }) {
@@ -23,13 +28,10 @@ export function HistoryPanel({ store }) {
   const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
-  const mechanism = answerOf(state, "mechanism").value;
-  /** @type {{name: string, label: string, unit: string, time: number[], values: number[]}[]} */
+  /** @type {Signal[]} */
   const signals = value?.signals ?? [];
   const [picked, setPicked] = useChoice(signals.map(({ name }) => name));
-  const signal = signals.find(({ name }) => name === picked);
-  const bands = useMemo(() => bandsOf(value?.shaded ?? []), [value]);
-  const curves = useMemo(() => (signal ? [{ label: signal.label, values: signal.values }] : []), [signal]);
+  const plot = useMemo(() => declared(value, picked, document), [value, picked, document]);
   /** @param {string} key @param {string} label @param {number} number @param {{min: number, max: number}} range */
   const setting = (key, label, number, range) => html`<label>
     ${label} <${Field} type="number" class="short" ...${range} text=${String(number)}
@@ -37,31 +39,55 @@ export function HistoryPanel({ store }) {
     const entered = Number(text);
     if (entered >= range.min && entered <= range.max) store.look({ [key]: entered });
   }} /></label>`;
-  return html`<div class=${answer.before ? "stale" : ""} aria-busy=${answer.is === "coming"}>
-    <${Being} shown=${answer} />
+  const controls = html`<${Select} aria-label="Show" value=${picked} set=${setPicked}
+      choices=${signals.map(({ name, label }) => [name, label])} />
+    ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
+    ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
+    <${Being} shown=${answer} />`;
+  return html`<div class=${`plot-panel${answer.before ? " stale" : ""}`} aria-busy=${answer.is === "coming"}>
     <${Unchosen} state=${state} designs=${[designOf(document)]} />
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
-    <div class="row">
-      <${Select} label="Show" value=${signal?.name ?? ""} choices=${signals.map(({ name, label }) => [name, label])}
-        set=${setPicked} />
-      ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
-      ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
-    </div>
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
-    ${!signal && html`<div class="plot empty"></div>`}
-    ${signal &&
-    html`<${Plot} x=${signal.time} curves=${curves} bands=${bands} xLabel="time [s]"
-      yLabel=${withUnit(signal.label, signal.unit)} title=${`${signal.label} over time`} theme=${state.view.theme} />
-      <p class="quiet">r.m.s. ${shown(value.rms?.[signal.name])} ${signal.unit},
-        peak ${shown(value.peaks?.[signal.name])} ${signal.unit}.
-        ${bands.length > 0 && html` <span class="key stick"></span> friction sticks, <span class="key open">
-          </span> a gap is open.`}</p>`}
-    ${value?.motion && mechanism && html`<${Motion} store=${store} motion=${value.motion} mechanism=${mechanism} />`}
+    ${plot === null && html`<div class="row plot-tools">${controls}</div><div class="plot empty"></div>`}
+    ${plot && html`<${Plot} plot=${plot} current=${answer.is === "current"} cursor=${clock}>${controls}<//>`}
   </div>`;
 }
 
-/** The intervals in which friction sticks or a gap is open.
- * @param {{state: string, intervals: [number, number][]}[]} shaded @returns {Band[]} */
-const bandsOf = (shaded) => shaded.filter(({ state }) => SHADED.includes(state)).flatMap(({ state, intervals }) =>
-  intervals.map(([from, to]) => ({ from, to, kind: state })));
+/** The history of a signal, of the design and, where the answer has it, of the baseline on the same road.
+ * @param {any} value @param {string | undefined} picked @param {Document} document @returns {Declaration | null} */
+function declared(value, picked, document) {
+  /** @param {any} of @returns {Signal | undefined} */
+  const signalOf = (of) => of?.signals?.find((/** @type {Signal} */ { name }) => name === picked);
+  const signal = signalOf(value);
+  if (signal === undefined) return null;
+  const colours = layoutColours(document);
+  const compared = [value.baseline].flatMap((of) => (signalOf(of) ? [{ ...of, dash: true }] : []));
+  const other = compared.map(({ name, layout }) => `; dashed ${name ?? layout}`).join("");
+  const [rms, peak] = [value.rms, value.peaks].map((of) => of?.[signal.name] ?? Number.NaN);
+  return {
+    title: `${signal.label} over time, ${value.name ?? value.layout}`,
+    x: { what: "time", unit: "s", from: 0, to: value.duration },
+    y: { what: signal.label, unit: signal.unit },
+    curves: [...compared, value].map((of) => {
+      const { time, values } = /** @type {Signal} */ (signalOf(of));
+      return { name: of.name ?? of.layout, x: time, y: values, colour: of.dash ? "s1" : colours[of.layout] ?? "s3",
+        dash: of.dash, unnamed: true };
+    }),
+    ...shadesOf(value.shaded ?? []),
+    note: ({ size, unit }) => `${value.name ?? value.layout}: r.m.s. ${shown(rms / size, 4)}, peak ${
+      shown(peak / size, 4)} ${printed(unit)}${other}`,
+  };
+}
+
+/** What is shaded, with its names: that friction sticks before that gaps are open. @param {Shaded[]} shaded */
+function shadesOf(shaded) {
+  const found = Object.keys(SHADED).map((state) =>
+    ({ state, those: shaded.filter((each) => each.state === state && each.intervals.length > 0) }));
+  return {
+    bands: found.flatMap(({ state, those }) => those.flatMap(({ intervals }) =>
+      intervals.map(([from, to]) => ({ from, to, kind: state })))),
+    keys: found.flatMap(({ state, those }) => (those.length === 0 ? []
+      : [{ kind: state, text: `${those.map(({ element }) => element).join(", ")} ${SHADED[state]}` }])),
+  };
+}

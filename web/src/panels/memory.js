@@ -45,7 +45,7 @@ export function Menu({ store, api }) {
     <button type="button" title="Redo (Ctrl+Shift+Z)" disabled=${history.future.length === 0}
       onClick=${() => store.dispatch({ type: "redone" })}>Redo</button>
     <${Open} store=${store} api=${api} />
-    ${!blank && html`<${DropDown} title="Save">
+    ${!blank && html`<${DropDown} title="Save" id="save-menu">
       <button type="button" onClick=${file(name, { study })}>Study file (TOML)</button>
       <button type="button" onClick=${file(`${name}-${fileName(history.present.layout)}`,
         { study, designs: [design] })}>This design, values fixed (TOML)</button>
@@ -89,7 +89,7 @@ function Open({ store, api }) {
     close(event);
     await openStudy(store, api, (await api.get(`examples/${encodeURIComponent(name)}`)).study);
   };
-  return html`<${DropDown} title="Open" onOpen=${look}>
+  return html`<${DropDown} title="Open" id="open-menu" onOpen=${look}>
     <label class="file">A study file or record… <input type="file" multiple onChange=${openFiles} /></label>
     ${examples.map(({ name, title }) => html`<button type="button" key=${name}
       onClick=${(/** @type {Event} */ event) => openExample(event, name)}>${title || name}</button>`)}
@@ -108,7 +108,7 @@ function Share({ store }) {
   };
   /** @param {FocusEvent} event */
   const select = ({ currentTarget }) => /** @type {HTMLInputElement} */ (currentTarget).select();
-  return html`<${DropDown} title="Link" onOpen=${make}>
+  return html`<${DropDown} title="Share" onOpen=${make}>
     <label>A link that holds the whole state (and no token)
       ${" "}<input id="shared-link" readonly value=${link} onFocus=${select} /></label>
   <//>`;

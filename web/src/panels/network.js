@@ -3,10 +3,11 @@
 import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
-import { isRange, nextLayout, strutsOf, textOf } from "../state/document.js";
+import { isRange, own, strutsOf, textOf } from "../state/document.js";
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
+import { symbolPath } from "./sketch.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -16,7 +17,7 @@ import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
 const MARGIN = 14;
 const TERMINAL = 1.6;
-const [SMALLEST, LARGEST] = [0.075, 0.113]; // [rem] a point of the drawing
+const [SMALLEST, LARGEST] = [0.7, 1.7]; // [px] a point of the drawing
 const MANY = 8; // elements from where a drawing may be laid across the page
 const FAR = 6; // [px] from where a press is a drag
 
@@ -25,12 +26,10 @@ export function NetworkPanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const mounts = mountsOf(state.about, document);
-  const parted = strutsOf(document.study.layouts?.[document.layout]);
+  const parted = strutsOf(own(document.study.layouts, document.layout));
   return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title">
-    <h2 id="network-title">Strut</h2>
-    <${Layouts} store=${store} />
-    ${mounts.length > 0 &&
-    html`<div class="row struts" role="group" aria-label="Struts">
+    <${Editor} store=${store} api=${api}>
+    ${mounts.length > 0 && html`<div class="row struts pad" role="group" aria-label="Struts">
       ${parted.map((strut) => html`<${Chip} on=${strut === document.strut}
           set=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}<//>`)}
       ${parted.length === 0
@@ -38,48 +37,12 @@ export function NetworkPanel({ store, api }) {
           onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
         : html`<button type="button"
           onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
-    </div>`}
-    <${Editor} store=${store} api=${api} />
+    </div>`}<//>
   </section>`;
 }
 
-/** @param {{store: Store}} props */
-function Layouts({ store }) {
-  const { history } = store.get();
-  const document = history.present;
-  const layouts = Object.keys(document.study.layouts ?? {});
-  const baseline = document.study.study?.baseline ?? layouts[0];
-  const [renaming, setRenaming] = useState(false);
-  return html`<div class="row layouts" role="group" aria-label="Layouts">
-    ${layouts.map((layout) => html`<${Chip} key=${layout} on=${layout === document.layout}
-        title=${layout === baseline ? `${layout}, the baseline` : layout}
-        set=${() => store.change({ type: "selected", layout })}>
-          ${layout}${layout === baseline ? html`<span class="mark" aria-label="baseline"> ★</span>` : null}<//>`)}
-    <button type="button" title="A new layout like this one"
-      onClick=${() => store.change({ type: "layoutAdded", name: nextLayout(document) })}>+ layout</button>
-    ${document.layout &&
-    html`<${DropDown} title="This layout">
-        <button type="button" onClick=${() => setRenaming(!renaming)}>Rename…</button>
-        ${renaming &&
-        html`<form onSubmit=${formHandler((form) => {
-          const name = String(form.get("name")).trim();
-          if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
-          setRenaming(false);
-        })}>
-          <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}
-            autocomplete="off" /></label> <button>Rename</button>
-        </form>`}
-        <button type="button" disabled=${document.layout === baseline}
-          onClick=${() => store.change({ type: "placed", place: ["study", "baseline"],
-            value: document.layout })}>Make it the baseline</button>
-        <button type="button" disabled=${layouts.length < 2}
-          onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
-    <//>`}
-  </div>`;
-}
-
-/** @param {{store: Store, api: Api}} props */
-function Editor({ store, api }) {
+/** @param {{store: Store, api: Api, children: any}} props */
+function Editor({ store, api, children }) {
   const state = store.get();
   const document = state.history.present;
   const text = textOf(document);
@@ -95,17 +58,23 @@ function Editor({ store, api }) {
   const path = pathIn(shownTree, state);
   const selected = shownTree && partAt(shownTree, path);
   const editing = { store, api, how };
-  return html`<${Toolbar} editing=${editing} off=${tree === null && text.trim() !== ""} selected=${selected}
-    setHow=${setHow} />
+  const off = tree === null && text.trim() !== "";
+  return html`<div class="head"><h2 id="network-title">Strut ${document.layout}</h2>
+      <div class="segmented" role="group" aria-label="How a part is joined to what is selected">
+        ${/** @type {Joint[]} */ (["series", "parallel"]).map((kind) =>
+          html`<${Chip} on=${how === kind} set=${() => setHow(kind)}>in ${kind}<//>`)}</div>
+      <${PartMenu} editing=${editing} off=${off} selected=${selected} />
+      ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
+        && html`<${Chip} on=${state.view.across} set=${() => store.look({ across: !state.view.across })}>Lay out wide
+        <//>`}</div>
+    ${children}
     ${shownTree === null
-      ? html`<p class="quiet drawing empty">No network yet: choose a part above, or write one below.</p>`
+      ? html`<p class="quiet drawing empty">No network yet: choose a part below, or write one.</p>`
       : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path}
         stale=${wrongIn(state) !== null && tree === null} />`}
-    ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
-      && html`<${Chip} on=${state.view.across}
-        set=${() => store.look({ across: !state.view.across })}>Across the page<//>`}
     ${shownTree && html`<${Trail} store=${store} tree=${shownTree} path=${path} />`}
     <p class="visually-hidden" aria-live="polite">${selected ? described(selected) : ""}</p>
+    <${Palette} editing=${editing} off=${off} />
     <${Text} store=${store} text=${text} />`;
 }
 
@@ -199,49 +168,50 @@ function shift(store, step) {
   if (next !== tree) draw(store, next, [...path.slice(0, -1), path[path.length - 1] + step]);
 }
 
-/** @param {{editing: Editing, off: boolean, selected: Tree | null, setHow: (how: Joint) => void}} props */
-function Toolbar({ editing, off, selected, setHow }) {
-  const { store, how } = editing;
+/** New parts, each with its key. @param {{editing: Editing, off: boolean}} props */
+function Palette({ editing, off }) {
+  const where = editing.how === "series" ? "in series with" : "in parallel to";
+  return html`<div class="palette" role="group" aria-label="Add a part">
+    ${kindsOf(editing.store.get()).map((kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off}
+        title=${`Add a ${kind.key} ${where} what is selected; drag it to a place`}
+        aria-label=${`Add a ${kind.key}`} draggable=${!off}
+        onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)}
+        onClick=${() => addKind(editing, kind)}>
+        <svg viewBox="-12 -22 24 44" width="16" height="28" aria-hidden="true"><path class="symbol"
+          d=${symbolPath(kind)} /></svg>
+        ${kind.key} <kbd>${letterOf(kind)}</kbd></button>`)}
+  </div>`;
+}
+
+/** The key that joins a new element of a kind. @param {ElementKind} kind */
+const letterOf = ({ key }) => key[0].toUpperCase();
+
+/** What else can be done to what is selected. @param {{editing: Editing, off: boolean, selected: Tree | null}} props */
+function PartMenu({ editing, off, selected }) {
+  const { store } = editing;
   const state = store.get();
   const kinds = kindsOf(state);
   const known = Object.keys(state.history.present.study.elements ?? {});
-  const where = how === "series" ? "in series with" : "in parallel to";
-  return html`<div class="toolbar" role="toolbar" aria-label="Edit the network">
-    <div class="row" role="group" aria-label="How a part is joined to what is selected">
-      ${/** @type {Joint[]} */ (["series", "parallel"]).map((kind) =>
-        html`<${Chip} on=${how === kind} set=${() => setHow(kind)}>in ${kind}<//>`)}
-    </div>
-    <div class="row palette" role="group" aria-label="Add a part">
-      ${kinds.map((kind) => html`<button type="button" key=${kind.key} class="part" disabled=${off}
-          title=${`Add a ${kind.key} ${where} what is selected; drag it to a place`}
-          aria-label=${`Add a ${kind.key}`} draggable=${!off}
-          onDragStart=${(/** @type {DragEvent} */ event) => event.dataTransfer?.setData("text/x-element", kind.key)}
-          onClick=${() => addKind(editing, kind)}>
-          <svg viewBox="-12 -22 24 44" width="18" height="33" aria-hidden="true"><path d=${symbolPath(kind)} /></svg>
-          <span>${kind.key}</span>
-        </button>`)}
-    </div>
-    <div class="row">
-      <label>Add <select value="" disabled=${off || known.length === 0}
-        onChange=${pickHandler((name) => add(editing, name))}>
-        <option value="">again…</option>
-        ${known.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}
-      </select></label>
-      <label>Replace by <select value="" disabled=${off || selected === null}
-        onChange=${pickHandler((name) => {
-        const kind = kinds.find((each) => `new ${each.key}` === name);
-        if (kind) addKind(editing, kind, "replace");
-        else add(editing, name, undefined, "replace");
-      })}>
-        <option value="">…</option>
-        ${kinds.map((kind) => html`<option key=${kind.key}
-          value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
-        ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
-      </select></label>
-      <button type="button" disabled=${off || selected === null} onClick=${() => remove(store)}>Delete</button>
-      <${Rename} store=${store} api=${editing.api} selected=${selected} />
-    </div>
-  </div>`;
+  return html`<${DropDown} title="Part" id="part-menu">
+    <${Rename} store=${store} api=${editing.api} selected=${selected} />
+    <label>Add <select value="" disabled=${off || known.length === 0}
+      onChange=${pickHandler((name) => add(editing, name))}>
+      <option value="">again…</option>
+      ${known.map((name) => html`<option key=${name} value=${name}>${name}</option>`)}
+    </select></label>
+    <label>Replace by <select value="" disabled=${off || selected === null}
+      onChange=${pickHandler((name) => {
+      const kind = kinds.find((each) => `new ${each.key}` === name);
+      if (kind) addKind(editing, kind, "replace");
+      else add(editing, name, undefined, "replace");
+    })}>
+      <option value="">…</option>
+      ${kinds.map((kind) => html`<option key=${kind.key}
+        value=${`new ${kind.key}`}>a new ${kind.key}</option>`)}
+      ${known.map((name) => html`<option key=${`old ${name}`} value=${name}>${name}</option>`)}
+    </select></label>
+    <button type="button" disabled=${off || selected === null} onClick=${() => remove(store)}>Delete</button>
+  <//>`;
 }
 
 /** A handler that hands on what is picked, after which nothing is. @param {(value: string) => void} act
@@ -297,10 +267,10 @@ function Schematic({ editing, tree, path, stale }) {
   const box = plan.boxes.find((each) => same(each.path, path));
   const target = over && plan.boxes.find((each) => same(each.path, over.path));
   const group = box && partAt(tree, path)?.kind !== "element" ? box : null;
-  return html`<div class=${`drawing ${stale ? "stale" : ""}`}>
+  return html`<div class=${`drawing ${stale ? "stale" : ""}`} data-keys="Drawing">
     <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`}
-      style=${{ width: state.view.across ? `min(100%, ${LARGEST * width}rem)`
-        : `${Math.min(LARGEST, Math.max(SMALLEST, 20 / width)) * width}rem` }} role="group"
+      style=${{ width: "100%", height: "100%", minWidth: `${state.view.across ? 0 : SMALLEST * width}px`,
+        minHeight: `${SMALLEST * height}px`, maxHeight: `${LARGEST * height}px` }} role="group"
           aria-label=${`Network ${written(tree)}`}
       onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing)}
       onDragOver=${(/** @type {DragEvent} */ event) => {
@@ -338,7 +308,7 @@ function Symbol({ one, state, chosen, entrance, store, drag }) {
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
     <rect class="touch" x="-11" y="-20" width=${24 + 5.2 * shortLabel(one.name).length} height="40" rx="3" />
-    <path class="symbol" d=${kind ? symbolPath(kind) : "M0 -20V-9M-8 -9H8V9H-8ZM0 9V20"} />
+    <path class="symbol" d=${symbolPath(kind)} />
     <text x="12" y="3">${shortLabel(one.name)}</text>
   </g>`;
 }
@@ -347,14 +317,11 @@ function Symbol({ one, state, chosen, entrance, store, drag }) {
  * @param {Path} leafPath @param {Path} path */
 const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[level] ?? 0));
 
-/** @param {{drawing: any[]}} kind */
-const symbolPath = (kind) => pathOf(kind.drawing, -1);
-
 /** The value of an element as it is written. @param {State} state @param {string} name */
 function valueOf(state, name) {
   const { study, values, layout } = state.history.present;
-  const entry = study.elements?.[name];
-  return isRange(entry) ? (values[layout]?.[name] ?? "free") : typeof entry === "string" ? entry : "";
+  const entry = own(study.elements, name);
+  return isRange(entry) ? (own(own(values, layout), name) ?? "free") : typeof entry === "string" ? entry : "";
 }
 
 /** @param {Path} a @param {Path} b */
@@ -386,15 +353,23 @@ function onKey(event, editing) {
     Escape: () => select(path.slice(0, -1)),
     Delete: () => remove(store),
     Backspace: () => remove(store),
-    F2: () => globalThis.document.getElementById("element-name")?.focus(),
+    F2: name,
   };
   if (event.ctrlKey || event.metaKey) return;
   const joint = event.key === event.key.toUpperCase() ? "parallel" : "series";
-  const kind = kindsOf(store.get()).find(({ symbol }) => symbol[0] === event.key.toLowerCase());
+  const kind = kindsOf(store.get()).find((each) => letterOf(each) === event.key.toUpperCase());
   if (keys[event.key]) keys[event.key]();
   else if (kind) addKind({ ...editing, how: joint }, kind);
   else return;
   event.preventDefault();
+}
+
+/** Opens the menu of the selected part at its name. */
+function name() {
+  globalThis.document.getElementById("part-menu")?.setAttribute("open", "");
+  const field = /** @type {HTMLInputElement | null} */ (globalThis.document.getElementById("element-name"));
+  field?.select();
+  field?.focus();
 }
 
 /** Where a part would be joined if it were let go here. @param {number} x @param {number} y */
@@ -468,10 +443,10 @@ function Text({ store, text }) {
   const missing = tree === null ? [] : names(tree).filter((name) => !(name in elements));
   const kinds = kindsOf(state);
   return html`<div class="text">
-    <label for="network-text">As text
-      <span class="quiet">| parallel, - series, brackets group, bridge(a, b, c, d, e)</span></label>
     <div class="underlined">
-      <textarea id="network-text" rows="1" value=${text} spellcheck=${false} autocomplete="off" autocapitalize="off"
+      <textarea id="network-text" rows="1" value=${text} aria-label="Network as text"
+        title="| parallel, - series, brackets group, bridge(a, b, c, d, e)" spellcheck=${false}
+        autocomplete="off" autocapitalize="off"
         aria-invalid=${wrong !== null} aria-describedby=${wrong ? "network-problem" : undefined}
         onInput=${textHandler((entered) =>
           store.change({ type: "drawn", text: entered.replace(/[\r\n]+/g, " ") }, "text"))}

@@ -1,55 +1,126 @@
-// Frequency responses of the strut (solid) and of the baseline (dashed).
-import { withUnit } from "../state/scale.js";
-import { Being } from "../parts/clock.js";
-import { Unchosen } from "../parts/doubts.js";
-import { Plot } from "../plot.js";
-import { answerOf, shownDesigns } from "../questions.js";
-import { IndexChips, useChoice } from "../parts/controls.js";
-import { html, useMemo } from "../parts/html.js";
-import { problemsOf } from "./values.js";
-import { useShown } from "../parts/shown.js";
+// Frequency responses of the strut and of the baseline, and of other struts and kept designs: gain and phase.
 
-/** @param {{store: import("../state/store.js").Store}} props */
+import { Being } from "../parts/clock.js";
+import { Chip, DropDown, Select, useChoice } from "../parts/controls.js";
+import { Unchosen } from "../parts/doubts.js";
+import { html, useMemo, useState } from "../parts/html.js";
+import { useShown } from "../parts/shown.js";
+import { Plot } from "../plot.js";
+import { layoutColours, numberedColour } from "../plots/colours.js";
+import { answerOf, baselineOf, choicesOf, ghostPanel, ghostsOf, shownDesigns } from "../questions.js";
+import { problemsOf } from "./values.js";
+
+/** @import { Store, State } from "../state/store.js" */
+/** @import { Document } from "../state/document.js" */
+/** @import { Curve, Declaration } from "../plots/layout.js" */
+/** @typedef {{name: string, layout: string, index: string, title: string, unit: string, label: string,
+ * gain: (number | null)[], phase: (number | null)[]}} Response */
+/** @typedef {{frequency: number[], responses: Response[], pale: boolean}} Answered  `pale`: of a kept design */
+
+const ALL = "all";
+const PARTS = ["gain", "phase", "both"];
+
+/** @param {{store: Store}} props */
 export function ResponsePanel({ store }) {
   const state = store.get();
-  const faulty = problemsOf(state).length > 0;
+  const document = state.history.present;
   const shown = answerOf(state, "response");
   const { value, sentence } = shown;
-  /** @type {any[]} */
+  /** @type {Response[]} */
   const found = value?.curves ?? [];
-  const indices = [...new Set(found.map((curve) => curve.index))];
+  const ghosts = ghostsOf(state).map(({ key, kept }) => ({ ...answerOf(state, ghostPanel(key)), kept }));
+  const indices = [...new Set(found.map((each) => each.index))];
   const [index, setIndex] = useChoice(indices);
-  const document = state.history.present;
-  const { layout } = document;
-  const curves = useMemo(() => curvesOf(found.filter((curve) => curve.index === index), layout),
-    [value, index, layout]);
-  const first = found.find((curve) => curve.index === index);
+  const labels = [...new Set(found.filter((each) => each.index === index).map(({ label }) => label))];
+  const [label, setLabel] = useChoice(labels.length > 1 ? [...labels, ALL] : labels);
+  const [parts, setParts] = useState(PARTS[0]);
+  const [at, read] = useState(/** @type {number | null} */ (null));
+  const plots = useMemo(() => {
+    const others = ghosts.flatMap(({ value: of, kept }) =>
+      (of ? [{ frequency: of.frequency, responses: of.curves, pale: kept }] : []));
+    const answers = [{ frequency: value?.frequency ?? [], responses: found, pale: false }, ...others];
+    return declared(answers, { index: index ?? "", label: label ?? "", document });
+  }, [value, index, label, document, ...ghosts.map((ghost) => ghost.value)]);
   useShown("response", state);
-  return html`<div class=${shown.before ? "stale" : ""} aria-busy=${shown.is === "coming"}>
-    <${Being} shown=${shown} />
+  const both = plots !== null && parts === "both";
+  const current = [shown, ...ghosts].every(({ is }) => is === "current");
+  const faulty = problemsOf(state).length > 0;
+  const controls = html`<${Select} aria-label="Index" value=${index} choices=${indices} set=${setIndex} />
+    ${labels.length > 1 && html`<${Select} aria-label="Output" value=${label} set=${setLabel}
+      choices=${[...labels.map((each) => [each, wordsOf(each)]), [ALL, "all outputs"]]} />`}
+    <div class="segmented" role="group" aria-label="What is drawn">${PARTS.map((each) =>
+      html`<${Chip} key=${each} on=${each === parts} set=${() => setParts(each)}>${each}<//>`)}</div>
+    <${Others} store=${store} />
+    <${Being} shown=${shown} />`;
+  return html`<div class=${`plot-panel${shown.before ? " stale" : ""}`} aria-busy=${shown.is === "coming"}>
     <${Unchosen} state=${state} designs=${shownDesigns(document)} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
-    <${IndexChips} indices=${indices} picked=${index} pick=${setIndex} />
-    ${!first && html`<div class="plot empty"></div>`}
-    ${first && html`<${Plot} x=${value.frequency} curves=${curves} xLabel="frequency [Hz]"
-      yLabel=${withUnit("gain", first.unit)} log=${true} logY=${true} title=${`Frequency response of ${index}`}
-        theme=${state.view.theme} />
-      <p class="quiet">${first.title}: solid ${layout}, dashed the baseline.</p>`}
+    ${(plots === null || both) && html`<div class="row plot-tools">${controls}</div>`}
+    ${plots === null && html`<div class="plot empty"></div>`}
+    ${plots && html`<div class=${both ? "plots two" : "plots"}>
+      ${parts !== "phase" && html`<${Plot} key="gain" plot=${plots.gain} current=${current} switches=${["x", "y"]}
+        at=${at} read=${read}>${both ? null : controls}<//>`}
+      ${parts !== "gain" && html`<${Plot} key="phase" plot=${plots.phase} current=${current} switches=${["x"]}
+        at=${at} read=${read}>${parts === "phase" ? controls : null}<//>`}
+    </div>`}
   </div>`;
 }
 
-const BASELINE = 1; // its colour
-
-/** The gains of an index; where it has several outputs, each with its name and a colour of its own.
- * @param {any[]} found @param {string} layout */
-function curvesOf(found, layout) {
-  const outputs = [...new Set(found.map(({ label }) => label))];
-  const several = outputs.length > 1;
-  return found.map(({ name, label, layout: of, gain }) => {
-    const number = outputs.indexOf(label);
-    const dash = of !== layout;
-    return { label: several ? `${name}, ${label.replaceAll("_", " ")}` : name, values: gain, dash, colour: number > 0
-      ? number + BASELINE : dash && !several ? BASELINE : 0 };
-  });
+/** Other struts and kept designs, each of which can be drawn too. @param {{store: Store}} props */
+function Others({ store }) {
+  const { history: { present: document }, view: { ghosts } } = store.get();
+  const drawn = shownDesigns(document).map(({ layout }) => `layout ${layout}`);
+  const choices = choicesOf(document).filter(({ key }) => !drawn.includes(key));
+  if (choices.length === 0) return null;
+  return html`<${DropDown} title="Also">${choices.map(({ key, name, kept }) => html`<label key=${key}>
+    <input type="checkbox" checked=${ghosts.includes(key)} onChange=${() => store.look({ ghosts: ghosts.includes(key)
+      ? ghosts.filter((each) => each !== key) : [...ghosts, key] })} /> ${name}${kept ? ", kept" : ""}</label>`)}<//>`;
 }
+
+/** An output as a person calls it. @param {string} label */
+const wordsOf = (label) => label.replaceAll("_", " ").replaceAll(" x ", " × ");
+
+/** The plots of gain and of phase. @param {Answered[]} answers
+ * @param {{index: string, label: string, document: Document}} how
+ * @returns {{gain: Declaration, phase: Declaration} | null} */
+function declared(answers, { index, label, document }) {
+  const labels = [...new Set(answers[0].responses.filter((each) => each.index === index).map((each) => each.label))];
+  const first = answers[0].responses.find((each) => each.index === index && (label === ALL || each.label === label));
+  if (first === undefined) return null;
+  const colours = layoutColours(document);
+  const baseline = baselineOf(document).layout;
+  const several = label === ALL;
+  /** @param {"gain" | "phase"} what @returns {Curve[]} */
+  const curves = (what) => answers.flatMap(({ frequency, responses, pale }) => responses
+    .filter((each) => each.index === index && (several || each.label === label))
+    .map((each) => ({
+      name: several ? `${each.name} ${wordsOf(each.label)}` : each.name,
+      x: frequency,
+      y: what === "gain" ? each.gain : degrees(each.phase),
+      colour: several && each.layout !== baseline ? numberedColour(labels.indexOf(each.label))
+        : colours[each.layout] ?? "s4",
+      dash: !pale && each.layout === baseline,
+      strong: !pale && each.layout === document.layout,
+      pale,
+    }))).toSorted((one, other) => Number(one.strong) - Number(other.strong));
+  const x = { what: "frequency", unit: "Hz", log: true };
+  const title = several ? `${index}, all outputs` : first.title;
+  const gain = curves("gain");
+  const phase = curves("phase");
+  const known = phase.some(({ y }) => y.some((each) => each !== null));
+  return {
+    gain: { title: `Frequency response of ${index}: ${title}`, x, curves: gain,
+      y: { what: title, unit: first.unit, zero: true } },
+    phase: { title: `Phase of ${index}: ${title}`, x, curves: phase, y: { what: known ? `phase: ${title}`
+      : "no phase: several independent sources excite", unit: known ? "°" : "", from: -180, to: 180,
+    ticks: [-180, -90, 0, 90, 180] } },
+  };
+}
+
+/** Phases in degrees, broken where they pass 180°. @param {(number | null)[]} phase */
+const degrees = (phase) => phase.map((value, i) => {
+  const last = phase[i - 1];
+  const passes = typeof value === "number" && typeof last === "number" && Math.abs(value - last) > Math.PI;
+  return value === null || passes ? null : (180 / Math.PI) * value;
+});

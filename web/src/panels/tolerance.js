@@ -7,6 +7,7 @@ import { Moving } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
+import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
 import { shown, withUnit } from "../state/scale.js";
 import { indexChoices, indicesOf, percent } from "./answers.js";
@@ -71,7 +72,11 @@ function Scattered({ value }) {
         ${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
           <td class="number" data-value=${number}>${shown(number)}</td></tr>`)}
       <//>
-      <${Histogram} histogram=${value.histogram} title=${`Distribution of ${value.index}`} />
+      ${value.histogram.counts.some((/** @type {number} */ count) => count > 0) && html`<${Plot} plot=${{
+        title: `Distribution of ${value.index}`, x: { what: value.index, unit: value.unit }, curves: [],
+        y: { what: "number of samples", unit: "", zero: true }, bars: value.histogram,
+        marks: [{ x: value.nominal, text: "nominal" }],
+      }} />`}
       <${Table} label="Which value matters" heads=${[["Sobol' index of"],
         ["first order", "first-order Sobol' index: effect of the value alone"],
         ["total order", "total-order Sobol' index: with all interactions"], [""]]}>
@@ -85,18 +90,3 @@ function Scattered({ value }) {
 
 /** @param {number | null} part */
 const share = (part) => percent(part === null ? null : 100 * part);
-
-const [WIDTH, HEIGHT] = [320, 150];
-
-/** @param {{histogram: {edges: number[], counts: number[]}, title: string}} props */
-function Histogram({ histogram: { edges, counts }, title }) {
-  const most = Math.max(...counts);
-  if (!(most > 0)) return null;
-  const step = WIDTH / counts.length;
-  return html`<svg class="histogram" viewBox=${`0 0 ${WIDTH} ${HEIGHT + 20}`} role="img" aria-label=${title}>
-    ${counts.map((count, i) => html`<rect key=${i} x=${i * step} width=${step * 0.9} y=${HEIGHT * (1 - count / most)}
-      height=${(HEIGHT * count) / most} />`)}
-    <text x="0" y=${HEIGHT + 15}>${shown(edges[0], 4)}</text><text x=${WIDTH} y=${HEIGHT + 15} text-anchor="end">
-      ${shown(edges.at(-1), 4)}</text>
-  </svg>`;
-}

@@ -1,20 +1,25 @@
-// Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, fixed
-// or free.
+// Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, and
+// whether it may vary; and the best values of what may.
 
+import { enter, isBeingRead, wronglyTyped } from "../entering.js";
 import { layoutsWith, numbersOf } from "../library.js";
-import { quickMethod } from "../methods.js";
-import { Chip, textHandler } from "../parts/controls.js";
+import { judging, quickMethod } from "../methods.js";
+import { Moving } from "../parts/clock.js";
+import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { answerOf, unitKey } from "../questions.js";
-import { entryAt, isRange } from "../state/document.js";
+import { answerOf, goalOf, unitKey } from "../questions.js";
+import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
+import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
-/** @import { Change } from "../state/document.js" */
+/** @import { Api } from "../api.js" */
+/** @import { Change, Document } from "../state/document.js" */
 /** @import { NumberRow } from "../library.js" */
 /** @import { Problem } from "../api.js" */
 
 const DECADE = 10;
+const [STEP, LARGE, FINE] = [0.01, 0.1, 0.001]; // by which an arrow key changes a value
 
 /** A number of the document: its text, the bounds of its slider, and the change to another text.
  * @typedef {{row: NumberRow, label: string, text: string, range: {from: string, to: string}, free: boolean,
@@ -22,10 +27,10 @@ const DECADE = 10;
 
 const ELEMENTS = "elements";
 const FEW = 8; // numbers of one table that stand below each other; more are folded away, and those in tables of tables
-const MANY = 14; // elements of a layout that stand below each other; of more some are scrolled
+const SHORT = 3; // letters of a name that leave the slider long
 
-/** @param {{store: Store}} props */
-export function ValuesPanel({ store }) {
+/** @param {{store: Store, api: Api}} props */
+export function ValuesPanel({ store, api }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const rows = numbersOf(state);
@@ -35,23 +40,51 @@ export function ValuesPanel({ store }) {
   const names = new Set(other.map(({ path }) => path[1]));
   const sections = [...new Set(rows.map(({ path }) => path[0]))].filter((section) => section !== ELEMENTS);
   /** @param {NumberRow[]} several */
-  const amounts = (several) =>
-    several.map((row) => html`<${AmountRow} key=${idOf(row)} store=${store} amount=${amountOf(state, row)} />`);
-  return html`<section class="panel values" aria-labelledby="values-title">
-    <h2 id="values-title">Values</h2>
-    <div class=${used.length > MANY ? "many" : ""}>${amounts(used)}</div>
+  const amounts = (several) => several.map((row) => html`<${AmountRow} key=${idOf(row)} store=${store}
+    amount=${amountOf(state, row)} wide=${several.some((each) => labelOf(each).length > SHORT)} />`);
+  return html`<section class="panel values" aria-labelledby="values-title" data-keys="Values">
+    <${FindBest} store=${store} api=${api} />
+    <div class="inside">
+    <h3>${layout && `Strut ${layout}`}<span>may vary</span></h3>
+    ${amounts(used)}
     ${names.size > 0 &&
     html`<details><summary>${`Elements of other layouts (${names.size})`}</summary>${amounts(other)}</details>`}
     ${sections.map((section) => {
       const inside = rows.filter(({ path }) => path[0] === section);
       const tables = [...new Set(inside.map(tableOf))];
-      return html`<h3 key=${section}>${titleOf(section, study[section]?.model)}</h3>
+      return html`<section key=${section} id=${`${section}-values`}>
+        <h3>${titleOf(section, study[section]?.model)}</h3>
         ${tables.map((table) => {
           const several = inside.filter((row) => tableOf(row) === table);
           return html`<${NumberTable} key=${table} table=${table} rows=${several}>${amounts(several)}<//>`;
-        })}`;
-    })}
+        })}</section>`;
+    })}</div>
   </section>`;
+}
+
+/** The best values of what may vary. @param {{store: Store, api: Api}} props */
+function FindBest({ store, api }) {
+  const state = store.get();
+  const { study, layout } = state.history.present;
+  const goal = goalOf(state);
+  const nothing = { text: "", of: null };
+  const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
+  const here = judging(state);
+  const method = here?.searches ? here : quickMethod(state);
+  return html`<form class="optimise" onSubmit=${formHandler(async (_, { submitter }) => {
+    if (!goal || !method) return;
+    const all = submitter?.getAttribute("value") === "all";
+    setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
+    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
+      index: goal, method: method.name });
+    const { present } = store.get().history;
+    setTold(present.study === study ? { text, of: present } : nothing);
+  })}>
+    <div class="head"><h2 id="values-title">Values</h2>
+      <button value="all" disabled=${!goal || !method}>All layouts</button>
+      <button class="main" id="find-best" disabled=${!goal || !method}>Find best <kbd>O</kbd></button></div>
+    <p role="status">${told.of === state.history.present && told.text}</p>
+  </form>`;
 }
 
 /** @param {NumberRow} row */
@@ -84,7 +117,7 @@ function amountOf(state, row) {
   const entry = entryAt(study, path);
   const label = labelOf(row);
   if (isRange(entry)) {
-    const text = values[layout]?.[name] ?? middle(state, entry, unit);
+    const text = own(own(values, layout), name) ?? middle(state, entry, unit);
     const set = (/** @type {string} */ value) =>
       /** @type {Change} */ ({ type: "valued", layout, values: { [name]: value } });
     return { row, label, text, range: entry, free: true, set };
@@ -93,7 +126,7 @@ function amountOf(state, row) {
   const bare = typeof entry === "number" || unit === PURE || unit === "";
   const set = (/** @type {string} */ value) =>
     /** @type {Change} */ ({ type: "placed", place: path, value: bare ? written(value) : value });
-  return { row, label, text, range: ranges[idOf(row)] ?? decade(text), free: false, set };
+  return { row, label, text, range: own(ranges, idOf(row)) ?? decade(text), free: false, set };
 }
 
 /** What a number is called below the title of its section, or of its table. An element has its own name, and its
@@ -145,59 +178,81 @@ function decade(text) {
   return { from: quantity(apart.number / DECADE, apart.unit), to: quantity(apart.number * DECADE, apart.unit) };
 }
 
-/** @param {{store: Store, amount: Amount}} props */
-function AmountRow({ store, amount }) {
+/** @param {{store: Store, amount: Amount, wide: boolean}} props */
+function AmountRow({ store, amount, wide }) {
   const state = store.get();
   const { row, label, text, range, free, set } = amount;
-  const { unit, sentence } = row;
+  const { unit, path: place, name } = row;
   const id = idOf(row);
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
-  const problems = problemsOf(state).filter((problem) => isAt(problem, row.path));
+  const wrong = wronglyTyped(state, id);
+  const problems = wrong ? [{ sentence: wrong }] : problemsOf(state).filter((problem) => isAt(problem, place));
   const gesture = `slide ${id}`;
-  const slide = textHandler((position) => {
-    if (!usable) return;
-    if (!free && !(id in state.history.present.ranges)) {
+  /** @param {number} next */
+  const slide = (next) => {
+    if (!free && !Object.hasOwn(state.history.present.ranges, id)) {
       store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
     }
-    store.change(set(inUnitOf(state, text, unit, valueAt(Number(position), lower, upper))), gesture);
-  });
-  return html`<div class=${`amount ${problems.length ? "wrong" : ""}`} data-place=${id} title=${sentence || row.words}>
-    <label for=${`slider ${id}`}>${label}</label>
-    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS}
-      value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
-      onInput=${slide} onChange=${() => store.dispatch({ type: "rested" })} />
-    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      done=${(/** @type {string} */ value) => store.change(set(value))} />
+    store.change(set(inUnitOf(state, text, unit, next)), gesture);
+  };
+  const vary = () => store.change(free ? { type: "fixed", place, name, text }
+    : { type: "freed", place, name, ...range, method: quickMethod(state)?.name });
+  /** @param {KeyboardEvent} event */
+  const onKey = (event) => {
+    const up = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 }[event.key];
+    if (up && usable && !event.ctrlKey && !event.metaKey) slide(size * (1 + up * (event.shiftKey ? LARGE
+      : event.altKey ? FINE : STEP)));
+    else if (event.key.toLowerCase() === "x" && row.may_be_free) vary();
+    else return;
+    event.preventDefault();
+  };
+  return html`<div class=${`amount ${wide ? "wide" : ""} ${free ? "free" : ""}`} data-place=${id}
+    aria-busy=${isBeingRead(state, id)}>
     <${Bounds} store=${store} amount=${amount} />
+    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label} title=${`${range.from} to ${
+      range.to}`} value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
+      onInput=${textHandler((position) => usable && slide(valueAt(Number(position), lower, upper)))}
+      onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
+      onChange=${() => store.dispatch({ type: "rested" })} />
+    <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
+      done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text }, value, set(value))} />
+    ${row.may_be_free && html`<input type="checkbox" checked=${free} aria-label=${`${label} may vary`}
+      onChange=${vary} />`}
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
   </div>`;
 }
 
-/** @param {{store: Store, amount: Amount}} props */
+/** A name; of an element what follows the first underscore is a subscript.
+ * @param {{label: string, element: boolean}} props */
+function Name({ label, element }) {
+  const [stem, ...rest] = element ? label.split("_") : [label];
+  return html`${stem}${rest.length > 0 && html`<sub>${rest.join("_")}</sub>`}`;
+}
+
+/** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */
 function Bounds({ store, amount }) {
-  const { row, label, text, range, free } = amount;
-  const { path: place, name } = row;
-  const judging = quickMethod(store.get())?.name;
+  const { row, label, range, free } = amount;
+  const { path: place, sentence, words } = row;
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
-  /** @param {{from: string, to: string}} next */
-  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next })
-    : store.change({ type: "ranged", place: place.join("."), ...next }));
+  const id = place.join(".");
+  /** @param {string} value @param {"from" | "to"} end */
+  const setEnd = (value, end) => {
+    const next = { ...range, [end]: value };
+    enter(store, { id, unit: row.unit, before: range[end] }, value, free ? { type: "placed", place, value: next }
+      : { type: "ranged", place: id, ...next });
+  };
   return html`<details class="bounds">
-    <summary aria-label=${`${label}: ${free ? "free" : "fixed"}, bounds`}>${free ? "free" : "fixed"}</summary>
+    <summary aria-label=${`${label}: bounds`} class=${section === ELEMENTS ? "symbol-name" : ""}
+      title=${sentence || words}><${Name} label=${label} element=${section === ELEMENTS} /></summary>
     <div class="menu-body">
-      ${row.may_be_free &&
-      html`<div class="row" role="group" aria-label=${`${label} is`}>
-        <${Chip} on=${!free} set=${() => free && store.change({ type: "fixed", place, name, text })}>fixed<//>
-        <${Chip} on=${free} set=${() =>
-          !free && store.change({ type: "freed", place, name, ...range, method: judging })}>free<//>
-      </div>`}
+      <p class="quiet">${sentence || words}</p>
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
-        done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
+        done=${(/** @type {string} */ from) => setEnd(from, "from")} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to}
-        done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
+        done=${(/** @type {string} */ to) => setEnd(to, "to")} /></label>
       ${removable && html`<button type="button"
         onClick=${() => store.change({ type: "elementRemoved", name: element })}>Delete ${element}</button>`}
     </div>

@@ -2,12 +2,12 @@
 
 import { percent } from "./answers.js";
 import { Files } from "./files.js";
-import { FrontForm, FrontResult, frontBody } from "./front.js";
+import { FrontForm, FrontResult, frontBody, frontTitle } from "./front.js";
 import { SearchForm, SearchResult, searchBody } from "./search.js";
-import { Plot } from "../plot.js";
-import { IndexChips, Select, Table, useChoice, formHandler } from "../parts/controls.js";
+import { SweepResult, sweepTitle } from "./sweep.js";
+import { Select, Table, formHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, quantity, rounded, takenApart, withUnit } from "../state/scale.js";
+import { placed, printed, quantity, rounded, takenApart } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { answerOf } from "../questions.js";
@@ -17,16 +17,17 @@ import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js"
 /** @import { Api } from "../api.js" */
 
 /** A kind of long work: what it needs beside the study, its form, and its result.
+ * `name` is that of one of its jobs.
  * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object,
- * Form?: any, Result?: any}} Kind */
+ * name?: (form: FormData) => string, Form?: any, Result?: any}} Kind */
 
 /** @type {Kind[]} */
 export const KINDS = [
   { kind: "run", title: "Run the whole study", body: () => ({}), Result: RunResult,
     sentence: "As inerter run does: all layouts and indices, with report, tables and figures." },
-  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult,
+  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle,
     sentence: "The best designs over one number of the study." },
-  { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult,
+  { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult, name: frontTitle,
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
   { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
     sentence: "As inerter search does, for one index: every network that a free network may be, with its best values."
@@ -53,7 +54,7 @@ function Begin({ store, api, kind }) {
   const state = store.get();
   const { study } = state.history.present;
   return html`<form class="begin" onSubmit=${formHandler(async (form) => {
-    const title = `${kind.title}: ${study.title ?? "study"}`;
+    const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     setTold(await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) }));
   })}>
     <h3>${kind.title}</h3>
@@ -164,26 +165,3 @@ function sweepBody(_, form) {
   const [of, from, to, points] = ["of", "from", "to", "points"].map((name) => String(form.get(name) ?? ""));
   return { sweep: { [of]: { from, to, points: Number(points) } } };
 }
-
-/** @param {{store: Store, api: Api, job: Job}} props */
-function SweepResult({ store, api, job }) {
-  const rows = rowsOf(job.result);
-  const indices = [...new Set(rows.map(({ index }) => index))];
-  const [index, setIndex] = useChoice(indices);
-  const shownRows = rows.filter((row) => row.index === index);
-  const [of] = job.result.swept ?? [];
-  const swept = (/** @type {any} */ row) => row[of.name];
-  if (!of) return html`<${RunResult} store=${store} api=${api} job=${job} />`;
-  const x = [...new Set(shownRows.map(swept))].sort((a, b) => a - b);
-  const curves = [...new Set(shownRows.map(({ layout }) => layout))].map((layout) => ({
-    label: layout,
-    values: x.map((at) => shownRows.find((row) => row.layout === layout && swept(row) === at)?.value ?? null),
-  }));
-  return html`<${Doubts} members=${rows.flatMap(membersOf)} />
-    <${IndexChips} indices=${indices} picked=${index} pick=${setIndex} />
-    <${Plot} x=${x} curves=${curves} xLabel=${withUnit(of.words, of.unit)}
-      yLabel=${withUnit(String(index), shownRows[0]?.unit)}
-      title=${`${index} over ${of.words}`} theme=${store.get().view.theme} />
-    <${Files} api=${api} job=${job} />`;
-}
-

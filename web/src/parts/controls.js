@@ -41,9 +41,9 @@ export const IndexChips = ({ indices, picked, pick }) => html`<div class="row" r
   ${indices.map((each) => html`<${Chip} key=${each} on=${each === picked} set=${() => pick(each)}>${each}<//>`)}</div>`;
 
 /** A menu that drops down; `onOpen` is called when it does.
- * @param {{title: string, onOpen?: () => void, children: any}} props */
-export const DropDown = ({ title, onOpen, children }) => html`<details class="menu" onToggle=${(/** @type {Event} */
-  event) => /** @type {HTMLDetailsElement} */ (event.currentTarget).open && onOpen?.()}>
+ * @param {{title: string, onOpen?: () => void, id?: string, children: any}} props */
+export const DropDown = ({ title, onOpen, id, children }) => html`<details class="menu" id=${id} onToggle=${(
+  /** @type {Event} */ event) => /** @type {HTMLDetailsElement} */ (event.currentTarget).open && onOpen?.()}>
   <summary>${title}</summary><div class="menu-body">${children}</div></details>`;
 
 /** A table that can be scrolled; `heads` are the heads of its columns, or pairs of head and explanation.

@@ -46,5 +46,5 @@ export function Unchosen({ state, designs }) {
   return found.length === 0
     ? null
     : html`<p class="unchosen" role="status">Not chosen yet: ${listed}. The free values are in the middle of their
-        bounds, which says nothing of a layout: press Optimise, or choose them.</p>`;
+        bounds, which says nothing of a layout: press Find best, or choose them.</p>`;
 }

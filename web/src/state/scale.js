@@ -82,7 +82,7 @@ const minus = (number) => String(number).replace("-", "−");
 const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /** The digits and the minus sign of a number as superscripts. @param {string} text */
-const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
+export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
 /** A unit as a person writes it. @param {string} unit */
 export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));

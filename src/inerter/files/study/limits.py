@@ -187,6 +187,11 @@ def _unit(study: Study, of: str) -> str:
     return study.unit(of)
 
 
+def key_in_words(words: str) -> str:
+    """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
+    return words.replace("-", " ").replace(".", " of ")
+
+
 def quantity_limited(study: Study, of: str) -> IndexLike:
     """Quantity to which a limit applies: static stiffness of a mount, or an index."""
     section, _, mount = of.partition(".")

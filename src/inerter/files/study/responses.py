@@ -24,8 +24,12 @@ from inerter.vehicle.mechanism import Mechanism, OutputWeight
 Array = NDArray[np.float64]
 
 
-def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dataset:
-    """Gain of every weighted output of every index over frequency, for the parameters that were found for each case."""
+def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: bool = False) -> xr.Dataset:
+    """Gain of every weighted output of every index over frequency, for the parameters that were found for each case.
+
+    With `phases` also `phase_INDEX` [rad], from -pi to pi; nan where several sources excite, whose gain is a root of a
+    sum of squares.
+    """
     designs = {
         (case.layout, case.index): study.design(case.layout).with_values(values) for case, values in found.items()
     }
@@ -46,32 +50,40 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dat
         if not mine:
             continue
         definition = next(iter(mine.values()))[0].definition
-        weights = np.array([abs(output.weight) for output in definition.outputs])
+        weights = np.array([output.weight for output in definition.outputs])
         gains = np.full((len(study.layouts), weights.size, omega.size), np.nan)
+        angles = np.full_like(gains, np.nan)
         for layout, (problem, system) in mine.items():
             with np.errstate(over="ignore", invalid="ignore"):
-                sizes = np.abs(frequency_response(system, omega, problem.pade_order))
+                response = frequency_response(system, omega, problem.pade_order)
+                sizes = np.abs(response)
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
-            gains[list(study.layouts).index(layout)] = weights[:, None] * together.T
+            number = list(study.layouts).index(layout)
+            gains[number] = np.abs(weights)[:, None] * together.T
+            if phases and sizes.shape[2] == 1:
+                angles[number] = np.angle(response[:, :, 0] * np.sign(weights)).T
         mechanism = designs[next(iter(mine)), index].mechanism()
         attributes = {
-            "units": _per(definition.unit, _source_unit(mechanism, definition)),
+            "units": gain_unit(definition.unit, source_unit(mechanism, definition)),
             "long_name": _words(study, index),
         }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
+        if phases:
+            named = {"units": "rad", "long_name": f"phase of {_words(study, index)}"}
+            data[f"phase_{index}"] = (("layout", f"output_{index}", "omega"), angles, named)
         units = [unit_of(mechanism, [o.output]) for o in definition.outputs]
         names = [_output_label(o, own, definition.unit) for o, own in zip(definition.outputs, units, strict=True)]
         data = data.assign_coords({f"output_{index}": names})
     return data
 
 
-def _per(unit: str, per: str) -> str:
+def gain_unit(unit: str, per: str) -> str:
     """Unit of a gain: `unit` over `per`; `unit` alone if `per` is empty."""
     top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
     return f"{top or 1}/{bottom}" if per else unit
 
 
-def _source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
+def source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
     """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
     if definition.drive.unit or not definition.drive.is_random:
         return definition.drive.unit

@@ -80,6 +80,16 @@ class Study(Settings):
 
     def index(self, name: str) -> Index:
         """Index of that name with the settings of the study."""
+        if name not in self._made_indices:
+            self._made_indices[name] = self._make_index(name)
+        return self._made_indices[name]
+
+    @cached_property
+    def _made_indices(self) -> dict[str, Index]:
+        """Indices that were made already: a page takes each of them many times for a design."""
+        return {}
+
+    def _make_index(self, name: str) -> Index:
         own = self.own_indices.get(name)
         given = {**self.settings_of(name), **own.constructor_arguments(self.road)} if own else self.settings_of(name)
         return make_index(self.symbol(name), self.road, given)

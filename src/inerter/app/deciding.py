@@ -1,0 +1,202 @@
+"""Decision of a study for the page: designs ranked by one index, the verdict, and its caveats."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from math import inf, isfinite, log, nan
+from typing import Any
+
+from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
+from inerter.app.designs import Design, baseline_of, designs_of, one_design
+from inerter.app.index_values import limits_at
+from inerter.decision.decide import Decision, decide
+from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
+from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
+from inerter.errors import Status
+from inerter.figures.labels import format_list
+from inerter.files.study.limits import key_in_words
+from inerter.files.study.study import Study
+from inerter.formatting import format_quantity, typeset
+from inerter.methods.compare import Comparison
+from inerter.methods.registry import brief_words_of, decisive_method_clause
+from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
+from inerter.tasks.margins import margins as find_margins
+
+Body = Mapping[str, Any]
+Answer = dict[str, Any]
+_OTHER = ("index", "title", "unit", "value", "standard_error", "decimals", "status", "message")
+_COMPARED = ("improvement_percent", "improvement_error_percent", "improvement_status", "tie")
+
+
+def decision(study: Study, body: Body) -> Answer:
+    """Designs ranked by the index `index` (default: the first), and the verdict with its caveats."""
+    designs = designs_of(study, body)
+    baseline = baseline_of(study, body, designs)
+    if baseline is not None and baseline not in designs:
+        designs.append(baseline)
+    method = decisive_method(body.get("methods") or study.evaluate)
+    indices = list(body.get("indices") or study.indices)
+    goal = body.get("index") or indices[0]
+    compared = _Compared(study, method, baseline, (goal, *(index for index in indices if index != goal)))
+    results = [compared.result(design) for design in designs]
+    told = decide(results, compared.over, method=brief_words_of(method), remedy=remedy_of(method))
+    return {
+        "goal": {
+            "index": goal,
+            "title": study.index(goal).title,
+            "unit": study.unit(goal),
+            "sentence": typeset(goal_sentence(study, goal, method)),
+        },
+        "method": method,
+        "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],
+        "verdict": verdict_of(told),
+    }
+
+
+def margins(study: Study, body: Body) -> Answer:
+    """Break-even values, improvements at other speeds, and tolerances of one design against the baseline."""
+    return margins_of(study, body, lambda done, total, what: None)
+
+
+def margins_of(study: Study, body: Body, tell: Progress) -> Answer:
+    """Margins of a design, with a progress report before each."""
+    design = one_design(study, body)
+    baseline = baseline_of(study, body, [])
+    index = body.get("index") or study.indices[0]
+    nothing = Margins(design.name, index)
+    if baseline is None or design == baseline:
+        text = f"{design.name} has no margins: it is the baseline." if baseline else "Margins need a baseline."
+        return asdict(replace(nothing, caveats=[MarginCaveat(text)]))
+    for one in (design, baseline):
+        if one.unchosen:
+            text = f"No value of {format_list(one.unchosen)} of {one.name} has been chosen yet."
+            return asdict(replace(nothing, caveats=[MarginCaveat(text)]))
+    asked = MarginRequest(
+        study=study,
+        layout=design.layout,
+        design=design.vehicle,
+        baseline_layout=baseline.layout,
+        baseline=baseline.vehicle,
+        index=index,
+        method=decisive_method(body.get("methods") or study.evaluate),
+        threads=os.cpu_count() or 1,
+    )
+    told: Answer = _typeset_sentences(asdict(find_margins(asked, tell)))
+    return told
+
+
+def _typeset_sentences(told: Any, key: str = "") -> Any:
+    """Answer with its sentences in printed form."""
+    if isinstance(told, dict):
+        return {name: _typeset_sentences(one, name) for name, one in told.items()}
+    if isinstance(told, list):
+        return [_typeset_sentences(one, key) for one in told]
+    return typeset(told) if key == "sentence" else told
+
+
+def verdict_of(told: Decision) -> Answer:
+    """Verdict for an answer."""
+    verdict = told.verdict
+    return {
+        "sentence": typeset(verdict.sentence),
+        "severity": verdict.answer.value,
+        "caveats": [{"sentence": typeset(one.sentence), "severity": one.severity.value} for one in verdict.caveats],
+    }
+
+
+class _Compared:
+    """Estimates of designs by one method, and their comparison with the baseline."""
+
+    def __init__(self, study: Study, method: str, baseline: Design | None, indices: Sequence[str]) -> None:
+        self.study, self.method, self.baseline, self.indices = study, method, baseline, indices
+        self._base = [] if baseline is None else [evaluate_design(baseline, index, method) for index in indices]
+        self._known: dict[int, tuple[Design, list[DesignEstimate], list[Answer]]] = {}
+
+    def result(self, design: Design) -> DesignResult:
+        """Results of a design; the same object identifies it in `over` and `row`."""
+        found = [evaluate_design(design, index, self.method) for index in self.indices]
+        limits = limits_at(self.study, design, self.method)
+        goal, *others = [self._index_result(one, i) for i, one in enumerate(found)]
+        modelled, neglected = nonlinear_elements(design.mechanism, self.method)
+        made = DesignResult(
+            name=design.name,
+            goal=goal,
+            others=tuple(others),
+            limits=tuple(map(_limit_result, limits)),
+            unchosen=design.unchosen,
+            at_bounds=at_bounds(design.free, design.values, self.study.free_units),
+            modelled=modelled,
+            neglected=neglected,
+            is_baseline=design == self.baseline,
+            n_elements=sum(len(list(strut.network.elements())) for strut in design.mechanism.struts),
+        )
+        self._known[id(made)] = design, found, limits
+        return made
+
+    def over(self, one: DesignResult, other: DesignResult) -> Improvement | None:
+        """Improvement of a design over another in the goal, on the same roads."""
+        first, second = (self._known[id(each)][1][0] for each in (one, other))
+        return improvement_of(first.beside(second))
+
+    def row(self, rank: int | None, result: DesignResult) -> Answer:
+        """Row of the ranking, for an answer."""
+        design, found, limits = self._known[id(result)]
+        base: Sequence[DesignEstimate | None] = self._base or [None] * len(found)
+        told = [describe_result(one, other) for one, other in zip(found, base, strict=True)]
+        keys = (*_OTHER, *_COMPARED)
+        return {
+            "layout": design.layout,
+            "name": design.name,
+            "rank": rank,
+            **{key: told[0][key] for key in keys if key not in ("index", "title", "unit")},
+            "unchosen": list(design.unchosen),
+            "is_baseline": result.is_baseline,
+            "others": [{key: one[key] for key in keys} for one in told[1:]],
+            "limits": limits,
+        }
+
+    def _index_result(self, one: DesignEstimate, i: int) -> IndexResult:
+        estimate, study = one.estimate, self.study
+        base = self._base[i] if self._base else None
+        two = None if base is None or one.design == self.baseline else one.beside(base)
+        return IndexResult(
+            index=one.index,
+            title=study.index(one.index).title,
+            unit=study.unit(one.index),
+            value=estimate.value,
+            status=_with_remedy(self.method, estimate.status),
+            standard_error=nan if estimate.standard_error is None else estimate.standard_error,
+            error_bound=estimate.error_bound,
+            improvement=improvement_of(two),
+        )
+
+
+def improvement_of(two: Comparison | None) -> Improvement | None:
+    """Improvement of the first design over the second; None without a comparison."""
+    if two is None:
+        return None
+    percent, error = improvement_percent(two)
+    of_base = two.second.error_bound
+    ratio = abs(two.first.value / two.second.value) if two.second.value else inf
+    bound = 100.0 * ratio * (two.first.error_bound + of_base) / (1.0 - of_base) if of_base < 1.0 else nan
+    return Improvement(percent, nan if error is None else error, bound, two.is_tie, two.status)
+
+
+def _with_remedy(method: str, status: Status) -> Status:
+    """Status whose message names the method that can decide."""
+    clause = decisive_method_clause(method, status)
+    return replace(status, message=f"{status.message.rstrip('.')}{clause}") if clause else status
+
+
+def _limit_result(told: Answer) -> LimitResult:
+    """Limit of a design as a decision compares it."""
+    value, limit = told["value"], told["limit"]
+    part = f", {told['part']}," if told["part"] else ""
+    side = f"{told['sense'].replace('_', ' ')} {format_quantity(limit, told['unit'], digits=12)}"
+    excess = inf
+    if isfinite(value) and value > 0.0 and limit > 0.0:
+        beyond = log(value / limit)
+        excess = {"at_most": beyond, "at_least": -beyond}.get(told["sense"], abs(beyond))
+    return LimitResult(f"{key_in_words(told['of'])}{part}", side, told["text"], told["kept"], excess, told["message"])

@@ -1,0 +1,185 @@
+"""Caveats of a verdict, in the order in which they are told; none is dropped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isfinite
+
+from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
+from inerter.errors import StatusKind
+from inerter.figures.labels import capital, format_list
+from inerter.statements import Severity, Statement
+
+Over = Callable[[DesignResult, DesignResult], Improvement | None]
+_MOST_NAMES = 3  # of values, in a sentence
+
+
+class CaveatKind(StrEnum):
+    """Kind of a caveat, in the order in which caveats are told."""
+
+    WORSE = "worse"  # another index gets worse
+    STATUS = "status"  # a value is unreliable, infinite or missing
+    TIE = "tie"  # a difference is not significant
+    LIMIT = "limit"  # a limit is broken, or its quantity not known
+    NEGLECTED = "neglected"  # friction or backlash that the method neglects
+    BOUND = "bound"  # a value is at its bound
+    UNCHOSEN = "unchosen"  # a design variable has no value yet
+
+
+@dataclass(frozen=True)
+class Caveat(Statement):
+    """Caveat of a verdict."""
+
+    kind: CaveatKind
+    text: str
+    level: Severity = Severity.WARNING
+
+    @property
+    def severity(self) -> Severity:
+        """Info where the verdict holds all the same."""
+        return self.level
+
+    @property
+    def sentence(self) -> str:
+        """The caveat in words."""
+        return self.text
+
+
+@dataclass(frozen=True)
+class Contest:
+    """Designs that are compared, those that may be the best, and the improvement of one over another."""
+
+    designs: Sequence[DesignResult]
+    winners: Sequence[DesignResult]
+    over: Over
+    method: str = ""  # in words
+    remedy: str = ""  # method that models friction and backlash
+
+    @property
+    def baseline(self) -> DesignResult | None:
+        """Baseline among the designs."""
+        return next((one for one in self.designs if one.is_baseline), None)
+
+    @property
+    def chosen(self) -> list[DesignResult]:
+        """Designs with a value for every design variable."""
+        return [one for one in self.designs if not one.unchosen]
+
+
+def caveats_of(contest: Contest) -> list[Caveat]:
+    """All caveats: by kind, and by the order of the designs."""
+    found = [
+        *_worse(contest),
+        *_statuses(contest),
+        *_ties(contest),
+        *_limits(contest),
+        *_neglected(contest),
+        *_bounds(contest),
+        *_unchosen(contest),
+    ]
+    return list(dict.fromkeys(found))
+
+
+def unchosen_clause(designs: Sequence[DesignResult]) -> str:
+    """Clause on design variables without a value, named where they are few and the same in all designs."""
+    variables = {one.unchosen for one in designs}
+    names = next(iter(variables)) if len(variables) == 1 else ()
+    of = f"{format_list(names)} of " if 0 < len(names) <= _MOST_NAMES else ""
+    return f"No value of {of}{format_list([one.name for one in designs])} has been chosen yet"
+
+
+def _worse(contest: Contest) -> Iterator[Caveat]:
+    base = contest.baseline
+    for design in contest.winners:
+        for other in design.others if base is not None and design is not base else ():
+            by = other.improvement
+            if base is not None and by is not None and not by.is_equal and by.percent < 0.0:
+                text = f"{capital(other.words)} gets worse: {design.name} is {by.words} than {base.name}."
+                yield Caveat(CaveatKind.WORSE, text)
+
+
+def _statuses(contest: Contest) -> Iterator[Caveat]:
+    shown = [*contest.winners, *filter(None, [contest.baseline])]
+    values = [(one.name, one.goal) for one in contest.chosen if one.goal.status.kind is not StatusKind.INFEASIBLE]
+    values += [(one.name, other) for one in shown if not one.unchosen for other in one.others]
+    by_reason: dict[tuple[str, str], list[tuple[str, IndexResult]]] = {}
+    for name, result in values:
+        if result.doubt(name):
+            by_reason.setdefault((result.doubt(""), result.index), []).append((name, result))
+    for several in by_reason.values():
+        names = list(dict.fromkeys(name for name, _ in several))
+        yield Caveat(CaveatKind.STATUS, several[0][1].doubt(format_list(names)))
+
+
+def _ties(contest: Contest) -> Iterator[Caveat]:
+    for other in contest.winners[2:]:
+        first = contest.winners[0]
+        if (by := contest.over(first, other)) is not None:
+            text = f"{first.name} and {other.name} are equally good too (difference {by.size})."
+            yield Caveat(CaveatKind.TIE, text, Severity.INFO)
+    base = contest.baseline
+    for one in contest.designs:
+        if base is None or one.is_baseline or one in contest.winners or not one.is_ranked:
+            continue
+        if (by := one.goal.improvement) is not None and by.is_equal:
+            text = f"{one.name} is no better than {base.name} (difference {by.size})."
+            yield Caveat(CaveatKind.TIE, text, Severity.INFO)
+
+
+def _limits(contest: Contest) -> Iterator[Caveat]:
+    best = min((one.goal.value for one in contest.winners), default=-1.0)
+    for design in contest.chosen:
+        broken = [f"{one.words} ({one.value})" for one in design.limits if one.kept is False]
+        if broken:
+            lower = isfinite(design.goal.value) and design.goal.value < best
+            text = f"{design.name} breaks {format_list(broken)}"
+            text += f"; its lower {design.goal.words}, {design.goal.text}, does not count" if lower else ""
+            yield Caveat(
+                CaveatKind.LIMIT, f"{text}.", Severity.WARNING if lower or design.is_baseline else Severity.INFO
+            )
+        elif design.breaks_limit:
+            reason = f": {design.goal.status.message.rstrip('.')}" if design.goal.status.message else ""
+            yield Caveat(CaveatKind.LIMIT, f"{design.name} has no feasible design{reason}.")
+        for one in unknown_limits(design):
+            reason = f" ({one.message.rstrip('.')})" if one.message else ""
+            yield Caveat(CaveatKind.LIMIT, f"Whether {design.name} keeps {one.words} is not known{reason}.")
+
+
+def unknown_limits(design: DesignResult) -> list[LimitResult]:
+    """Limits of which it is not known whether the design keeps them."""
+    return [one for one in design.limits if one.kept is None]
+
+
+def _neglected(contest: Contest) -> Iterator[Caveat]:
+    for what, names in _names_by(contest.chosen, lambda one: one.neglected).items():
+        remedy = f"; {contest.remedy} models it" if contest.remedy else ""
+        by = f" by {contest.method}" if contest.method else ""
+        yield Caveat(CaveatKind.NEGLECTED, f"{capital(what)} of {format_list(names)} is neglected{by}{remedy}.")
+
+
+def _bounds(contest: Contest) -> Iterator[Caveat]:
+    for design in contest.winners:
+        for text in design.at_bounds:
+            name, _, rest = text.partition(" is ")
+            sentence = f"{name} of {design.name} is {rest}; beyond it the design may be better."
+            yield Caveat(CaveatKind.BOUND, sentence, Severity.INFO)
+
+
+def _unchosen(contest: Contest) -> Iterator[Caveat]:
+    by_variables: dict[tuple[str, ...], list[DesignResult]] = {}
+    for design in contest.designs:
+        if design.unchosen:
+            by_variables.setdefault(design.unchosen, []).append(design)
+    for designs in by_variables.values():
+        end = "it is not ranked" if len(designs) == 1 else "they are not ranked"
+        yield Caveat(CaveatKind.UNCHOSEN, f"{unchosen_clause(designs)}; {end}.")
+
+
+def _names_by(designs: Iterable[DesignResult], words: Callable[[DesignResult], Iterable[str]]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for design in designs:
+        for what in words(design):
+            found.setdefault(what, []).append(design.name)
+    return found

@@ -1,0 +1,199 @@
+"""`decide`: designs ranked by one index, and the verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isfinite
+
+from inerter.decision.caveats import Caveat, Contest, Over, caveats_of, unchosen_clause, unknown_limits
+from inerter.decision.results import DesignResult, Improvement
+from inerter.figures.labels import capital, format_list
+from inerter.methods.ties import equally_least
+from inerter.statements import Severity, Statement
+
+
+class Answer(StrEnum):
+    """Reliability of a verdict."""
+
+    ANSWER = "answer"
+    DOUBT = "doubt"  # a value on which it depends is unreliable
+    NONE = "none"  # no design can be called the best
+
+
+@dataclass(frozen=True)
+class Verdict(Statement):
+    """Verdict in one sentence, with its caveats."""
+
+    text: str
+    answer: Answer
+    caveats: tuple[Caveat, ...] = ()
+
+    @property
+    def severity(self) -> Severity:
+        """Warning unless it is an answer."""
+        return Severity.INFO if self.answer is Answer.ANSWER else Severity.WARNING
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in words."""
+        return f"Not certain: {self.text}" if self.answer is Answer.DOUBT else self.text
+
+
+@dataclass(frozen=True)
+class Decision:
+    """Designs in their order, the rank of each (None if it is not ranked), the winners, and the verdict.
+
+    Designs that are equally good as the best one share rank 1.
+    """
+
+    designs: tuple[DesignResult, ...]
+    ranks: tuple[int | None, ...]
+    winners: tuple[DesignResult, ...]
+    verdict: Verdict
+
+
+def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", remedy: str = "") -> Decision:
+    """Rank designs by the goal, and state the verdict.
+
+    A design with a broken limit, an infinite or missing value, or a value that nobody has chosen is not ranked. `over`
+    gives the improvement of one design over another, or None; it is called for the best one only. `method` is the
+    method in words, `remedy` the name of one that models what it neglects.
+    """
+    ranked = sorted((one for one in designs if one.is_ranked), key=lambda one: one.goal.value)
+    winners = _winners(ranked, over)
+    rest = [one for one in ranked if one not in winners]
+    others = sorted((one for one in designs if one not in ranked), key=_order)
+    contest = Contest(designs, winners, over, method, remedy)
+    ranks = [*[1] * len(winners), *range(len(winners) + 1, len(ranked) + 1), *[None] * len(others)]
+    return Decision((*winners, *rest, *others), tuple(ranks), tuple(winners), _verdict(contest, rest))
+
+
+def _winners(ranked: Sequence[DesignResult], over: Over) -> list[DesignResult]:
+    """Designs that may have the lowest value, the simplest first."""
+    if not ranked:
+        return []
+    best, least = ranked[0], equally_least([one.goal.value for one in ranked])
+    found = [one for i, one in enumerate(ranked) if i in least or ((by := over(best, one)) is not None and by.is_equal)]
+    return sorted(found, key=lambda one: one.n_elements)
+
+
+def _order(design: DesignResult) -> tuple[bool, bool, float]:
+    """Order of designs that are not ranked: with a broken limit, without a value, not chosen."""
+    value, is_chosen = design.goal.value, not design.unchosen
+    return not is_chosen, not isfinite(value), value if is_chosen and isfinite(value) else 0.0
+
+
+def _verdict(contest: Contest, rest: Sequence[DesignResult]) -> Verdict:
+    text, is_answer = _sentence(contest, rest)
+    doubts = [one for one in contest.chosen if one.goal.is_doubtful and not one.breaks_limit]
+    unsure = doubts or any(map(unknown_limits, contest.winners))
+    answer = Answer.NONE if not is_answer else Answer.DOUBT if unsure else Answer.ANSWER
+    return Verdict(text, answer, tuple(caveats_of(contest)))
+
+
+def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool]:
+    """Sentence of the verdict, and whether it is an answer."""
+    base, winners = contest.baseline, contest.winners
+    unchosen = [one for one in contest.designs if one.unchosen]
+    if unchosen and len(unchosen) == len(contest.designs):
+        return f"{unchosen_clause(unchosen)}: choose values, or find the best ones.", False
+    if base is not None and base.unchosen:
+        return f"{unchosen_clause([base])}: nothing can be compared with it.", False
+    if not winners:
+        return _no_winner(contest, unchosen), False
+    if len(contest.designs) == 1:
+        goal, name = winners[0].goal, winners[0].name
+        return f"{capital(goal.words)} of {name} is {goal.text}; there is no other strut to compare it with.", False
+    if base in winners:
+        return _sentence_on_baseline(contest, rest, unchosen)
+    lead = winners[0]
+    by = lead.goal.improvement
+    if base is None or by is None or not isfinite(by.percent):
+        return _sentence_without_baseline(contest, rest), True
+    if base.breaks_limit and (by.is_equal or by.percent < 0.0):
+        compared = f"as good as {base.name}" if by.is_equal else f"{by.words} than {base.name}"
+        return (
+            f"{_best(contest)} in {lead.goal.words} of the struts that keep the limits{_friction(winners)}, "
+            f"{compared}, which does not keep them.",
+            True,
+        )
+    if len(winners) == 1:
+        return f"{lead.name} is {by.words} than {base.name} in {lead.goal.words}{_friction(winners)}.", True
+    return f"{_best(contest)} in {lead.goal.words}, {by.words} than {base.name}{_friction(winners)}.", True
+
+
+def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
+    """Sentence where no design is ranked."""
+    broken = [one for one in contest.chosen if one.breaks_limit]
+    if broken:
+        closest = min(broken, key=lambda one: one.excess)
+        worst = max((one for one in closest.limits if one.kept is False), key=lambda one: one.excess, default=None)
+        if worst is None:
+            return f"No strut keeps the limits: {format_list([one.name for one in broken])} cannot."
+        return (
+            f"No strut keeps the limits: {closest.name} is the closest, with {worst.of} {worst.value} (limit: "
+            f"{worst.side})."
+        )
+    if unchosen:
+        return f"{unchosen_clause(unchosen)}: choose values, or find the best ones."
+    if not contest.designs:
+        return "There is no strut to compare."
+    return f"No strut has a finite value of {contest.designs[0].goal.words}."
+
+
+def _sentence_on_baseline(
+    contest: Contest, rest: Sequence[DesignResult], unchosen: Sequence[DesignResult]
+) -> tuple[str, bool]:
+    """Sentence where the baseline is among the best."""
+    base = next(one for one in contest.winners if one.is_baseline)
+    equal, goal = [one for one in contest.winners if one is not base], base.goal.words
+    if equal:
+        names = [one.name for one in equal]
+        verb = "is" if len(equal) == 1 else "are"
+        difference = f" (difference {by.size})" if (by := _by(equal[0], base, contest.over)) is not None else ""
+        return f"{format_list(names)} {verb} as good as {base.name} in {goal}, and no better{difference}.", True
+    if rest:
+        by = rest[0].goal.improvement
+        worse = f"; {rest[0].name}, the next, is {by.words}" if by is not None and isfinite(by.percent) else ""
+        return f"No strut is better than {base.name} in {goal}{worse}.", True
+    if broken := [one.name for one in contest.chosen if one.breaks_limit]:
+        verb = "does" if len(broken) == 1 else "do"
+        return f"{base.name} is the only strut that keeps the limits; {format_list(broken)} {verb} not.", True
+    if unchosen:
+        return f"{unchosen_clause(unchosen)}: choose values, or find the best ones.", False
+    return f"No strut but {base.name} has a finite value of {goal}.", True
+
+
+def _sentence_without_baseline(contest: Contest, rest: Sequence[DesignResult]) -> str:
+    """Sentence where there is no baseline, or where it has no finite value."""
+    lead, base = contest.winners[0], contest.baseline
+    goal = lead.goal
+    text = f"{_best(contest)} in {goal.words}{_friction(contest.winners)}, {goal.text}"
+    by = contest.over(lead, rest[0]) if rest else None
+    if by is not None and isfinite(by.percent) and by.percent > 0.0:
+        text += f", {by.words} than {rest[0].name}"
+    if base is not None and not isfinite(base.goal.value):
+        text += f"; {base.name} has no finite value"
+    return f"{text}."
+
+
+def _best(contest: Contest) -> str:
+    """Subject and verb: the best design, or several that are equally good."""
+    winners = contest.winners
+    if len(winners) == 1:
+        return f"{winners[0].name} is best"
+    by = _by(winners[0], winners[1], contest.over)
+    difference = f" (difference {by.size})" if by is not None else ""
+    return f"{format_list([one.name for one in winners])} are equally good{difference}"
+
+
+def _by(one: DesignResult, other: DesignResult, over: Over) -> Improvement | None:
+    return one.goal.improvement if other.is_baseline else over(one, other)
+
+
+def _friction(winners: Sequence[DesignResult]) -> str:
+    """Clause on the friction and backlash that the values include; empty if there is none."""
+    kinds = list(dict.fromkeys(words.split()[0] for one in winners for words in one.modelled))
+    return f", with {'its' if len(winners) == 1 else 'their'} {format_list(kinds)}" if kinds else ""

@@ -1,0 +1,76 @@
+"""Properties of a study that a decision is about: its goal in words, the method, neglected elements, active bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isclose
+
+from inerter.figures.labels import format_list, title_with_name
+from inerter.files.study.limits import key_in_words
+from inerter.files.study.method_problems import simulating_method
+from inerter.files.study.sections import OVER
+from inerter.files.study.study import Study
+from inerter.formatting import format_quantity, format_share
+from inerter.methods.method import NonlinearitySupport
+from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of
+from inerter.networks.elements import Free
+from inerter.systems.graph import switching_parts
+from inerter.vehicle.mechanism import Mechanism
+
+_AT_BOUND = 1e-6  # relative distance to a bound
+
+
+def decisive_method(methods: Sequence[str]) -> str:
+    """First of the methods that models friction, else the first."""
+    return next((method for method in methods if not is_blind(method)), methods[0])
+
+
+def remedy_of(method: str) -> str:
+    """Name of a method that models what this one neglects; empty if it neglects nothing."""
+    return "" if nonlinearities_of(method) is NonlinearitySupport.BOTH else simulating_method()
+
+
+def goal_sentence(study: Study, index: str, method: str) -> str:
+    """Goal in words: index, conditions, quantile, limits and method."""
+    over = ""
+    if study.conditions:
+        how = "mean over" if study.over == OVER[0] else "worst of"
+        over = f", {how} {len(study.conditions)} operating conditions"
+    quantile = (
+        "" if study.quantile is None else f", at the {format_share(study.quantile, 4)} quantile of its tolerances"
+    )
+    limits = [
+        f"{key_in_words(one.of)} {one.sense.replace('_', ' ')} {format_quantity(one.value, one.unit, digits=12)}"
+        for one in study.limits
+    ]
+    within = f", with {format_list(limits)}" if limits else ""
+    what = title_with_name(study.index(index).title, index)
+    return f"Lowest {what}{over}{quantile}{within}, by {brief_words_of(method)}."
+
+
+def nonlinear_elements(mechanism: Mechanism, method: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Friction and gaps of a mechanism that the method models, and those that it neglects, in words."""
+    blind = is_blind(method)
+    found = dict.fromkeys(
+        f"{part.key} {element.label}" if element.label != part.key else part.key
+        for mount in mechanism.mounts()
+        for element in mount.network.elements()
+        for part in switching_parts(element)
+        if part.acts
+    )
+    return ((), tuple(found)) if blind else (tuple(found), ())
+
+
+def at_bounds(free: Mapping[str, Free], values: Mapping[str, float], units: Mapping[str, str]) -> tuple[str, ...]:
+    """Clauses on the values of design variables that are at a bound."""
+    found = []
+    for name, one in free.items():
+        for bound, end in (("lower", one.lower), ("upper", one.upper)):
+            if end > 0.0 and isclose(values[name], end, rel_tol=_AT_BOUND):
+                found.append(bound_clause(name, bound, end, units[name]))
+    return tuple(found)
+
+
+def bound_clause(name: str, bound: str, value: float, unit: str) -> str:
+    """Clause on a design variable at its lower or upper bound."""
+    return f"{name} is at its {bound} bound, {format_quantity(value, unit)}"

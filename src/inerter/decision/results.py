@@ -1,0 +1,122 @@
+"""Results of designs that a decision compares: values, improvements over the baseline, and limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, isfinite, isnan, nan
+
+from inerter.errors import OK, Status, StatusKind
+from inerter.figures.labels import NOTICEABLE, capital, title_with_name
+from inerter.formatting import format_percent, format_quantity
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """Improvement of one design over another in an index [%], positive where its value is lower."""
+
+    percent: float
+    error: float = nan  # standard error [%]
+    bound: float = nan  # largest other error [%]
+    is_tie: bool = False  # whether the difference is not significant
+    status: Status = OK
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether neither design is better: a difference that is not significant, or that rounds to 0.0 %."""
+        return self.is_tie or abs(self.percent) < NOTICEABLE
+
+    @property
+    def size(self) -> str:
+        """Size of the difference as text, without a sign."""
+        return format_percent(abs(self.percent), self.error, self.bound).removeprefix("+")
+
+    @property
+    def words(self) -> str:
+        """Difference in words, to follow "is" and to precede "than"."""
+        return f"{self.size} {'better' if self.percent > 0.0 else 'worse'}"
+
+
+@dataclass(frozen=True)
+class IndexResult:
+    """Value of an index of one design, and its improvement over the baseline; None if they cannot be compared."""
+
+    index: str
+    title: str
+    unit: str
+    value: float
+    status: Status = OK
+    standard_error: float = nan
+    error_bound: float = nan
+    improvement: Improvement | None = None
+
+    @property
+    def words(self) -> str:
+        """Title of the index with its name."""
+        return title_with_name(self.title, self.index)
+
+    @property
+    def text(self) -> str:
+        """Value with unit and uncertainty."""
+        return format_quantity(self.value, self.unit, error=self.standard_error, bound=self.error_bound)
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the value is nan, or finite with a status that is not ok."""
+        return isnan(self.value) or (isfinite(self.value) and not self.status.ok)
+
+    def doubt(self, of: str) -> str:
+        """Sentence on a value of the design `of` that is unreliable, infinite or missing; empty for a reliable one."""
+        reason = f" ({str(self.status).rstrip('.')})" if not self.status.ok else ""
+        if isnan(self.value):
+            return f"{capital(self.words)} of {of} is not computed{reason}."
+        if not isfinite(self.value):
+            return f"{capital(self.words)} of {of} is infinite{reason}."
+        return f"{capital(self.words)} of {of} is unreliable{reason}." if reason else ""
+
+
+@dataclass(frozen=True)
+class LimitResult:
+    """Limited quantity of a design: `kept` is None where its value is not known."""
+
+    of: str  # the quantity, in words
+    side: str  # "at most 8 mm"
+    value: str  # text with unit
+    kept: bool | None
+    excess: float = inf  # logarithm of value over limit, towards the forbidden side
+    message: str = ""
+
+    @property
+    def words(self) -> str:
+        """Limit in words."""
+        return f"{self.of} {self.side}"
+
+
+@dataclass(frozen=True)
+class DesignResult:
+    """Results of one design; `modelled` and `neglected` are its friction and gaps, by the method's support."""
+
+    name: str
+    goal: IndexResult
+    others: tuple[IndexResult, ...] = ()
+    limits: tuple[LimitResult, ...] = ()
+    unchosen: tuple[str, ...] = ()
+    at_bounds: tuple[str, ...] = ()  # "c is at its upper bound, 10 kN s/m"
+    modelled: tuple[str, ...] = ()
+    neglected: tuple[str, ...] = ()
+    is_baseline: bool = False
+    n_elements: int = 0
+
+    @property
+    def breaks_limit(self) -> bool:
+        """Whether a limit is broken, or no design keeps the limits."""
+        return self.goal.status.kind is StatusKind.INFEASIBLE or any(one.kept is False for one in self.limits)
+
+    @property
+    def is_ranked(self) -> bool:
+        """Whether all values are chosen, no limit is broken, and the index has a finite value."""
+        return not self.unchosen and not self.breaks_limit and isfinite(self.goal.value)
+
+    @property
+    def excess(self) -> float:
+        """Excess of the limit that is broken most."""
+        return max((one.excess for one in self.limits), default=inf)

@@ -1,0 +1,145 @@
+"""The panel `decision`: its numbers are those of the library, and its words follow from them."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from itertools import pairwise
+from typing import Any
+
+import pytest
+from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from starlette.testclient import TestClient
+
+import inerter as it
+from inerter.app.answers import answer_panel
+from inerter.app.documents import study_from
+
+ROW = ("value", "standard_error", "decimals", "status", "message", "improvement_percent", "improvement_error_percent")
+BLIND, SEEING = "norm", "statistical-linearisation"
+
+
+def sentences(answer: dict[str, Any]) -> list[str]:
+    """The verdict and its caveats."""
+    verdict = answer["verdict"]
+    return [verdict["sentence"], *(one["sentence"] for one in verdict["caveats"])]
+
+
+@settings(max_examples=4)
+@given(
+    c1=st.floats(300.0, 9e3),
+    c=st.floats(300.0, 9e3),
+    b=st.floats(2.0, 900.0),
+    method=st.sampled_from([BLIND, SEEING]),
+)
+def test_rows_have_the_numbers_of_the_indices(client: TestClient, c1: float, c: float, b: float, method: str) -> None:
+    """Values, improvements, statuses and limits of the goal and of the others."""
+    body = {"study": DOCUMENT, "values": {"S1": {"c": c1}, "S3": {"c": c, "b": b}}, "methods": [method]}
+    told = ask(client, "panel/decision", **body, index="J3")
+    shown = {
+        d["layout"]: {r["index"]: r for r in d["results"]} for d in ask(client, "panel/indices", **body)["designs"]
+    }
+    assert (told["goal"]["index"], told["method"], len(told["rows"])) == ("J3", method, 2)
+    for row in told["rows"]:
+        there = shown[row["layout"]]
+        assert {key: row[key] for key in ROW} == {key: there["J3"][key] for key in ROW}
+        (other,) = row["others"]
+        assert {key: other[key] for key in (*ROW, "tie")} == {key: there["J1"][key] for key in (*ROW, "tie")}
+    assert [row["rank"] for row in told["rows"]] == [1, 2]
+    assert all(one["value"] <= other["value"] for one, other in pairwise(told["rows"]))
+    study = study_from(DOCUMENT)
+    first, second = (
+        study.design(name).with_values(values) for name, values in (("S1", {"c": c1}), ("S3", {"c": c, "b": b}))
+    )
+    two = it.compare(second, first, study.index("J3"), study.method(method))
+    sentence = told["verdict"]["sentence"].removeprefix("Not certain: ")
+    (size,) = re.findall(r"([\d.]+) %", sentence)
+    assert abs(float(size) - abs(two.percent)) <= (0.05 if "." in size else 0.5) * (1.0 + 1e-9)
+    best = told["rows"][0]["layout"]
+    assert (two.percent < 0.0) == (best == "S3")
+    assert sentence.startswith(f"S3 is {size} % better" if best == "S3" else "No strut is better")
+
+
+def test_a_method_that_models_friction_says_so_and_the_other_warns(client: TestClient) -> None:
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    blind, seeing = (
+        ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[method]) for method in (BLIND, SEEING)
+    )
+    assert "Friction f of S3 is neglected by exact norms; expected-value models it." in sentences(blind)
+    assert "friction" not in " ".join(sentences(seeing)).replace("with its friction", "")
+    several = ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[BLIND, SEEING])
+    assert {**several, "sequence": 0} == {**seeing, "sequence": 0}
+
+
+def test_values_that_nobody_has_chosen_are_not_ranked(client: TestClient) -> None:
+    """Without a percentage, and without the order of the middles of their bounds."""
+    told = ask(client, "panel/decision", study=DOCUMENT)
+    assert [(row["layout"], row["rank"], row["improvement_percent"]) for row in told["rows"]] == [
+        ("S1", None, None),
+        ("S3", None, None),
+    ]
+    assert told["verdict"]["severity"] == "none"
+    assert sentences(told)[0].startswith("No value of S1 and S3 has been chosen yet")
+    one = ask(client, "panel/decision", study=DOCUMENT, values={"S1": {"c": 1500.0}})
+    assert sentences(one)[0].startswith("No value of c and b of S3 has been chosen yet")
+    assert "%" not in " ".join(sentences(one))
+
+
+@pytest.mark.parametrize("stiffness", [2e4, 9e4])
+def test_a_design_that_breaks_a_limit_is_not_the_best(client: TestClient, stiffness: float) -> None:
+    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    values = {"S1": {"k": 70e3, "c": 3e3}, "S3": {"k": stiffness, "c": 3e3, "b": 500.0}}
+    told = ask(client, "panel/decision", study=document, values=values, index="comfort")
+    rows = {row["layout"]: row for row in told["rows"]}
+    kept = all(limit["kept"] for limit in rows["S3"]["limits"])
+    assert kept == (stiffness > 60e3)
+    assert (rows["S3"]["rank"] is None) == (not kept)
+    text = " ".join(sentences(told))
+    assert ("S3 breaks" in text and "static stiffness of strut at least 60 kN/m (20 kN/m)" in text) == (not kept)
+    assert "suspension travel at most 8 mm" in told["goal"]["sentence"]
+
+
+def test_a_value_at_its_bound_is_told(client: TestClient) -> None:
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": "1000 kg"}}
+    told = ask(client, "panel/decision", study=DOCUMENT, values=values)
+    at_bound = "b of S3 is at its upper bound, 1000 kg; beyond it the design may be better."
+    assert (at_bound in sentences(told)) == (told["rows"][0]["layout"] == "S3")
+
+
+def test_a_baseline_that_is_not_among_the_designs_is_ranked_too(client: TestClient) -> None:
+    designs = [{"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}]
+    baseline = {"layout": "S1", "values": {"c": 1500.0}, "name": "kept"}
+    told = ask(client, "panel/decision", study=DOCUMENT, designs=designs, baseline=baseline)
+    assert {row["name"]: row["is_baseline"] for row in told["rows"]} == {"S3": False, "kept": True}
+    assert "kept" in sentences(told)[0]
+
+
+def test_a_value_that_is_not_certain_is_not_an_answer(client: TestClient) -> None:
+    """Linearisation of friction that sticks for much of the time is told to be inaccurate, in the verdict too."""
+    document = changed(elements={"f": "100 N"})
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    told = ask(client, "panel/decision", study=document, values=values, methods=[SEEING], index="J1")
+    row = next(row for row in told["rows"] if row["layout"] == "S3")
+    assert row["status"] == "inaccurate"
+    assert told["verdict"]["severity"] == "doubt"
+    assert any("Ride comfort (J1) of S3 is unreliable (inaccurate" in text for text in sentences(told))
+
+
+@pytest.mark.parametrize("name", ["quarter-car", "absorber", "conditions", "half-car", "seat", "tolerances"])
+def test_every_example_has_a_verdict(name: str) -> None:
+    """At the middles of the bounds taken as chosen: words without missing numbers."""
+    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    body = {"study": document, "methods": ["norm"]}
+    middle = {d["layout"]: {k: v["text"] for k, v in d["values"].items()} for d in _indices(body)}
+    told = answer_panel("decision", {**body, "values": middle})
+    assert told["verdict"]["severity"] in ("answer", "doubt")
+    for text in [told["goal"]["sentence"], *sentences(told)]:
+        assert text.endswith(".")
+        assert not {"nan", "None", "n/a", "inf"} & set(text.replace(",", " ").split())
+
+
+def _indices(body: dict[str, Any]) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = answer_panel("indices", body)["designs"]
+    return found

@@ -1,0 +1,230 @@
+"""Verdicts on random results: what they may claim, and what they must not leave out."""
+
+from __future__ import annotations
+
+from math import inf, isfinite, nan
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from inerter.decision.caveats import CaveatKind, Over
+from inerter.decision.decide import Answer, Decision, decide
+from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
+from inerter.errors import OK, Status, StatusKind
+
+STATUSES = [OK, OK, OK, Status(StatusKind.INACCURATE, "it sticks"), Status(StatusKind.UNSTABLE, "pole at 3 rad/s")]
+VALUES = st.sampled_from([1.0, 1.0 + 1e-12, 1.0003, 1.01, 1.3, 2.0, 2.5, inf, nan])
+LIMITS = st.builds(
+    lambda kept, excess: LimitResult("travel", "at most 8 mm", "9 mm", kept, excess),
+    st.sampled_from([True, True, False, None]),
+    st.floats(0.0, 1.0),
+)
+
+
+def improvement(one: float, other: float, scatter: float) -> Improvement | None:
+    """Improvement of a value over another, of which the difference has this standard error."""
+    if not isfinite(one) or not isfinite(other):
+        return None
+    percent = 100.0 * (1.0 - one / other)
+    return Improvement(percent, scatter or nan, is_tie=abs(percent) <= 2.0 * scatter + 1e-7)
+
+
+@st.composite
+def results(draw: st.DrawFn) -> tuple[list[DesignResult], Over]:
+    """Designs with values, limits and statuses of every kind, compared with a baseline or without one."""
+    count, scatter = draw(st.integers(1, 5)), draw(st.sampled_from([0.0, 0.0, 0.3, 20.0]))
+    base = draw(st.integers(-1, count - 1))
+    rows = [(draw(VALUES), draw(VALUES), draw(st.sampled_from(STATUSES))) for _ in range(count)]
+    unchosen = [draw(st.sampled_from([(), (), (), ("c", "b")])) for _ in range(count)]
+
+    def compared(i: int, k: int) -> Improvement | None:
+        if base in (-1, i) or unchosen[i] or unchosen[base]:
+            return None
+        return improvement(rows[i][k], rows[base][k], scatter)
+
+    designs = [
+        DesignResult(
+            name=f"S{i + 1}",
+            goal=IndexResult("J1", "ride comfort", "m/s^2", rows[i][0], rows[i][2], improvement=compared(i, 0)),
+            others=(IndexResult("J3", "dynamic tyre load", "N", rows[i][1], improvement=compared(i, 1)),),
+            limits=tuple(draw(st.lists(LIMITS, max_size=2))),
+            unchosen=unchosen[i],
+            at_bounds=draw(st.sampled_from([(), ("c is at its upper bound, 10 kN s/m",)])),
+            neglected=draw(st.sampled_from([(), ("friction f",)])),
+            is_baseline=i == base,
+            n_elements=draw(st.integers(2, 4)),
+        )
+        for i in range(count)
+    ]
+    return designs, lambda one, other: improvement(one.goal.value, other.goal.value, scatter)
+
+
+def kinds(decision: Decision, of: str) -> set[CaveatKind]:
+    """Kinds of the caveats that name a design."""
+    return {one.kind for one in decision.verdict.caveats if of in one.sentence.replace(",", " ").split()}
+
+
+@given(results())
+def test_a_winner_keeps_the_limits_and_has_a_value(found: tuple[list[DesignResult], Over]) -> None:
+    designs, over = found
+    decision = decide(designs, over)
+    for one in decision.winners:
+        assert isfinite(one.goal.value)
+        assert not one.unchosen
+        assert all(limit.kept is not False for limit in one.limits)
+    assert sorted(one.name for one in decision.designs) == sorted(one.name for one in designs)
+    ranked = [one for one, rank in zip(decision.designs, decision.ranks, strict=True) if rank is not None]
+    assert ranked == list(decision.designs[: len(ranked)])
+    assert {one.name for one in ranked} == {one.name for one in designs if one.is_ranked}
+    later = [one.goal.value for one in ranked[len(decision.winners) :]]
+    assert later == sorted(later)
+
+
+@given(results())
+def test_an_unreliable_value_is_never_an_answer(found: tuple[list[DesignResult], Over]) -> None:
+    """A doubtful value of any design that is compared makes the verdict doubtful, and is told."""
+    decision = decide(*found)
+    verdict = decision.verdict
+    for one in decision.designs:
+        if not one.unchosen and one.goal.is_doubtful and not one.breaks_limit:
+            assert verdict.answer is not Answer.ANSWER
+        if not one.unchosen and (one.goal.is_doubtful or not isfinite(one.goal.value)):
+            assert CaveatKind.STATUS in kinds(decision, one.name)
+    for one in decision.winners:
+        if any(limit.kept is None for limit in one.limits):
+            assert verdict.answer is not Answer.ANSWER
+    assert (verdict.answer is Answer.DOUBT) == verdict.sentence.startswith("Not certain: ")
+
+
+@given(results())
+def test_no_caveat_is_left_out(found: tuple[list[DesignResult], Over]) -> None:
+    decision = decide(*found)
+    order = [list(CaveatKind).index(one.kind) for one in decision.verdict.caveats]
+    assert order == sorted(order)
+    for one in decision.designs:
+        told = kinds(decision, one.name)
+        if one.unchosen:
+            assert CaveatKind.UNCHOSEN in told
+            continue
+        assert not one.neglected or CaveatKind.NEGLECTED in told
+        assert all(limit.kept for limit in one.limits) or CaveatKind.LIMIT in told
+    for one in decision.winners:
+        by = one.others[0].improvement
+        assert not one.at_bounds or CaveatKind.BOUND in kinds(decision, one.name)
+        assert by is None or by.is_equal or by.percent > 0.0 or CaveatKind.WORSE in kinds(decision, one.name)
+
+
+@given(results())
+def test_what_is_equally_good_is_not_called_better(found: tuple[list[DesignResult], Over]) -> None:
+    designs, over = found
+    decision = decide(designs, over)
+    text = decision.verdict.sentence
+    assert text.endswith(".")
+    assert not {"nan", "None", "n/a"} & set(text.replace(",", " ").split())
+    base = next((one for one in designs if one.is_baseline), None)
+    for one in decision.winners:
+        by = one.goal.improvement
+        if base is not None and by is not None and by.is_equal:
+            assert f"better than {base.name}" not in text.replace("No strut is better", "")
+    if len(decision.winners) > 1 and decision.verdict.answer is not Answer.NONE:
+        assert "equally good" in text or " as good as " in text
+    for one in decision.winners:
+        by = over(min(decision.winners, key=_value), one)
+        assert decision.winners[0] is one or by is None or by.is_equal
+
+
+def _value(one: DesignResult) -> float:
+    return one.goal.value
+
+
+@given(results(), st.randoms(use_true_random=False))
+def test_the_order_of_the_designs_decides_nothing(found: tuple[list[DesignResult], Over], random: object) -> None:
+    """But the order of those that are equally good, and of those that are not ranked."""
+    designs, over = found
+    mixed = list(designs)
+    random.shuffle(mixed)  # type: ignore[attr-defined]
+    one, other = decide(designs, over), decide(mixed, over)
+    assert {w.name for w in one.winners} == {w.name for w in other.winners}
+    assert one.verdict.answer is other.verdict.answer
+    assert len(one.verdict.caveats) == len(other.verdict.caveats)
+
+
+def design(name: str, value: float, **more: object) -> DesignResult:
+    by = more.pop("by", None)
+    status = more.pop("status", OK)
+    goal = IndexResult("J1", "ride comfort", "m/s^2", value, status, improvement=by)  # type: ignore[arg-type]
+    return DesignResult(name, goal, **more)  # type: ignore[arg-type]
+
+
+BASE = design("S1", 3.0, is_baseline=True)
+BROKEN = LimitResult("suspension travel", "at most 8 mm", "8.4 mm", False, 0.05)
+BETTER = Improvement(16.0, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("designs", "answer", "sentence"),
+    [
+        (
+            [BASE, design("S3", 2.52, by=BETTER, modelled=("friction f",))],
+            Answer.ANSWER,
+            "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), with its friction.",
+        ),
+        (
+            [BASE, design("S2", 2.7, by=Improvement(10.0)), design("S3", 2.703, by=Improvement(9.9))],
+            Answer.ANSWER,
+            "S2 and S3 are equally good (difference 0.10 +- 0.30 %) in ride comfort (J1), 10.0 % better than S1.",
+        ),
+        (
+            [BASE, design("S3", 2.999, by=Improvement(0.03))],
+            Answer.ANSWER,
+            "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.0 %).",
+        ),
+        (
+            [BASE, design("S3", 3.3, by=Improvement(-10.0))],
+            Answer.ANSWER,
+            "No strut is better than S1 in ride comfort (J1); S3, the next, is 10.0 % worse.",
+        ),
+        (
+            [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 3.3, by=Improvement(-10.0))],
+            Answer.ANSWER,
+            "S3 is best in ride comfort (J1) of the struts that keep the limits, 10.0 % worse than S1, which does not "
+            "keep them.",
+        ),
+        (
+            [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 2.0, by=BETTER, limits=(BROKEN,))],
+            Answer.NONE,
+            "No strut keeps the limits: S1 is the closest, with suspension travel 8.4 mm (limit: at most 8 mm).",
+        ),
+        (
+            [BASE, design("S3", 2.0, unchosen=("c", "b"))],
+            Answer.NONE,
+            "No value of c and b of S3 has been chosen yet: choose values, or find the best ones.",
+        ),
+        (
+            [BASE, design("S3", 2.52, by=BETTER, status=Status(StatusKind.INACCURATE, "it sticks"))],
+            Answer.DOUBT,
+            "Not certain: S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1).",
+        ),
+        (
+            [design("S1", nan, is_baseline=True, status=Status(StatusKind.FAILED, "no")), design("S3", 2.5)],
+            Answer.DOUBT,
+            "Not certain: S3 is best in ride comfort (J1), 2.5 m/s^2; S1 has no finite value.",
+        ),
+        (
+            [design("S2", 2.5), design("S3", 2.6)],
+            Answer.ANSWER,
+            "S2 is best in ride comfort (J1), 2.5 m/s^2, 3.8 % better than S3.",
+        ),
+        ([BASE], Answer.NONE, "Ride comfort (J1) of S1 is 3 m/s^2; there is no other strut to compare it with."),
+    ],
+    ids=lambda one: one.value if isinstance(one, Answer) else "",
+)
+def test_sentences(designs: list[DesignResult], answer: Answer, sentence: str) -> None:
+    def over(one: DesignResult, other: DesignResult) -> Improvement | None:
+        percent = 100.0 * (1.0 - one.goal.value / other.goal.value)
+        close = 0.0 < abs(percent) < 0.2
+        return Improvement(-0.1, 0.3, is_tie=True) if close else Improvement(percent)
+
+    told = decide(designs, over).verdict
+    assert (told.answer, told.sentence) == (answer, sentence)

@@ -1,0 +1,145 @@
+// The decision across the top: vehicle, goal, strut, what it bears, each with its present answer, and the verdict.
+
+import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
+import { Select } from "../parts/controls.js";
+import { judging, methodTitle, methodsOf } from "../methods.js";
+import { answerOf, designOf, goalOf, soughtAnswer } from "../questions.js";
+import { unchosenIn } from "../library.js";
+import { quantity, takenApart } from "../state/scale.js";
+import { AskedPanel } from "./asked.js";
+import { indicesOf } from "./answers.js";
+import { marginTold } from "./margins.js";
+import { problemsOf } from "./values.js";
+
+/** @import { Store, State } from "../state/store.js" */
+/** @typedef {{sentence: string, severity: string}} Caveat */
+
+/** @param {{store: Store}} props */
+export function DecisionLine({ store }) {
+  const state = store.get();
+  const blank = Object.keys(state.history.present.study).length === 0;
+  const present = blank ? 1 : state.view.tab === "margins" ? 4 : 3;
+  /** @param {number} number @param {string} title @param {string} answer */
+  const step = (number, title, answer) => html`<div class="step"
+    aria-current=${present === number ? "step" : undefined}><button type="button" id=${`step-${number}`}
+      disabled=${blank && number > 1} onClick=${() => goTo(store, number)}><small>${number} ${title}</small><b
+      title=${answer}>${answer}</b></button></div>`;
+  return html`<nav class="decision" aria-label="Decision">
+    ${step(1, "Vehicle", blank ? "Choose one" : vehicleOf(state))}
+    ${blank ? step(2, "Goal", "Comfort or road holding") : html`<${Goal} store=${store} />`}
+    ${step(3, "Strut", blank ? "Ranked" : strutOf(state))}
+    ${step(4, "Break-even", blank ? "Friction, backlash" : marginTold(soughtAnswer(state, "margins").value))}
+    <${Verdict} state=${state} blank=${blank} />
+  </nav>`;
+}
+
+/** Shows the place where a step is changed, and gives it the focus. @param {Store} store @param {number} number */
+export function goTo(store, number) {
+  if (number === 4) store.look({ tab: "margins" });
+  const place = ["", "#vehicle-values summary, .cards button", "#step-2", ".answers .on .pick", "#tab-margins"][number];
+  requestAnimationFrame(() => {
+    const found = /** @type {HTMLElement | null} */ (document.querySelector(place));
+    found?.scrollIntoView({ block: "nearest" });
+    found?.focus();
+    if (number === 2) found?.click();
+  });
+}
+
+/** The vehicle and its speed. @param {State} state */
+function vehicleOf({ history }) {
+  const { vehicle, road } = history.present.study;
+  const model = String(vehicle?.model ?? "Own vehicle").replaceAll("-", " ");
+  const apart = takenApart(road?.speed);
+  return [model.charAt(0).toUpperCase() + model.slice(1), apart && quantity(apart.number, apart.unit)]
+    .filter(Boolean).join(", ");
+}
+
+/** The strut that is edited, and its place in the ranking. @param {State} state */
+function strutOf(state) {
+  const document = state.history.present;
+  if (document.layout === "") return "None";
+  if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, values not chosen`;
+  const { is, value } = answerOf(state, "decision");
+  /** @type {any[]} */
+  const rows = value?.rows ?? [];
+  const row = rows.find(({ layout }) => layout === document.layout);
+  return is === "current" && row?.rank ? `${document.layout}, ${row.rank} of ${rows.length}` : document.layout;
+}
+
+/** What is to be least, by which method, and what is asked besides. @param {{store: Store}} props */
+function Goal({ store }) {
+  const state = store.get();
+  const indices = indicesOf(state);
+  const goal = indices.find(({ symbol }) => symbol === goalOf(state));
+  const answer = goal ? [...new Set([goal.symbol, goal.title])].join(", ") : "None";
+  return html`<details class="menu step">
+    <summary id="step-2"><small>2 Goal</small><b title=${answer}>${answer}</b></summary>
+    <div class="menu-body">
+      <fieldset><legend>Index to be minimised</legend>
+        ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
+          checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
+          ${title === symbol ? "" : title} <b>${symbol}</b></label>`)}</fieldset>
+      <${Select} label="Method" value=${judging(state)?.name}
+        choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
+        set=${(/** @type {string} */ method) => store.look({ method })} />
+      <${AskedPanel} store=${store} />
+    </div></details>`;
+}
+
+/** The verdict: a sentence of the library, and what speaks against it. @param {{state: State, blank: boolean}} props */
+function Verdict({ state, blank }) {
+  if (blank) return html`<section class="verdict wait" aria-label="Verdict" tabindex="-1" id="verdict">
+    <b>No study is open</b></section>`;
+  const { is, value, sentence } = answerOf(state, "decision");
+  const [problem] = problemsOf(state);
+  /** @type {{sentence: string, severity: string, caveats: Caveat[]} | undefined} */
+  const verdict = value?.verdict;
+  const failed = is === "none" ? (problem?.sentence ?? sentence ?? "Not computed: the study has no index.") : "";
+  const kind = is === "coming" ? "wait" : failed ? "none" : (verdict?.severity ?? "answer");
+  const told = failed || verdict?.sentence || "Under way";
+  return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
+    data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
+    <${Caveats} key=${told} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></section>`;
+}
+
+/** The caveats, as many as there is room for; the others by a button that counts them.
+ * @param {{caveats: Caveat[]}} props */
+function Caveats({ caveats }) {
+  const line = useRef(/** @type {HTMLDivElement | null} */ (null));
+  const [fit, setFit] = useState(caveats.length);
+  useLayoutEffect(() => {
+    const place = line.current;
+    if (!place) return undefined;
+    const look = () => setFit(fitting(place));
+    const sized = new ResizeObserver(look);
+    sized.observe(place);
+    return () => sized.disconnect();
+  }, [JSON.stringify(caveats)]);
+  if (caveats.length === 0) return null;
+  const left = caveats.length - fit;
+  return html`<div class="caveats" ref=${line}>
+    ${caveats.map(({ sentence, severity }, i) => html`<span class="caveat" key=${sentence} title=${sentence}
+      data-severity=${severity} hidden=${i >= fit && i > 0}>${sentence}</span>`)}
+    <details class="menu more"><summary id="caveats-all">${left > 0 ? `${left} more` : "All"}</summary>
+      <ul class="menu-body">${caveats.map(({ sentence, severity }) => html`<li key=${sentence}
+        data-severity=${severity}>${sentence}</li>`)}</ul></details></div>`;
+}
+
+const OTHERS = 64; // [px] of the button that counts those for which there is no room
+
+/** How many caveats fit into the line, at least one. @param {HTMLElement} line */
+function fitting(line) {
+  const room = line.clientWidth - OTHERS;
+  let used = 0;
+  let fit = 0;
+  for (const each of line.querySelectorAll(":scope > .caveat")) {
+    const chip = /** @type {HTMLElement} */ (each);
+    const hidden = chip.hidden;
+    chip.hidden = false;
+    used += chip.scrollWidth + 6;
+    chip.hidden = hidden;
+    if (used > room && fit > 0) break;
+    fit += 1;
+  }
+  return Math.max(1, fit);
+}

@@ -1,0 +1,168 @@
+// The first screen: begin with a question, with a vehicle, with a file, or with what was open before.
+
+import { html, useEffect, useState } from "../parts/html.js";
+import { canonical } from "../network/algebra.js";
+import { drawing, pathOf } from "../network/drawing.js";
+import { open, openedBefore } from "../remembering.js";
+import { openStudy } from "../working.js";
+import { symbolPath } from "./sketch.js";
+
+/** @import { Store } from "../state/store.js" */
+/** @import { Api } from "../api.js" */
+/** @typedef {{name: string, study: any, tree: any, kinds: {[name: string]: any}, free: boolean}} Example */
+
+/** What a study asks beyond its designs, by the keys of its section `study`. @type {[string, string][]} */
+const ASKED = [["sweep", "Where is it worth it?"], ["tolerance", "What if values scatter?"],
+  ["budgets", "How much friction or backlash does it bear?"], ["trade_off", "What does one index cost the other?"],
+  ["conditions", "What is best over all operating conditions?"], ["subject_to", "What is best within constraints?"]];
+
+/** What is asked of a vehicle. @type {{[model: string]: string}} */
+const OF_VEHICLE = { "quarter-car": "Which strut for a quarter car?", "half-car": "Two axles, one road",
+  "full-car": "Four wheels and anti-roll bars", absorber: "A vibration absorber" };
+
+/** Vehicles to begin with. @type {[string, string][]} */
+const VEHICLES = [["quarter-car", "Quarter car"], ["half-car", "Half car"], ["full-car", "Full car"],
+  ["mechanism", "Own vehicle, of masses and struts"]];
+
+/** The question of an example; its own title where it asks nothing that is listed.
+ * @param {{study: any, free: boolean}} example @returns {string} */
+function questionOf({ study, free }) {
+  if (free) return "Which network is the best of all?";
+  const asked = ASKED.find(([key]) => study.study?.[key] !== undefined || study[key] !== undefined);
+  return asked?.[1] ?? OF_VEHICLE[study.vehicle?.model] ?? study.title;
+}
+
+const ORDER = [...Object.values(OF_VEHICLE), ...ASKED.map(([, question]) => question)];
+
+/** Whether an example is that of its vehicle, and asks nothing beside. @param {Example} example */
+const isPlain = ({ name, study }) => name === study.vehicle?.model;
+
+/** The example to begin with a vehicle. @param {Example[]} examples @param {string} model */
+function beginningWith(examples, model) {
+  const all = examples.filter(({ study, free }) => study.vehicle?.model === model && !free);
+  const size = (/** @type {Example} */ { study }) => JSON.stringify(study).length;
+  return all.find(isPlain) ?? all.toSorted((a, b) => size(a) - size(b))[0];
+}
+
+/** Examples in the order of their questions, each with a heading of its own. @param {Example[]} examples
+ * @returns {{example: Example, heading: string}[]} */
+function cardsOf(examples) {
+  /** @param {Example} example */
+  const place = (example) => (ORDER.indexOf(questionOf(example)) + 1) || ORDER.length + 1;
+  const sorted = examples.toSorted((a, b) => place(a) - place(b) || Number(isPlain(b)) - Number(isPlain(a)));
+  const seen = new Set();
+  return sorted.map((example) => {
+    const question = questionOf(example);
+    const heading = seen.has(question) ? example.study.title : question;
+    seen.add(question);
+    return { example, heading };
+  });
+}
+
+/** @param {{store: Store, api: Api}} props */
+export function Start({ store, api }) {
+  const [examples, setExamples] = useState(/** @type {Example[]} */ ([]));
+  const { about } = store.get();
+  const ready = about !== null;
+  useEffect(() => {
+    if (ready) void examplesOf(api, about, setExamples);
+  }, [ready]);
+  /** @param {any} study */
+  const begin = (study) => openStudy(store, api, study);
+  return html`<main class="blank">
+    <section class="panel" aria-labelledby="questions-title" data-keys="Questions">
+      <div class="head"><h2 id="questions-title">Begin with a question</h2>
+        <small>Each opens complete, and all of it can be changed.</small></div>
+      <div class="inside"><div class="cards" onKeyDown=${walk}>
+        ${cardsOf(examples).map(({ example, heading }) => html`<button type="button" class="card" key=${example.name}
+          data-example=${example.name} onClick=${() => begin(example.study)}>
+          <${Picture} example=${example} />
+          <span><b>${heading}</b>${heading !== example.study.title
+            && html`<small>${example.study.title}</small>`}</span></button>`)}
+      </div></div></section>
+    <div class="col">
+      <section class="panel" aria-labelledby="vehicles-title"><div class="inside">
+        <div class="head"><h2 id="vehicles-title">Begin with a vehicle</h2></div>
+        ${VEHICLES.map(([model, title]) => {
+          const example = beginningWith(examples, model);
+          return html`<button type="button" class="list-row" key=${model} disabled=${!example}
+            onClick=${() => begin(example?.study)}><span>${title}</span></button>`;
+        })}
+        <div class="head"><h2>Or with a file</h2></div>
+        <div class="drop">Drop a study file (.toml), a record (.csv, .tdms, .mf4, .mat) or a folder of results anywhere
+          on the page, or<br /><label class="file">choose a file <kbd>Ctrl O</kbd> <input type="file" multiple
+            onChange=${(/** @type {Event} */ event) => open(store, api,
+              /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label></div>
+        ${openedBefore().length > 0 && html`<div class="head"><h2>Opened before</h2></div>
+          ${openedBefore().map(({ title, at, study }) => html`<button type="button" class="list-row" key=${at}
+            onClick=${() => begin(study)}><span>${title}</span>
+            <small>${new Date(at).toLocaleDateString()}</small></button>`)}`}
+        <p class="quiet pad"><small>Nothing leaves this machine. An inerter is a two-terminal element whose force is
+          proportional to the relative acceleration of its terminals.</small></p>
+      </div></section></div>
+  </main>`;
+}
+
+/** Arrow keys go from card to card, across and down. @param {KeyboardEvent} event */
+function walk(event) {
+  const cards = [.../** @type {Element} */ (event.currentTarget).querySelectorAll(".card")];
+  const at = cards.indexOf(/** @type {Element} */ (event.target));
+  const [{ top }] = cards.map((card) => card.getBoundingClientRect());
+  const across = cards.filter((card) => card.getBoundingClientRect().top === top).length;
+  const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: across, ArrowUp: -across }[event.key];
+  const next = step && cards[at + step];
+  if (!next) return;
+  event.preventDefault();
+  /** @type {HTMLElement} */ (next).focus();
+}
+
+/** The examples of the library, each as soon as it is read. @param {Api} api @param {any} about
+ * @param {(examples: Example[]) => void} told */
+async function examplesOf(api, about, told) {
+  const { examples } = await api.get("examples");
+  /** @type {Example[]} */
+  const found = [];
+  for (const { name } of examples) {
+    const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
+    const { networks, elements, layouts } = await api.post("study/parts", { study });
+    const [largest] = networks.filter((/** @type {any} */ { tree }) => tree)
+      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => b.names.length - a.names.length);
+    const kinds = Object.fromEntries(Object.entries(elements).map(([element, { kind }]) =>
+      [element, about.elements.find((/** @type {any} */ { key }) => key === kind)]));
+    const free = Object.values(layouts).some((/** @type {any} */ { free_networks: some }) => some.length > 0);
+    found.push({ name, study, tree: largest && canonical(largest.tree), kinds, free });
+    told([...found]);
+  }
+}
+
+const BODIES = { // what carries the strut, as a path, by the kind of the vehicle
+  car: "M10 62q2-16 20-18l22-4q14-20 40-20h26q24 0 40 20l26 5q14 3 14 17z",
+  block: "M56 14h88q6 0 6 6v14q0 6 -6 6h-88q-6 0 -6 -6v-14q0 -6 6 -6z",
+};
+
+/** A strut below what it carries. @param {{example: Example}} props */
+function Picture({ example: { study, tree, kinds } }) {
+  const model = study.vehicle?.model;
+  const axles = { "quarter-car": [100], "half-car": [48, 152], "full-car": [48, 152] }[String(model)] ?? [];
+  const car = axles.length > 1;
+  const ground = 104;
+  return html`<svg viewBox="0 0 200 112" aria-hidden="true">
+    <path d=${`M0 ${ground}H200`} stroke="var(--road)" stroke-width="2" />
+    <path d=${car ? BODIES.car : BODIES.block} fill="var(--body)" stroke="var(--ink)" />
+    ${axles.map((x) => html`<circle cx=${x} cy=${ground - 14} r="13" fill="var(--tyre)" stroke="var(--ink2)" />
+      <circle cx=${x} cy=${ground - 14} r="7" fill="var(--body)" />`)}
+    ${tree && (car ? axles : [100]).map((x) => html`<${Strut} tree=${tree} kinds=${kinds} x=${x} top=${car ? 46 : 40}
+      bottom=${axles.length ? ground - 26 : ground} width=${car ? 44 : 120} />`)}
+  </svg>`;
+}
+
+/** @param {{tree: any, kinds: {[name: string]: any}, x: number, top: number, bottom: number, width: number}} props */
+function Strut({ tree, kinds, x, top, bottom, width }) {
+  const plan = drawing(tree);
+  const scale = Math.min((bottom - top) / plan.height, width / (plan.left + plan.right));
+  const tall = (bottom - top) / plan.height;
+  return html`<g class="sketch" transform=${`translate(${x} ${top}) scale(${scale} ${tall})`} color="var(--ink)">
+    <path d=${pathOf(plan.lines)} />
+    ${plan.placed.map(({ name, path, x: left, y }) => html`<path key=${path.join()}
+      transform=${`translate(${left} ${y})`} d=${symbolPath(kinds[name])} />`)}</g>`;
+}

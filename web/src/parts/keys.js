@@ -1,0 +1,58 @@
+// The keys of the page: a table by what has the focus, for the lowest line and for the list of all of them.
+import { html, useEffect, useRef, useState } from "./html.js";
+
+/** Of each place its keys and what they do. @type {{[place: string]: [string, string][]}} */
+const KEYS = {
+  Page: [["1 2 3 4", "steps"], ["V", "verdict"], ["O", "find best"], ["Space", "hold the car"],
+    ["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Ctrl O", "open"], ["Ctrl S", "save"], ["F8", "next message"],
+    ["Esc", "close"], ["?", "all keys"]],
+  Drawing: [["← →", "select"], ["S D I F G", "join in series"], ["Shift + S D I F G", "in parallel"],
+    ["Alt ← →", "move"], ["Del", "remove"], ["F2", "name"], ["Esc", "select the group"]],
+  Ranking: [["↑ ↓", "layout"], ["Enter", "edit it"]],
+  Values: [["↑ ↓", "1 %"], ["Shift ↑ ↓", "10 %"], ["Alt ↑ ↓", "0.1 %"], ["X", "may vary (on a slider)"]],
+  Questions: [["← → ↑ ↓", "choose"], ["Enter", "open"], ["Ctrl O", "file"]],
+  Tabs: [["← →", "next tab"]],
+};
+
+/** @param {{place: string}} props */
+const Row = ({ place }) => KEYS[place].map(([keys, words]) => html`<span key=${words}>
+  ${keys.split(" ").map((key) => html`<kbd key=${key}>${key}</kbd> `)}${words} ${" "}</span>`);
+
+/** The keys of what has the focus. */
+export function KeysOfFocus() {
+  const [place, setPlace] = useState("Page");
+  useEffect(() => {
+    /** @param {FocusEvent} event */
+    const look = ({ target }) => {
+      const inside = target instanceof Element && target.closest("[data-keys]")?.getAttribute("data-keys");
+      setPlace(inside && inside in KEYS ? inside : "Page");
+    };
+    addEventListener("focusin", look);
+    return () => removeEventListener("focusin", look);
+  }, []);
+  return html`<span><b>${place}</b> ${" "}<${Row} place=${place} /></span>`;
+}
+
+/** All keys, in a dialog that `open` shows. @param {{open: boolean, close: () => void}} props */
+export function AllKeys({ open, close }) {
+  const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
+  useEffect(() => {
+    if (open) dialog.current?.showModal();
+  }, [open]);
+  return html`<dialog ref=${dialog} onClose=${close} aria-labelledby="all-keys-title">
+    <h2 id="all-keys-title">Keys</h2>
+    <p class="quiet">Single letters work where no text is typed.</p>
+    <div class="all-keys">${Object.entries(KEYS).map(([place, rows]) => html`<div key=${place}><h3>${place}</h3>
+      ${rows.map(([keys, words]) => html`<p key=${words}>
+        ${keys.split(" ").map((key) => html`<kbd>${key}</kbd> `)}${words}</p>`)}</div>`)}</div>
+    <form method="dialog"><button class="edged">Close</button></form>
+  </dialog>`;
+}
+
+/** Whether text is typed there, so that a letter is one. @param {EventTarget | null} target */
+export const isTyped = (target) => target instanceof Element
+  && target.closest("textarea, select, input:not([type=range], [type=checkbox], [type=radio])") !== null;
+
+/** Whether the space bar presses what is there. @param {EventTarget | null} target */
+export const isPressed = (target) => target instanceof Element
+  && target.closest("button, summary, input, textarea, select, a, [role=button]") !== null;

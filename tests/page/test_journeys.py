@@ -194,7 +194,7 @@ def test_one_car_in_motion_after_another(visitor: Visitor) -> None:
         page.wait_for_selector(f"text={name}.toml is open")
         visitor.settled()
         visitor.drawn()
-        page.wait_for_selector(".motion canvas[data-frames]")
+        page.wait_for_selector(".vehicle canvas[data-frames]")
     assert visitor.faults == []
 
 

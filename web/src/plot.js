@@ -46,7 +46,9 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
     log ${axis}<//>`;
   const reading = { plot: declared, laid, at, read, zoom, setZoom, cursor };
   const points = declared.points ?? [];
-  return html`<div class="plot" onKeyDown=${points.length > 0 && pointKeys(points, laid, take)}>
+  const hasPoints = points.length > 0;
+  return html`<div class="plot" data-keys=${hasPoints ? "Points" : "Plot"}
+      onKeyDown=${hasPoints && pointKeys(points, laid, take)}>
     <div class="row plot-tools">${children}<span class="grow"></span>
       ${zoom && html`<button type="button" onClick=${() => setZoom(null)}>Whole range</button>`}
       ${switches.map(chip)}
@@ -57,7 +59,7 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
       ${asTable && html`<${NumberTable} plot=${declared} table=${table} />`}
       ${!asTable && laid && html`<${Drawn} plot=${declared} laid=${laid} svg=${drawn} picked=${picked} look=${look}
           take=${take}><${Reading} ...${reading} /><//>
-        ${points.length === 0 && html`<${Reader} ...${reading} />`}`}
+        ${!hasPoints && html`<${Reader} ...${reading} />`}`}
     </div>
   </div>`;
 }
@@ -244,20 +246,30 @@ const MOST = 8; // values in the tip
 
 /** @param {{plot: Declaration, laid: Layout, at: number}} props */
 function Tip({ plot, laid, at }) {
-  const { box, font, x } = laid;
+  const { font, x } = laid;
   const { head, rows } = readingAt(plot, laid, at);
   const few = rows.slice(0, MOST);
   const texts = [head, ...few.map(({ name, text }) => `${name}  ${text}`)];
   const wide = Math.max(...texts.map((text) => text.length)) * font * 0.62 + font * 1.6;
   const high = (few.length + 1) * font * 1.4 + font * 0.8;
-  const place = x.at(at);
-  const left = place + wide + font * 2 < box.right ? place + font : Math.max(0, place - wide - font);
-  const top = box.top + 2;
+  const { left, top } = freePlace(laid, x.at(at), wide, high);
   return html`<g class="tip"><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
     <text class="head" x=${left + font * 0.8} y=${top + font * 1.5}>${head}</text>
     ${few.map(({ name, text, colour }, i) => html`<text key=${i} x=${left + font * 0.8} y=${top
       + font * (2.9 + 1.4 * i)}><tspan class="of" style=${{ fill: curveColour(colour) }}>${name}</tspan>
       <tspan x=${left + wide - font * 0.8} text-anchor="end">${text}</tspan></text>`)}</g>`;
+}
+
+/** Where the fewest points of curves are, of the corners at a place that is read. @param {Layout} laid
+ * @param {number} place @param {number} wide @param {number} high */
+function freePlace({ box, font, dots }, place, wide, high) {
+  const tops = [box.top + 2, Math.max(box.top + 2, box.bottom - high - 2)];
+  const corners = tops.flatMap((top) => [place + font, place - wide - font, box.left + font, box.right - wide]
+    .map((left) => ({ left, top }))).filter(({ left }) => left >= 0 && left + wide <= box.right + font);
+  const hidden = corners.map(({ left, top }) => dots.filter(([x, y]) =>
+    x > left - 3 && x < left + wide + 3 && y > top - 3 && y < top + high + 3).length
+    + (place > left && place < left + wide ? 20 : 0));
+  return corners[hidden.indexOf(Math.min(...hidden))] ?? { left: box.left, top: tops[0] };
 }
 
 const DRAGGED = 5; // [px] from where a press is a drag

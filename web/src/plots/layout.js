@@ -24,7 +24,8 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
 /** @typedef {{name: string, x: number, y: number, anchor: string, colour: string, spot: string}} Name */
 /** @typedef {{width: number, height: number, font: number, box: Box, x: Scale, y: Scale, paths: string[],
  * names: Name[], bands: {kind: string, path: string}[], keys: {kind: string, text: string, x: number, y: number}[],
- * bars: string, heading: string[], titles: {x: {x: number, y: number}, y: {x: number, y: number}}}} Layout */
+ * bars: string, dots: [number, number][], heading: string[],
+ * titles: {x: {x: number, y: number}, y: {x: number, y: number}}}} Layout  `dots`: points of all curves, in pixels */
 
 const WIDE = 0.6; // a letter, by the size of its type
 
@@ -53,9 +54,11 @@ export function layoutOf(plot, { width, height, font, zoom = null, before = [] }
   box.left = Math.ceil(font * WIDE * Math.max(2, ...y.ticks.map(({ text }) => text.length)) + font);
   const x = scaleOf(plot.x, reach, [box.left, box.right], Math.max(2, Math.floor((box.right - box.left) / (font * 5))));
   const lines = curves.map((curve) => pixelsOf(curve, x, y));
+  const dots = lines.map((line) => denseIn(line, box));
   return {
-    width, height, font, box, x, y, paths: lines.map(pathOf), names: namesOf(curves, lines, points, box, { x, y, font,
-      before }), bands: bandsOf(plot.bands ?? [], x, box), keys: tops.keys, bars: barsOf(bars, x, y, box),
+    width, height, font, box, x, y, paths: lines.map(pathOf), dots: dots.flat(),
+    names: namesOf(curves, dots, points, box, { x, y, font, before }),
+    bands: bandsOf(plot.bands ?? [], x, box), keys: tops.keys, bars: barsOf(bars, x, y, box),
     titles: { x: { x: box.right, y: height - font * 0.4 }, y: { x: font * 0.5, y: font * 1.2 } },
     heading: linesOf(y.title, Math.floor((width - font) / (font * WIDE))),
   };
@@ -183,11 +186,10 @@ const SAMPLES = 160; // of a curve, where names look for room
 const STAYS = 6; // by how much a better place must be better
 
 /** Names at their curves: at the end where there is room, else above or below where nothing else is near.
- * @param {Curve[]} curves @param {([number, number] | null)[][]} lines @param {Point[]} points @param {Box} box
+ * @param {Curve[]} curves @param {[number, number][][]} dots @param {Point[]} points @param {Box} box
  * @param {{x: Scale, y: Scale, font: number, before: Name[]}} how @returns {Name[]} */
-function namesOf(curves, lines, points, box, { x, y, font, before }) {
+function namesOf(curves, dots, points, box, { x, y, font, before }) {
   const rings = points.map((point) => /** @type {[number, number]} */ ([x.at(point.x), y.at(point.y)]));
-  const dots = lines.map((line) => denseIn(line, box));
   /** @type {(Name & {box: Box})[]} */
   const placed = [];
   curves.forEach(({ name, colour, unnamed, pale }, number) => {

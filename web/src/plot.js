@@ -131,6 +131,7 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
     ${laid.keys.map((key) => html`<g key=${key.text}><rect class=${`swatch-of ${key.kind}`} x=${key.x}
       y=${key.y - font * 0.85} width=${font} height=${font} /><text x=${key.x + font * 1.4} y=${key.y}>
       ${key.text}</text></g>`)}
+    ${picked !== null && points[picked] && html`<${PointTip} laid=${laid} point=${points[picked]} />`}
     ${plot.note && html`<text x=${box.left} y=${laid.titles.x.y}>${plot.note(y)}</text>`}
     ${children}
   </svg>`;
@@ -260,15 +261,33 @@ function Tip({ plot, laid, at }) {
       <tspan x=${left + wide - font * 0.8} text-anchor="end">${text}</tspan></text>`)}</g>`;
 }
 
-/** Where the fewest points of curves are, of the corners at a place that is read. @param {Layout} laid
- * @param {number} place @param {number} wide @param {number} high */
-function freePlace({ box, font, dots }, place, wide, high) {
-  const tops = [box.top + 2, Math.max(box.top + 2, box.bottom - high - 2)];
-  const corners = tops.flatMap((top) => [place + font, place - wide - font, box.left + font, box.right - wide]
-    .map((left) => ({ left, top }))).filter(({ left }) => left >= 0 && left + wide <= box.right + font);
-  const hidden = corners.map(({ left, top }) => dots.filter(([x, y]) =>
-    x > left - 3 && x < left + wide + 3 && y > top - 3 && y < top + high + 3).length
-    + (place > left && place < left + wide ? 20 : 0));
+/** What is read at a point. @param {{laid: Layout, point: Point}} props */
+function PointTip({ laid, point: { x, y, lines = [] } }) {
+  const { font } = laid;
+  if (lines.length === 0) return null;
+  const wide = Math.max(...lines.map((line) => line.length)) * font * 0.6 + font * 1.6;
+  const high = lines.length * font * 1.4 + font * 0.8;
+  const { left, top } = freePlace(laid, laid.x.at(x), wide, high, laid.y.at(y));
+  return html`<g class="tip" data-screen=""><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
+    ${lines.map((line, i) => html`<text key=${i} class=${i === 0 ? "head" : ""} x=${left + font * 0.8}
+      y=${top + font * (1.5 + 1.4 * i)}>${line}</text>`)}</g>`;
+}
+
+/** Where the fewest points of curves are, of the corners at a place that is read, or at a point. @param {Layout} laid
+ * @param {number} place @param {number} wide @param {number} high @param {number} [up] */
+function freePlace({ box, font, dots }, place, wide, high, up) {
+  const ends = [box.top + 2, Math.max(box.top + 2, box.bottom - high - 2)];
+  const near = up === undefined ? [] : [up - high - font, up + font, up - high / 2];
+  const tops = [...near.filter((top) => top >= ends[0] && top <= ends[1]), ...ends];
+  const lefts = [place + font, place - wide - font, place - wide / 2, box.left + font, box.right - wide];
+  const corners = tops.flatMap((top) => lefts.map((left) =>
+    ({ left: Math.max(0, Math.min(left, box.right + font - wide)), top })));
+  const hidden = corners.map(({ left, top }) => {
+    const covers = place > left - font && place < left + wide + font
+      && (up === undefined || (up > top - font && up < top + high + font));
+    return (covers ? (up === undefined ? 20 : 1000) : 0) + dots.filter(([x, y]) =>
+      x > left - 3 && x < left + wide + 3 && y > top - 3 && y < top + high + 3).length;
+  });
   return corners[hidden.indexOf(Math.min(...hidden))] ?? { left: box.left, top: tops[0] };
 }
 

@@ -9,8 +9,9 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
 /** A curve: its name stands at it, unless it is `unnamed`; `colour` is a token of the style.
  * @typedef {{name: string, x: number[], y: (number | null)[], colour: string, dash?: boolean, pale?: boolean,
  * strong?: boolean, unnamed?: boolean}} Curve */
-/** A point that can be taken: of which curve, what it is called, and what it is.
- * @typedef {{curve: number, x: number, y: number, label: string, big?: boolean, doubtful?: boolean, of: any}} Point */
+/** A point that can be taken: of which curve, what it is called, what is read at it, and what it is.
+ * @typedef {{curve: number, x: number, y: number, label: string, lines?: string[], big?: boolean, doubtful?: boolean,
+ * of: any}} Point */
 /** @typedef {{from: number, to: number, kind: string}} Band */
 /** A plot as it is declared. `marks` are values of x with a text; `bars` stand between neighbours of `edges`; `keys`
  * name what is shaded; a `note` on the values stands below.
@@ -52,7 +53,7 @@ export function layoutOf(plot, { width, height, font, zoom = null, before = [] }
   const wide = roundedOut(rise, plot.y, many);
   const y = scaleOf(plot.y, wide, [box.bottom, box.top], many);
   box.left = Math.ceil(font * WIDE * Math.max(2, ...y.ticks.map(({ text }) => text.length)) + font);
-  const x = scaleOf(plot.x, reach, [box.left, box.right], Math.max(2, Math.floor((box.right - box.left) / (font * 5))));
+  const x = scaleOf(plot.x, reach, [box.left, box.right], Math.max(2, Math.floor((box.right - box.left) / (font * 4.2))));
   const lines = curves.map((curve) => pixelsOf(curve, x, y));
   const dots = lines.map((line) => denseIn(line, box));
   return {

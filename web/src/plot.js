@@ -340,7 +340,7 @@ function Reader({ plot, laid, at, read, zoom, setZoom, cursor }) {
     }}
     onBlur=${() => read(null)}
     onKeyDown=${(/** @type {KeyboardEvent} */ event) => {
-      const from = place ?? x.from;
+      const from = (cursor ? cursor.get() : at) ?? x.from; // the time may run on
       const next = steppedBy(event, samples, from, laid);
       const shift = zoomedBy(event.key, laid, from);
       if (next === null && shift === undefined) return;

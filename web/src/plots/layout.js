@@ -53,7 +53,8 @@ export function layoutOf(plot, { width, height, font, zoom = null, before = [] }
   const wide = roundedOut(rise, plot.y, many);
   const y = scaleOf(plot.y, wide, [box.bottom, box.top], many);
   box.left = Math.ceil(font * WIDE * Math.max(2, ...y.ticks.map(({ text }) => text.length)) + font);
-  const x = scaleOf(plot.x, reach, [box.left, box.right], Math.max(2, Math.floor((box.right - box.left) / (font * 4.2))));
+  const along = Math.max(2, Math.floor((box.right - box.left) / (font * 4.2)));
+  const x = scaleOf(plot.x, reach, [box.left, box.right], along);
   const lines = curves.map((curve) => pixelsOf(curve, x, y));
   const dots = lines.map((line) => denseIn(line, box));
   return {

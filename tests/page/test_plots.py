@@ -192,7 +192,7 @@ def _finished(visitor: Visitor, kind: str, points: int) -> Any:
     form = page.locator("form.begin", has_text=kind)
     form.locator("[name=points]").fill(str(points))
     form.get_by_role("button", name="Begin").click()
-    job = page.locator(".job", has_text=kind.split(" ")[0]).first
+    job = page.locator(".job", has_text=kind.split(" ", maxsplit=1)[0]).first
     job.locator(".plot .drawn").wait_for(timeout=120_000)
     (known,) = [each for each in json.loads(visitor.served.get("work"))["work"] if each["title"].startswith(kind)]
     return job, json.loads(visitor.served.get(f"work/{known['id']}/result"))

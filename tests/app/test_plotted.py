@@ -1,4 +1,4 @@
-"""What plots of the page are drawn from: gains and phases by hand, names of outputs, units in which sweeps are written."""
+"""What plots of the page are drawn from: gains and phases by hand, names of outputs, written units of sweeps."""
 
 from __future__ import annotations
 

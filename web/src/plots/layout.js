@@ -183,8 +183,8 @@ function keysAt(keys, title, width, font) {
   return { keys: placed, rows: row };
 }
 
-const CANDIDATES = 24; // places of a name along its curve
-const SAMPLES = 160; // of a curve, where names look for room
+const CANDIDATES = 16; // places of a name along its curve
+const SAMPLES = 110; // of a curve, where names look for room
 const STAYS = 6; // by how much a better place must be better
 
 /** Names at their curves: at the end where there is room, else above or below where nothing else is near.
@@ -203,7 +203,7 @@ function namesOf(curves, dots, points, box, { x, y, font, before }) {
       let cost = spot.spot === last?.spot ? -STAYS : 0;
       for (const other of placed) if (overlap(own, other.box)) cost += 60;
       dots.forEach((others, i) => {
-        const near = others.reduce((least, dot) => Math.min(least, distance(dot, own)), Infinity);
+        const near = nearestIn(others, own);
         cost += i === number ? (near < 1 ? 25 : 0) : near < 1 ? 30 : Math.max(0, 14 - near);
       });
       for (const ring of rings) if (distance(ring, own) < 4) cost += 15;
@@ -269,6 +269,18 @@ function spotsOf(dots, wide, font, box) {
 /** @param {Box} one @param {Box} other */
 const overlap = (one, other) => one.left < other.right + 4 && other.left < one.right + 4 && one.top < other.bottom
   && other.top < one.bottom;
+
+/** How far the nearest of some points is from a box. @param {[number, number][]} dots @param {Box} box */
+function nearestIn(dots, { left, right, top, bottom }) {
+  let least = Infinity;
+  for (const [x, y] of dots) {
+    const across = x < left ? left - x : x > right ? x - right : 0;
+    const up = y < top ? top - y : y > bottom ? y - bottom : 0;
+    const square = across * across + up * up;
+    if (square < least) least = square;
+  }
+  return Math.sqrt(least);
+}
 
 /** How far a point is from a box. @param {[number, number]} point @param {Box} box */
 const distance = ([x, y], { left, right, top, bottom }) =>

@@ -5,6 +5,12 @@ from inerter.errors import ErrorSource as ErrorSource
 from inerter.errors import InerterError as InerterError
 from inerter.errors import Status as Status
 from inerter.errors import StatusKind as StatusKind
+from inerter.exports.export import export as export
+from inerter.exports.kind import ExportKind as ExportKind
+from inerter.exports.named_system import NamedSystem as NamedSystem
+from inerter.exports.named_system import named_system as named_system
+from inerter.exports.registry import EXPORTS as EXPORTS
+from inerter.exports.request import ExportSpec as ExportSpec
 from inerter.field_metadata import Field as Field
 from inerter.field_metadata import choice_field as choice_field
 from inerter.field_metadata import mount as mount
@@ -70,6 +76,8 @@ from inerter.methods.static_stiffness import static_stiffness as static_stiffnes
 from inerter.methods.statistical_linearisation import StatisticalLinearisation as StatisticalLinearisation
 from inerter.network_search.admittance import AdmittanceResult as AdmittanceResult
 from inerter.network_search.admittance import optimise_admittance as optimise_admittance
+from inerter.network_search.front_results import FrontNetwork as FrontNetwork
+from inerter.network_search.front_results import NetworkFront as NetworkFront
 from inerter.network_search.real_inerters import RealInerter as RealInerter
 from inerter.network_search.real_inerters import RealNetwork as RealNetwork
 from inerter.network_search.real_inerters import with_friction_and_elasticity as with_friction_and_elasticity

@@ -115,14 +115,20 @@ def open_text(path: Path) -> Iterator[TextIO]:
 
 def write_netcdf(path: Path, data: xarray.Dataset) -> None:
     """Write a dataset atomically. It is built in memory, as the HDF5 library crashes on a full disk."""
+    content = netcdf_content(data)
+    with atomic_write(path) as draft:
+        draft.write_bytes(content)
+
+
+def netcdf_content(data: xarray.Dataset) -> memoryview:
+    """What a netCDF file of a dataset holds."""
     import h5netcdf  # noqa: PLC0415 - heavy
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415 - heavy
 
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
         data.dump_to_store(H5NetCDFStore(file))
-    with atomic_write(path) as draft:
-        draft.write_bytes(content.getbuffer())
+    return content.getbuffer()
 
 
 @contextmanager

@@ -97,6 +97,10 @@ class UnknownEntryError(RegistryError, KeyError):
         return str(self.args[0])  # a KeyError would put it in quotes
 
 
+class ExportError(InerterError, ValueError):
+    """Design that the format of another program cannot say, or unusable request for one."""
+
+
 class StudyError(InerterError, ValueError):
     """Unusable study file or result folder."""
 

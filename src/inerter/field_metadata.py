@@ -44,6 +44,7 @@ class TextChoice:
     example: str = ""
     key: str = ""  # in files, if it differs from the name
     needed: bool = False  # whether it is required
+    of_element: bool = False  # whether it is the name of an element
 
 
 @dataclasses.dataclass(frozen=True)
@@ -88,17 +89,22 @@ def quantity(
     return {_QUANTITY: Field("", unit, sentence, example, key, words, may_be_free=may_be_free, usual=usual)}
 
 
-def choice_field(options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "") -> Mapping[str, Any]:
+def choice_field(
+    options: tuple[str, ...], sentence: str, *, example: str = "", key: str = "", of_element: bool = False
+) -> Mapping[str, Any]:
     """Metadata of a dataclass field that is one of these texts, or any name without `options`; else like `quantity`.
+
+    A name `of_element` is that of an element of the file, and follows it when the element is renamed.
 
     >>> @dataclasses.dataclass(frozen=True)
     ... class Wheel:
     ...     side: str = dataclasses.field(default="left", metadata=choice_field(("left", "right"), "Where it is."))
     >>> choices_of(Wheel)
     (TextChoice(name='side', options=('left', 'right'), sentence='Where it is.', example='left',
-    key='side', needed=False),)
+    key='side', needed=False, of_element=False),)
     """
-    return {_CHOICE: TextChoice("", options, sentence, example or (options[0] if options else ""), key)}
+    shown = example or (options[0] if options else "")
+    return {_CHOICE: TextChoice("", options, sentence, shown, key, of_element=of_element)}
 
 
 def typed_field(form: str, sentence: str, example: str, *, key: str = "") -> Mapping[str, Any]:

@@ -17,7 +17,7 @@ from inerter.app import searches
 from inerter.app.documents import study_from
 from inerter.app.jobs import ENDED
 from inerter.files.study import searching
-from inerter.network_search import search as network_search
+from inerter.network_search import plan as network_search
 
 FREE = {
     "network": 3,

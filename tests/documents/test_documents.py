@@ -24,7 +24,7 @@ from inerter.files.identification.loading import load_identification
 
 PYTHON = [page for page in PAGES if blocks(page)]
 LONG = {"README.md", "staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
-WRITTEN = {"study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
+WRITTEN = {"exports.md": "car.mo", "study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 
 @pytest.fixture
@@ -90,6 +90,7 @@ IDENTIFY = "inerter identify fit.csv --model ball-screw --force-bandwidth"
 FITTED = f'{IDENTIFY} "300 Hz"'
 SHOWN = f'{FITTED} --force-range "100 kgf"'
 SLOW = 'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"'
+EXPORTED = "inerter export examples/quarter-car.toml --layout S3 --index J1 --to"
 WHOLE = "inerter reproduce wang-su-2008 -o paper"
 SERVES = "inerter serve examples/quarter-car.toml"  # until it is stopped: see tests/app and tests/page
 COMMANDS: dict[str, Callable[[Path], None]] = {
@@ -114,8 +115,11 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter reproduce wang-su-2008 --only rig": nothing,
     "inerter reproduce wang-su-2008 --only methods": nothing,
     WHOLE: nothing,
+    f"{EXPORTED} matlab": nothing,
+    f"{EXPORTED} modelica -o car.mo": nothing,
 }
 BRIEF = [
+    f"{EXPORTED} matlab",
     "inerter new half-car",
     "inerter explain road.speed",
     "inerter simulate my-car.toml --window 2:4",

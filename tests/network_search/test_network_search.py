@@ -15,7 +15,7 @@ from strategies import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Spring
-from inerter.network_search import search as module
+from inerter.network_search import plan as module
 from inerter.network_search.results import TIED, reduced_topology
 from inerter.networks.enumeration import Topology, enumerate_networks
 from inerter.networks.equivalence import equivalence_classes

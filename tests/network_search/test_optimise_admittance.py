@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.network_search.admittance import _AdmittanceIndex, _compile_index
-from inerter.network_search.search import plan_search
+from inerter.network_search.plan import plan_search
 from inerter.synthesis.best_admittance import _families
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inerter as it
 from inerter.network_search.network_optimum import SearchedNetwork
+from inerter.network_search.plan import plan_search
 from inerter.network_search.results import collect_results
-from inerter.network_search.search import plan_search
 from inerter.networks.enumeration import Topology
 
 

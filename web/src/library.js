@@ -1,7 +1,7 @@
 // What the library says of the study that is edited: its networks as trees, its elements, its numbers. The newest
 // answer stands until the next one comes; of what it names, what the document has no longer is left out.
 
-import { isRange, textOf, entryAt } from "./state/document.js";
+import { isRange, own, textOf, entryAt } from "./state/document.js";
 
 /** @import { State } from "./state/store.js" */
 /** @import { Tree } from "./network/algebra.js" */
@@ -21,7 +21,7 @@ const NOTHING = { networks: [], layouts: {}, elements: {}, numbers: [] };
 const partsOf = ({ parts }) => parts ?? NOTHING;
 
 /** @template T @param {{[key: string]: T}} table @param {string} key @returns {T | null} */
-const at = (table, key) => (Object.hasOwn(table, key) ? table[key] : null);
+const at = (table, key) => own(table, key) ?? null;
 
 /** The tree of a text, null where it is no network or not known yet. @param {State} state @param {string} text */
 export const treeOf = ({ trees }, text) => at(trees, text);
@@ -66,7 +66,7 @@ export function freeIn(state, layout) {
 /** The free values of a design that nobody has chosen yet: they are in the middle of their bounds. @param {State} state
  * @param {{layout: string, values: {[element: string]: string}}} design @returns {string[]} */
 export const unchosenIn = (state, { layout, values }) =>
-  freeIn(state, layout).filter((name) => values[name] === undefined);
+  freeIn(state, layout).filter((name) => own(values, name) === undefined);
 
 /** The row of an element's kind. @param {State} state @param {string} name @returns {any} */
 export function kindOf(state, name) {

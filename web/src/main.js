@@ -9,10 +9,10 @@ import { Page } from "./page.js";
 import { html } from "./parts/html.js";
 import { fromAddress, keepRemembering, remembered, unpacked } from "./remembering.js";
 import { createStore } from "./state/store.js";
+import { begunWith, isBegunWith, watchFile } from "./watching.js";
 import { beginAtBest, findWork } from "./working.js";
 
 const TOKEN = "inerter.token";
-const BEGUN = "inerter.begun";
 const AGAIN = 1000; // [ms]
 
 const store = createStore();
@@ -43,11 +43,12 @@ async function firstDocument() {
     return linked.document;
   }
   unread = address.state !== null;
-  const { study } = await api.get("start");
-  const begun = JSON.stringify(study);
+  const { study, stamp } = await api.get("start");
   const before = remembered();
-  if (before && (sessionStorage.getItem(BEGUN) === begun || !address.token)) return before;
-  sessionStorage.setItem(BEGUN, begun);
+  const same = isBegunWith(study);
+  watchFile(store, api, before === null || same || address.token ? stamp : null);
+  if (before && (same || !address.token)) return before;
+  begunWith(study);
   return study && Object.keys(study).length > 0 ? { study } : before;
 }
 

@@ -163,7 +163,11 @@ function Bar({ store, enter }) {
     ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
       ${problems.map((problem) => html`<li class="problem">${problem.sentence.startsWith(problem.place.join(".")) ? ""
         : html`<code>${problem.place.join(".")}</code> `}${problem.sentence}</li>`)}</ul></div>`}
-    ${messages.map(({ about: key, text }) => html`<p class="notice" key=${key}><span>${text}</span>
+    ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
+      ${offer && html`<button type="button" class="edged" onClick=${() => {
+        store.dispatch({ type: "closed", about: key });
+        offer.act();
+      }}>${offer.label}</button>`}
       <button type="button" class="link" aria-label="Close the message"
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
   </div>`;

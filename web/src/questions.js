@@ -3,7 +3,7 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, strutsOf, entryAt } from "./state/document.js";
+import { isRange, own, strutsOf, entryAt } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -15,12 +15,12 @@ import { takenApart } from "./state/scale.js";
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
 /** The design that is edited. @param {Document} document */
-export const designOf = ({ layout, values }) => ({ layout, values: values[layout] ?? {}, name: layout });
+export const designOf = ({ layout, values }) => ({ layout, values: own(values, layout) ?? {}, name: layout });
 
 /** The design that it is compared with. @param {Document} document */
 export function baselineOf({ study, values }) {
   const layout = study.study?.baseline ?? Object.keys(study.layouts ?? {})[0] ?? "";
-  return { layout, values: values[layout] ?? {}, name: layout };
+  return { layout, values: own(values, layout) ?? {}, name: layout };
 }
 
 /** All layouts of the study as designs. @param {Document} document */
@@ -76,7 +76,16 @@ const ROWS = [
   ],
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
+  typedText,
 ];
+
+/** Whether what was typed into a field is a quantity of its unit. @param {State} state @returns {Row[]} */
+function typedText({ typed }) {
+  if (typed === null || typed.sentence !== undefined) return [];
+  const { text, unit } = typed;
+  return [{ panel: "typed", path: "quantity", body: { text, unit },
+    learnt: ({ sentence }) => ({ type: "read", typed, sentence }) }];
+}
 
 /** What is drawn beside the design that is edited and the baseline. @param {State} state @returns {Choice[]} */
 export function ghostsOf({ view, history: { present } }) {
@@ -222,8 +231,8 @@ export function unitsIn(state, { study, values, ranges }) {
   };
   for (const { path, unit, name } of numbersOf(state)) {
     const entry = entryAt(study, path);
-    const bounds = ranges[path.join(".")];
-    const chosen = name === "" ? [] : Object.values(values).map((of) => of[name]);
+    const bounds = own(ranges, path.join("."));
+    const chosen = name === "" ? [] : Object.values(values).map((of) => own(of, name));
     for (const text of [...(isRange(entry) ? [entry.from, entry.to] : [entry]), bounds?.from, bounds?.to, ...chosen]) {
       add(text, unit);
     }
@@ -236,5 +245,5 @@ export function unitsIn(state, { study, values, ranges }) {
 export function mountsOf(about, { study, layout }) {
   const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
   const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);
-  return mounts.length > 1 ? mounts : strutsOf(study.layouts?.[layout]);
+  return mounts.length > 1 ? mounts : strutsOf(own(study.layouts, layout));
 }

@@ -132,10 +132,10 @@ export function takeNetwork(store, found, row) {
   const state = store.get();
   const { elements: known = {}, layouts = {} } = state.history.present.study;
   const { layout, index, free_networks: free } = found;
-  if (!(layout in layouts) || free.some((/** @type {string} */ name) => !(name in known)))
+  if (!Object.hasOwn(layouts, layout) || free.some((/** @type {string} */ name) => !Object.hasOwn(known, name)))
     return `The study that is open has no layout ${layout} with ${free.join(", ")}; nothing was changed.`;
   const used = Object.keys(row.elements).filter((name) =>
-    name in known && (layoutsWith(state, name) ?? []).some((each) => each !== layout));
+    Object.hasOwn(known, name) && (layoutsWith(state, name) ?? []).some((each) => each !== layout));
   if (used.length > 0)
     return `Another layout has elements of the same names (${used.join(", ")}): rename them; nothing was changed.`;
   const { entry, elements, values } = row;
@@ -153,7 +153,7 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const known = document.study.elements ?? {};
   const taken = [...Object.keys(known), ...Object.keys(elements)];
   const others = Object.keys(elements).filter((name) =>
-    name in known && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
+    Object.hasOwn(known, name) && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
   /** @type {{[name: string]: string}} */
   const names = {};
   for (const name of others) names[name] = freshName(name, [...taken, ...Object.values(names)]);
@@ -176,8 +176,15 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
  * @param {Store} store @param {Api} api @param {any} fit
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
 export async function takeFitted(store, api, fit, device) {
-  if (isOk(fit.status) && device !== null) return takeDevice(store, api, device);
+  if (isOk(fit.status) && device !== null) return `${unidentified(fit)}${await takeDevice(store, api, device)}`;
   return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
+}
+
+/** What is told before a device that has values which no record supports. @param {any} fit */
+function unidentified({ parameters }) {
+  const names = Object.keys(parameters ?? {}).filter((name) => parameters[name].identified === false);
+  return names.length === 0 ? ""
+    : `Not identifiable: ${names.join(", ")}; the records do not support the values taken. `;
 }
 
 /** What is told in the place of a device: the values of a fit that is not to be relied on are not given.

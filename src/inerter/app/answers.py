@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design, baseline_of, design_of, designs_of
-from inerter.app.documents import study_from
+from inerter.app.designs import baseline_of, designs_of, one_design
+from inerter.app.documents import study_for
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
@@ -68,7 +68,9 @@ def answer_panel(key: str, body: Body) -> Answer:
     """
     with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
-        return answer(study_from(body["study"]), body)
+        study, asked = study_for(body)
+        left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
+        return {**answer(study, asked), **left_out}
 
 
 def response(study: Study, body: Body) -> Answer:
@@ -277,12 +279,3 @@ def required_value(body: Body, key: str) -> Any:
 
 def motion(study: Study, body: Body) -> Answer:
     return history(study, one_design(study, body), body)
-
-
-def one_design(study: Study, body: Body) -> Design:
-    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
-    given = body.get("design")
-    if given:
-        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
-    layout = body.get("layout") or next(iter(study.layouts))
-    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})

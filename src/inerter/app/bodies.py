@@ -130,6 +130,9 @@ class WorkRequest(OfDesigns):
     title: Text = ""
     wait: Annotated[Number, Field(ge=0.0, le=30.0, description="Seconds to wait for its end.")] = 0.0
     method: Name | None = None
+    design: DesignRequest | None = None
+    layout: Name | None = None
+    index: Name | None = None
     sweep: dict[str, Any] | None = None
     points: Annotated[int, Field(ge=3, le=200)] | None = None
     records: Annotated[list[Name], Field(max_length=100)] = []

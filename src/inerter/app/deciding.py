@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from math import inf, isfinite, log, nan
 from typing import Any
 
 from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
-from inerter.app.designs import Design, baseline_of, designs_of
+from inerter.app.designs import Design, baseline_of, designs_of, one_design
 from inerter.app.index_values import limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import Status
+from inerter.figures.labels import format_list
 from inerter.files.study.limits import key_in_words
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, typeset
 from inerter.methods.compare import Comparison
 from inerter.methods.registry import brief_words_of, decisive_method_clause
+from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
+from inerter.tasks.margins import margins as find_margins
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
@@ -43,7 +47,7 @@ def decision(study: Study, body: Body) -> Answer:
             "index": goal,
             "title": study.index(goal).title,
             "unit": study.unit(goal),
-            "sentence": goal_sentence(study, goal, method),
+            "sentence": typeset(goal_sentence(study, goal, method)),
         },
         "method": method,
         "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],
@@ -51,13 +55,54 @@ def decision(study: Study, body: Body) -> Answer:
     }
 
 
+def margins(study: Study, body: Body) -> Answer:
+    """Break-even values, improvements at other speeds, and tolerances of one design against the baseline."""
+    return margins_of(study, body, lambda done, total, what: None)
+
+
+def margins_of(study: Study, body: Body, tell: Progress) -> Answer:
+    """Margins of a design, with a progress report before each."""
+    design = one_design(study, body)
+    baseline = baseline_of(study, body, [])
+    index = body.get("index") or study.indices[0]
+    nothing = Margins(design.name, index)
+    if baseline is None or design == baseline:
+        text = f"{design.name} has no margins: it is the baseline." if baseline else "Margins need a baseline."
+        return asdict(replace(nothing, caveats=[MarginCaveat(text)]))
+    for one in (design, baseline):
+        if one.unchosen:
+            text = f"No value of {format_list(one.unchosen)} of {one.name} has been chosen yet."
+            return asdict(replace(nothing, caveats=[MarginCaveat(text)]))
+    asked = MarginRequest(
+        study=study,
+        layout=design.layout,
+        design=design.vehicle,
+        baseline_layout=baseline.layout,
+        baseline=baseline.vehicle,
+        index=index,
+        method=decisive_method(body.get("methods") or study.evaluate),
+        threads=os.cpu_count() or 1,
+    )
+    told: Answer = _typeset_sentences(asdict(find_margins(asked, tell)))
+    return told
+
+
+def _typeset_sentences(told: Any, key: str = "") -> Any:
+    """Answer with its sentences in printed form."""
+    if isinstance(told, dict):
+        return {name: _typeset_sentences(one, name) for name, one in told.items()}
+    if isinstance(told, list):
+        return [_typeset_sentences(one, key) for one in told]
+    return typeset(told) if key == "sentence" else told
+
+
 def verdict_of(told: Decision) -> Answer:
     """Verdict for an answer."""
     verdict = told.verdict
     return {
-        "sentence": verdict.sentence,
+        "sentence": typeset(verdict.sentence),
         "severity": verdict.answer.value,
-        "caveats": [{"sentence": one.sentence, "severity": one.severity.value} for one in verdict.caveats],
+        "caveats": [{"sentence": typeset(one.sentence), "severity": one.severity.value} for one in verdict.caveats],
     }
 
 

@@ -92,6 +92,15 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
     return [design_of(study, layout, values.get(layout) or {}) for layout in body.get("layouts") or study.layouts]
 
 
+def one_design(study: Study, body: Mapping[str, Any]) -> Design:
+    """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
+    given = body.get("design")
+    if given:
+        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+    layout = body.get("layout") or next(iter(study.layouts))
+    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})
+
+
 def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]) -> Design | None:
     """Baseline of a request: its `baseline`, else the study's among `designs`, else the study's at the given `values`.
 

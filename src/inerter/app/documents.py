@@ -21,6 +21,7 @@ from inerter.units import quote_value
 Document = Mapping[str, Any]
 _Stamp = tuple[int, int] | None
 PATH = Path("study.toml")  # what a document is called that is no file
+_LAYOUTS = "layouts"
 _KEPT = 256  # documents whose studies are kept
 
 
@@ -53,6 +54,52 @@ def study_from(document: object) -> Study:
     if unchosen := [replace(problem, hint=f"{problem.hint} {here}") for problem in unchosen_problems(study)]:
         raise refusal(PATH, unchosen)
     return study
+
+
+def study_for(body: Mapping[str, Any]) -> tuple[Study, dict[str, Any]]:
+    """Study of a request, and the request, both without the layouts that are invalid.
+
+    Raises `StudyError` as `study_from` if anything else is invalid, or if no valid design of the request is left. The
+    designs left out are listed as `left_out`, each with a sentence.
+    """
+    document, asked = body["study"], dict(body)
+    try:
+        return study_from(document), asked
+    except FileError as error:
+        study, faults = study_without(document, error)
+        several = [one for one in body.get("designs") or () if one.get("study") or one["layout"] not in faults]
+        names = [name for name in body.get("layouts") or () if name not in faults]
+        single = [body["design"]["layout"] if body.get("design") else body.get("layout")]
+        left = several or names or [name for name in single if name is not None and name not in faults]
+        if not left:  # of what is asked, or all layouts are
+            raise
+        given = {"designs": several, "layouts": names}
+        asked |= {key: kept for key, kept in given.items() if body.get(key)}
+        if (body.get("baseline") or {}).get("layout") in faults:
+            del asked["baseline"]
+        layouts = [one["layout"] for one in body.get("designs") or ()] + list(body.get("layouts") or ())
+        left_out = [{"layout": name, "sentence": faults[name]} for name in dict.fromkeys(layouts) if name in faults]
+        return study, {**asked, "left_out": left_out}
+
+
+def study_without(document: Document, error: FileError) -> tuple[Study, dict[str, str]]:
+    """Study of a document without the layouts in which `error` found its problems, and the sentence on each of them.
+
+    Raises `error` if it has other problems, and `StudyError` if the other layouts are no study.
+    """
+    faults: dict[str, str] = {}
+    for problem in error.problems:
+        if len(problem.place) < 2 or problem.place[0] != _LAYOUTS:
+            raise error
+        faults.setdefault(problem.place[1], str(problem))
+    layouts = {name: entry for name, entry in document[_LAYOUTS].items() if name not in faults}
+    if not layouts:
+        raise error
+    settings, first = document["study"], next(iter(document[_LAYOUTS]))
+    if settings.get("baseline", first) not in faults:
+        return study_from({**document, _LAYOUTS: layouts}), faults
+    settings = {key: value for key, value in settings.items() if key != "baseline"}
+    return replace(study_from({**document, _LAYOUTS: layouts, "study": settings}), baseline=None), faults
 
 
 def searched_study_from(document: object) -> Study:

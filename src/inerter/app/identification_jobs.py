@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.app.documents import PATH
+from inerter.app.fit_advice import causes, further_offers
 from inerter.app.kinds import RESULTS, Tell
 from inerter.errors import RecordError
 from inerter.files.common.folder import WriteMode, open_results
@@ -16,6 +17,7 @@ from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import IdentificationResult, read, run_identification
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
+from inerter.report.identification_text import unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
 
 Body = Mapping[str, Any]
@@ -38,7 +40,15 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         results.publish()
         write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
     shown = {name: value_and_interval(found, name) for name in found.fit.parameters}
-    return {**identification_data(found), "shown": shown, "device": _device(found)}
+    return {
+        **identification_data(found),
+        "shown": shown,
+        "reason": unreliability_reason(found),
+        "causes": causes(found),
+        "offers": further_offers(found),
+        "asked": {"model": body.get("model"), "config": body.get("config") or {}},
+        "device": _device(found),
+    }
 
 
 def _device(found: IdentificationResult) -> dict[str, Any] | None:

@@ -47,7 +47,8 @@ class Job:
         found = next((e["found"] for e in reversed(events) if "found" in e), None)
         return {
             **{key: getattr(self, key) for key in ("id", "kind", "title", "state", "begun", "ended", "sentence")},
-            **{key: progress[key] for key in ("done", "total", "told")},
+            **{key: progress[key] for key in ("done", "total")},
+            "told": "" if self.state in ENDED else progress["told"],  # the present step: none once it has ended
             **({"found": found} if found is not None and self.state != "done" else {}),
         }
 

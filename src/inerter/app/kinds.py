@@ -40,6 +40,13 @@ KINDS = {
     for kind in (
         WorkKind("optimise", "The best values", ("layouts", "method", *_DESIGNS), f"{_STUDIED}:optimise"),
         WorkKind("run", "The whole study, with its report", (), f"{_STUDIED}:run"),
+        WorkKind("report", "The report as one page", ("designs",), f"{_STUDIED}:report"),
+        WorkKind(
+            "margins",
+            "Break-even values, other speeds, tolerances",
+            ("design", "layout", "values", "baseline", "index", "methods"),
+            f"{_STUDIED}:margins",
+        ),
         WorkKind("sweep", "The best designs over swept values", ("sweep", "layouts", "indices"), f"{_STUDIED}:sweep"),
         WorkKind(
             "front",

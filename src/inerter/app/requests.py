@@ -20,6 +20,7 @@ from inerter.app.lanes import Waiting
 from inerter.app.panels import PANELS, at_once
 from inerter.app.responses import as_events, as_json, media_type
 from inerter.app.server import Server
+from inerter.app.start import to_document
 from inerter.app.wire import Refusal, decode_json, encode_json
 from inerter.files.common.toml import as_toml
 
@@ -33,7 +34,11 @@ async def _ready(server: Server, request: Request) -> Response:
 
 
 async def _start(server: Server, request: Request) -> dict[str, Any]:
-    return server.start
+    return await asyncio.to_thread(server.start.to_dict)
+
+
+async def _start_stamp(server: Server, request: Request) -> dict[str, Any]:
+    return await asyncio.to_thread(server.start.stamp)
 
 
 async def _examples(server: Server, request: Request) -> dict[str, Any]:
@@ -47,11 +52,6 @@ async def _example(server: Server, request: Request) -> dict[str, Any]:
     if name not in found:
         raise Refusal(404, f"Unknown example; available: {', '.join(found)}.")
     return to_document(f"{name}.toml", found[name].read_text(encoding="utf-8"))
-
-
-def to_document(name: str, text: str) -> dict[str, Any]:
-    """A study file as a page opens it."""
-    return {"name": name, "text": text, **documents.read(text, name)}
 
 
 async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
@@ -119,7 +119,8 @@ async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) 
         raise Refusal(400, f"There is no work of the kind {body.kind!r}; there are {', '.join(KINDS)}.")
     asked = body.model_dump(exclude_unset=True, exclude={"wait", "title", "kind"})
     asked["records"] = [str(server.records.get(record)) for record in body.records]
-    job = server.jobs.add(body.kind, asked, body.title)
+    swept = f"Sweep of {' and '.join(body.sweep)}" if body.kind == "sweep" and body.sweep else ""
+    job = server.jobs.add(body.kind, asked, body.title or swept)
     if body.wait:
         with suppress(TimeoutError):
             await asyncio.wait_for(job.over.wait(), body.wait)
@@ -212,6 +213,7 @@ ENDPOINTS = (
     Endpoint("GET", "/api/about", "What there is to choose from", _about),
     Endpoint("GET", "/api/ready", "Which kernels are compiled still", _ready, media="text/event-stream"),
     Endpoint("GET", "/api/start", "The study of the command line", _start),
+    Endpoint("GET", "/api/start/stamp", "Whether its file has changed", _start_stamp),
     Endpoint("GET", "/api/examples", "The examples that come with the package", _examples),
     Endpoint("GET", "/api/examples/{name}", "One of them", _example),
     Endpoint("POST", "/api/study/read", "The document of a study file, and its problems", _read, bodies.ReadStudy),

@@ -17,28 +17,26 @@ from starlette.routing import Route
 
 from inerter.app.api_description import Endpoint
 from inerter.app.guard import AccessGuard, App
-from inerter.app.requests import ENDPOINTS, to_document
+from inerter.app.requests import ENDPOINTS
 from inerter.app.responses import as_json, media_type
 from inerter.app.server import Server
+from inerter.app.start import Start
 from inerter.app.wire import Refusal, decode_json, encode_json, refusal_of
 from inerter.errors import InerterError
 
 WEB = Path(__file__).with_name("web")
 
 
-_NOTHING: dict[str, Any] = {"name": "", "text": "", "study": {}, "problems": []}
-
-
 def of_file(
-    file: tuple[str, str] | None,
+    file: tuple[str, str, Path | None] | None,
     root: Path,
     quick: Executor,
     token: str,
     port: int,
     limits: tuple[int, int],
 ) -> App:
-    """The application that begins with a study file, its name and text; `root` is where it keeps its things."""
-    return application(Server(root, to_document(*file) if file else _NOTHING, quick=quick), token, port, *limits)
+    """The application that begins with a study (name, text, file), if any; `root` is where it keeps its things."""
+    return application(Server(root, Start.of(*file) if file else Start(), quick=quick), token, port, *limits)
 
 
 def application(server: Server, token: str, port: int, limit: int, record_limit: int) -> App:

@@ -20,6 +20,7 @@ from typing import Any
 
 import uvicorn
 
+from inerter.app.study_text import read_file
 from inerter.errors import StudyError, WorkError
 from inerter.work.processes import Processes
 
@@ -84,20 +85,16 @@ def _begin(process: Processes) -> None:
         process.submit(resolve_name, "inerter.app.answers:first")
 
 
-def _text_of(study: object) -> tuple[str, str] | None:
-    """The name and the text of a study file, from its path or from a study."""
+def _text_of(study: object) -> tuple[str, str, Path | None] | None:
+    """Name and text of a study, and its file if it is given by a path."""
     if study is None:
         return None
     if not isinstance(study, str | Path):
         text: str = resolve_name("inerter.files.study.quantity_texts:write_resolved")(study)
-        return "study.toml", text
-    path = Path(study)
-    try:
-        return path.name, path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise StudyError(f"{path}: cannot be read ({error.strerror}). Check the path.") from None
-    except UnicodeDecodeError:
-        raise StudyError(f"{path}: not UTF-8 text; expected a study file.") from None
+        return "study.toml", text, None
+    path = Path(study).absolute()
+    text = read_file(Path(study))
+    return path.name, text, path
 
 
 def _token() -> str:

@@ -22,8 +22,8 @@ from inerter.files.study.search_tables import RANKED, improvement
 from inerter.files.study.searching import GroupResult, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
 from inerter.network_search.network_optimum import SearchedNetwork
+from inerter.network_search.plan import SearchPlan
 from inerter.network_search.results import rank_networks
-from inerter.network_search.search import SearchPlan
 from inerter.networks.elements import ELEMENT_TYPES
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import replace_in_expression

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.app.documents import problems_of, study_from
+from inerter.app.documents import problems_of, study_from, study_without
 from inerter.errors import InerterError
 from inerter.files.common.problem import EntryError
+from inerter.files.common.problems import FileError
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.place import place_of
 from inerter.files.study.places import places
@@ -16,13 +17,29 @@ from inerter.formatting import format_quantity
 
 
 def check_document(document: object) -> dict[str, Any]:
-    """Problems and notes of a document, the networks of its layouts, and its numbers that can be swept."""
+    """Problems and notes of a document, the networks of its layouts, and its numbers that can be swept.
+
+    A layout that is invalid leaves out itself only.
+    """
+    study, problems, notes = None, [], []
     try:
-        study = study_from(document)
+        study, problems = _valid_part(document)
         check_study(study)
+        notes = study_notes(study)
     except InerterError as error:
-        return {"problems": problems_of(error), "notes": [], "layouts": {}, "places": []}
-    return {"problems": [], "notes": study_notes(study), "layouts": _layouts(study), "places": _places(study)}
+        problems = [*problems, *problems_of(error)]
+    if study is None:
+        return {"problems": problems, "notes": [], "layouts": {}, "places": []}
+    return {"problems": problems, "notes": notes, "layouts": _layouts(study), "places": _places(study)}
+
+
+def _valid_part(document: object) -> tuple[Study, list[dict[str, Any]]]:
+    """Study of a document without its invalid layouts, and the problems of these."""
+    try:
+        return study_from(document), []
+    except FileError as error:
+        assert isinstance(document, dict)
+        return study_without(document, error)[0], problems_of(error)
 
 
 def _places(study: Study) -> list[dict[str, Any]]:

@@ -12,11 +12,13 @@ from typing import Any
 
 from inerter.app.answers import optimum
 from inerter.app.comparing import compare_designs
-from inerter.app.documents import study_from
+from inerter.app.deciding import margins_of
+from inerter.app.designs import designs_of
+from inerter.app.documents import study_for, study_from
+from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import StudyError
-from inerter.figures.study import draw_study
-from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.common.folder import REPORT
 from inerter.files.study.checking import check_study
 from inerter.files.study.parts import PartResult
 from inerter.files.study.place import Sweep
@@ -24,19 +26,33 @@ from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.sweeps import number_of
 from inerter.networks.elements import Element
-from inerter.report.page import write_report
 from inerter.report.study_data import as_text
+from inerter.report.writing import write_figures_and_report
 from inerter.units import parse_quantity
 
 Body = Mapping[str, Any]
 
 
 def optimise(body: Body, folder: Path, tell: Tell) -> Any:
-    return optimum(study_from(body["study"]), body, tell)
+    return optimum(*study_for(body), tell)
 
 
 def run(body: Body, folder: Path, tell: Tell) -> Any:
-    return _run_study(study_from(body["study"]), folder, tell)
+    return _as_data(_run_study(study_from(body["study"]), folder, tell))
+
+
+def report(body: Body, folder: Path, tell: Tell) -> Any:
+    """Report of the study, or of its `designs` with fixed values, as `inerter run` writes it: one HTML file."""
+    study = study_from(body["study"])
+    if body.get("designs"):
+        study = study_from(with_fixed_values(body["study"], study, designs_of(study, body)))
+    result = _run_study(study, folder, tell)
+    path = folder / RESULTS / REPORT
+    return {"file": REPORT, "title": study.title, "size": path.stat().st_size, "status": result.status.kind.value}
+
+
+def margins(body: Body, folder: Path, tell: Tell) -> Any:
+    return margins_of(study_from(body["study"]), body, tell)
 
 
 def sweep(body: Body, folder: Path, tell: Tell) -> Any:
@@ -56,7 +72,7 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     for layout in wanted:
         study.design(layout)
     layouts = {name: layout for name, layout in study.layouts.items() if name in (*wanted, study.baseline)}
-    result = _run_study(replace(study, layouts=layouts), folder, tell)
+    result = _as_data(_run_study(replace(study, layouts=layouts), folder, tell))
     swept = [_describe_sweep(study, one) for one in study.sweeps]
     return {**result, "swept": swept, "units": study.free_units}
 
@@ -75,13 +91,17 @@ def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
     }
 
 
-def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
-    """Run a study as `inerter run` does, into the folder of the job; returns the results as data."""
+def _as_data(result: StudyResult) -> Any:
+    """Results as `inerter run --json` prints them."""
+    return json.loads("".join(as_text(result)))
+
+
+def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
+    """Run a study as `inerter run` does, into the folder of the job."""
 
     def show(result: StudyResult, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
-        draw_study(result.data, into / FIGURES)
-        write_report(result.data, study, into / FIGURES, into / REPORT, result.answers)
+        write_figures_and_report(result, into)
 
     def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
         done[0] = count
@@ -96,7 +116,7 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
 
     done = [0]
     check_study(study, preparing)
-    result = run_study(
+    return run_study(
         study,
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
@@ -104,8 +124,7 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> Any:
         compiling=compiling,
         finish=show,
     )
-    return json.loads("".join(as_text(result)))
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:
-    return compare_designs(study_from(body["study"]), body, tell)
+    return compare_designs(*study_for(body), tell)

@@ -17,9 +17,7 @@ from inerter.cli.options import OWN, Cluster
 from inerter.cli.pace import Pace
 from inerter.cli.progress import progress, steps
 from inerter.errors import StudyError
-from inerter.figures.layouts import draw_layouts
-from inerter.figures.study import draw_study
-from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.common.folder import REPORT
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.plausibility import roads_sentence
@@ -29,10 +27,10 @@ from inerter.files.study.tasks import tasks
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.conclusions import conclusion_sentences
-from inerter.report.page import write_report
 from inerter.report.sections import design_sections, task_sections
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text, wrap_text
+from inerter.report.writing import write_figures_and_report
 from inerter.statements import Statement
 
 _MOST = 20  # designs that are told one by one
@@ -53,11 +51,6 @@ def run(
     folder = output or Path(f"{study.stem}-results")
     own = processes(jobs)
 
-    def show(result: StudyResult, into: Path) -> None:
-        draw_study(result.data, into / FIGURES)
-        draw_layouts(loaded, into / FIGURES)
-        write_report(result.data, loaded, into / FIGURES, into / REPORT, result.answers)
-
     kept = continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
     items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with (
@@ -74,7 +67,7 @@ def run(
             force=force,
             progress=shown.cases,
             compiling=shown.kernels,
-            finish=show,
+            finish=write_figures_and_report,
         )
     _say(f"report: {folder / REPORT}")
     if as_json:

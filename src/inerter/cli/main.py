@@ -300,6 +300,52 @@ def rig(
 
 @app.command(
     help_epilogue="""Examples:
+  inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
+  inerter export quarter-car-results --layout S3 --index J1 --to modelica -o car.mo
+  inerter export my-car.toml --layout real --to spice --linear"""
+)
+def export(
+    source: Path,
+    /,
+    *,
+    to: Annotated[
+        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, spice, svg, pdf, latex; control and scipy in Python.")
+    ],
+    layout: Annotated[str | None, Parameter(help="Layout; may be left out if there is one.")] = None,
+    index: Annotated[str | None, Parameter(help="Index whose best design is exported, if values are free.")] = None,
+    point: Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")] = None,
+    only: Annotated[
+        tuple[str, ...],
+        Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
+    ] = (),
+    linear: Annotated[
+        bool, Parameter(negative="", show_default=False, help="Leave out friction and gaps on purpose.")
+    ] = False,
+    output: Annotated[
+        Path | None,
+        Parameter(name=["--output", "-o"], help="Output file; its suffix chooses among those of the kind."),
+    ] = None,
+    force: Annotated[
+        bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")
+    ] = False,
+) -> None:
+    """Export a design to another program: matrices, Modelica source, a netlist, tables, or a drawing.
+
+    Free values are those of the best design for the index: read from a folder
+    of results, or found anew from a study file.
+
+    Parameters
+    ----------
+    source
+        A study file (TOML), or a folder with its results.
+    """
+    from inerter.cli.export import export as command
+
+    command(source, to, layout, index, point, only, output, linear=linear, force=force)
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter serve
   inerter serve examples/quarter-car.toml
   inerter serve my-study.toml --port 8722 --no-browser"""

@@ -63,7 +63,7 @@ _SETTINGS: Any = {  # matplotlib's own type for this lists every key
 
 
 _DPI = 300
-_UNDATED: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+UNDATED: dict[str, Any] = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
 
 
 @dataclass(frozen=True)
@@ -202,5 +202,5 @@ def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: boo
             figure.set_layout_engine(None)  # "none" would have each file drawn twice
         for file in files:
             with atomic_write(file) as draft:
-                figure.savefig(draft, dpi=_DPI, metadata=_UNDATED[file.suffix])
+                figure.savefig(draft, dpi=_DPI, metadata=UNDATED[file.suffix])
     return files

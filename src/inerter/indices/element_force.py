@@ -21,7 +21,7 @@ class ElementForce:
     """
 
     road: Road | Excitation
-    element: str = field(metadata=choice_field((), "Name of the element.", example="c"))
+    element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-force"
     title = "force of an element"
     unit = "N"

@@ -21,7 +21,7 @@ class ElementStroke:
     """
 
     road: Road | Excitation
-    element: str = field(metadata=choice_field((), "Name of the element.", example="c"))
+    element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-stroke"
     title = "stroke of an element"
     unit = "m"

@@ -21,7 +21,7 @@ class ElementVelocity:
     """
 
     road: Road | Excitation
-    element: str = field(metadata=choice_field((), "Name of the element.", example="c"))
+    element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-velocity"
     title = "velocity across an element"
     unit = "m/s"

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import Floats, IntTable, Matrices, Matrix
+from inerter.kernels.arrays import Floats, Ints, IntTable, Matrices, Matrix
 from inerter.kernels.astrom_jury import Recursion, backward, fine_forward, forward
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.double_double import add_product
@@ -29,6 +29,7 @@ Array = Any
 _ACCURATE = 1e-9  # relative error of a squared norm up to which it counts as known
 _EPS, _FINE_EPS = 1.2e-16, 1e-30
 _DIFFERENCE = 1e-5  # relative step of differences
+SHARP = 40.0  # of the smooth maximum over criteria, which is at most log(criteria) / SHARP too large
 POWER_D, POWER_N, DROPPED, DEGREE, TOP_DEGREE = range(5)  # columns of `Port.forms`
 POLES, POLES_RIGID, ZEROS, ZEROS_RIGID = range(4)  # P, Q, A, B
 
@@ -44,6 +45,15 @@ class Port(NamedTuple):
     groups: Floats  # (functions,) number of the group: roots of sums of squares, which add up
 
 
+class TradeOff(NamedTuple):
+    """The aim of one point of a front: how far criteria, each a sum of groups, exceed it; see `excess_in`."""
+
+    criterion: Ints  # (groups,) number of the criterion to which each group belongs
+    aims: Floats  # (criteria,) none for the index itself
+    sizes: Floats  # (criteria,) excess of each that counts as one
+    scale: float  # of the excess, which makes it a relative change of the criteria
+
+
 class NormSpace(NamedTuple):
     """Room for an index and its gradient."""
 
@@ -52,6 +62,7 @@ class NormSpace(NamedTuple):
     squares: Floats  # (functions,)
     sums: Floats  # (groups,)
     errors: Floats  # (groups,)
+    slopes: Floats  # (groups,) derivative of the objective over the root of each
     top_shares: Matrix  # (functions, size): adjoints of N and D for a unit adjoint of each squared norm
     bottom_shares: Matrix
 
@@ -99,6 +110,7 @@ def norm_space(program: Program, port: Port) -> NormSpace:
         np.zeros(functions),
         np.zeros(groups),
         np.zeros(groups),
+        np.ones(groups),
         np.zeros((functions, size)),
         np.zeros((functions, size)),
     )
@@ -234,7 +246,7 @@ def _fill_differences(values: Array, program: Program, port: Port, space: NormSp
             fine_admittance(values, program, space.network)
             known = known and _squares(program, port, space, True) <= _ACCURATE
             for g in range(space.sums.size):
-                difference += sign * np.sqrt(space.sums[g])
+                difference += sign * space.slopes[g] * np.sqrt(space.sums[g])
         values[i] = at
         if known:
             gradient[i] = difference / (2.0 * _DIFFERENCE * at)
@@ -250,7 +262,7 @@ def _index(space: NormSpace) -> float:
 
 @part(borrowing=True)
 def _fill_adjoints(program: Program, port: Port, space: NormSpace) -> None:
-    """Fill the adjoints of the network's N and D, for the index, from the shares of each function."""
+    """Fill the adjoints of the network's N and D, for the objective, from the shares of each function."""
     last = program.parts.shape[0] - 1
     N_, D_ = space.network.top_adjoint[last], space.network.bottom_adjoint[last]
     top, bottom = program.parts[last, TOP], program.parts[last, BOTTOM]
@@ -259,8 +271,9 @@ def _fill_adjoints(program: Program, port: Port, space: NormSpace) -> None:
     for i in range(bottom + 1):
         D_[i] = 0.0
     for k in range(port.weights.size):
-        root = np.sqrt(space.sums[int(port.groups[k])])
-        share = 0.5 * port.weights[k] / root if root > 0.0 else 0.0
+        g = int(port.groups[k])
+        root = np.sqrt(space.sums[g])
+        share = 0.5 * port.weights[k] * space.slopes[g] / root if root > 0.0 else 0.0
         for i in range(top + 1):
             N_[i] += share * space.top_shares[k, i]
         for i in range(bottom + 1):
@@ -274,23 +287,71 @@ def index_in(values: Array, program: Program, port: Port, space: NormSpace, grad
     The error is a bound at first order, infinite where the index is not known (the mechanism is not stable, or twice
     the precision does not suffice).
     """
+    error, fine = _known_squares(values, program, port, space)
+    if not error <= _ACCURATE:
+        return np.inf, np.inf
+    value = _index(space)
+    if gradient.size > 0:
+        _fill_gradient(values, program, port, space, fine, gradient)
+    return value, 0.5 * error
+
+
+@part(borrowing=True)
+def excess_in(
+    values: Array, program: Program, port: Port, trade_off: TradeOff, space: NormSpace, gradient: Array
+) -> float:
+    """Smooth maximum of the excesses (criterion - aim) / size, scaled, with its gradient as `index_in`.
+
+    It grows with each criterion, so that no design is better in all than its minimum. It is infinite where an index
+    is not known.
+    """
+    error, fine = _known_squares(values, program, port, space)
+    if not error <= _ACCURATE:
+        return np.inf
+    worst, total = -np.inf, 0.0
+    for i in range(trade_off.aims.size):
+        worst = max(worst, _excess(i, trade_off, space))
+    for i in range(trade_off.aims.size):
+        total += np.exp(SHARP * (_excess(i, trade_off, space) - worst))
+    if gradient.size > 0:
+        for g in range(space.slopes.size):
+            i = trade_off.criterion[g]
+            share = np.exp(SHARP * (_excess(i, trade_off, space) - worst)) / total
+            space.slopes[g] = trade_off.scale * share / trade_off.sizes[i]
+        _fill_gradient(values, program, port, space, fine, gradient)
+    return float(trade_off.scale * (worst + np.log(total) / SHARP))
+
+
+@part(borrowing=True)
+def _excess(i: int, trade_off: TradeOff, space: NormSpace) -> float:
+    value = 0.0
+    for g in range(space.sums.size):
+        if trade_off.criterion[g] == i:
+            value += np.sqrt(space.sums[g])
+    return float((value - trade_off.aims[i]) / trade_off.sizes[i])
+
+
+@part(borrowing=True)
+def _known_squares(values: Array, program: Program, port: Port, space: NormSpace) -> Any:
+    """Fill the squared norms; their relative error, and whether they took twice the precision."""
     admittance(values, program, space.network)
     error, fine = _squares(program, port, space, False), False
     if not error <= _ACCURATE:
         fine = True
         fine_admittance(values, program, space.network)
         error = _squares(program, port, space, True)
-    if not error <= _ACCURATE:
-        return np.inf, np.inf
-    value = _index(space)
-    if gradient.size > 0:
-        _fill_adjoints(program, port, space)
-        for i in range(gradient.size):
-            gradient[i] = 0.0
-        admittance_adjoint(program, space.network, gradient)
-        if fine:
-            _fill_differences(values, program, port, space, gradient)
-    return value, 0.5 * error
+    return error, fine
+
+
+@part(borrowing=True)
+def _fill_gradient(values: Array, program: Program, port: Port, space: NormSpace, fine: bool, gradient: Array) -> None:
+    """Fill the gradient over element values of an objective with the slopes of `space`."""
+    _fill_adjoints(program, port, space)
+    for i in range(gradient.size):
+        gradient[i] = 0.0
+    admittance_adjoint(program, space.network, gradient)
+    if fine:
+        _fill_differences(values, program, port, space, gradient)
 
 
 @kernel("indices of a network", typed=True)

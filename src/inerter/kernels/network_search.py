@@ -1,4 +1,4 @@
-"""Minima of an index over the values of one network, from many starts in one call, compiled.
+"""Minima of an index, or of a trade-off, over the values of one network, from many starts in one call, compiled.
 
 Each search is a projected quasi-Newton method in logarithms: the BFGS matrix with Powell's damping, variables at a
 bound with the gradient outwards held there, and a line search along the projected path (Nocedal and Wright, Numerical
@@ -14,7 +14,7 @@ import numpy as np
 
 from inerter.kernels.arrays import Floats, Ints, Matrix
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.network_norms import NormSpace, Port, index_in, norm_space
+from inerter.kernels.network_norms import NormSpace, Port, TradeOff, excess_in, index_in, norm_space
 from inerter.kernels.network_polynomials import Program
 from inerter.kernels.quasi_newton import factorise_free, reset, solve_lower, solve_upper, update
 
@@ -52,24 +52,36 @@ class SearchSpace(NamedTuple):
 
 
 @part(borrowing=True)
-def _index_at(
-    point: Array, variables: Variables, program: Program, port: Port, space: SearchSpace, gradient: Array
+def _objective_at(
+    point: Array,
+    variables: Variables,
+    program: Program,
+    port: Port,
+    trade_off: TradeOff,
+    space: SearchSpace,
+    gradient: Array,
 ) -> float:
-    """Logarithm of the index and, if there is room for it, its gradient over the variables."""
+    """Excess over the aim of a trade-off, or logarithm of the index without one.
+
+    If there is room for it, also its gradient over the variables.
+    """
     for leaf in range(variables.of_leaf.size):
         if variables.of_leaf[leaf] >= 0:
             variables.values[leaf] = np.exp(point[variables.of_leaf[leaf]])
-    if gradient.size == 0:
-        value, _ = index_in(variables.values, program, port, space.norms, gradient)
-        return float(np.log(value))
-    value, _ = index_in(variables.values, program, port, space.norms, space.slopes)
+    slopes = space.slopes if gradient.size > 0 else gradient
+    divisor = 1.0
+    if trade_off.aims.size > 0:
+        value = excess_in(variables.values, program, port, trade_off, space.norms, slopes)
+    else:
+        divisor, _ = index_in(variables.values, program, port, space.norms, slopes)
+        value = float(np.log(divisor))
     for i in range(gradient.size):
         gradient[i] = 0.0
-    if value < np.inf:
+    if gradient.size > 0 and value < np.inf:
         for leaf in range(variables.of_leaf.size):
             if variables.of_leaf[leaf] >= 0:
-                gradient[variables.of_leaf[leaf]] += space.slopes[leaf] * variables.values[leaf] / value
-    return float(np.log(value))
+                gradient[variables.of_leaf[leaf]] += space.slopes[leaf] * variables.values[leaf] / divisor
+    return value
 
 
 @part(borrowing=True)
@@ -106,11 +118,11 @@ def _find_step(variables: Variables, space: SearchSpace) -> bool:
 
 
 @part(borrowing=True)
-def descend(variables: Variables, program: Program, port: Port, space: SearchSpace) -> Any:
-    """Minimise from `space.point`, which becomes the optimum; logarithm of the index, evaluations."""
+def descend(variables: Variables, program: Program, port: Port, trade_off: TradeOff, space: SearchSpace) -> Any:
+    """Minimise from `space.point`, which becomes the optimum; the objective, and the number of evaluations."""
     point, gradient, trial, trial_gradient = space.point, space.gradient, space.trial, space.trial_gradient
     k = point.size
-    f = _index_at(point, variables, program, port, space, gradient)
+    f = _objective_at(point, variables, program, port, trade_off, space, gradient)
     count, fresh = 1, True
     reset(space.hessian, 1.0)
     if not f < np.inf:
@@ -130,7 +142,7 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
             for i in range(k):
                 trial[i] = min(max(point[i] + t * space.step[i], variables.lower[i]), variables.upper[i])
                 along += gradient[i] * (trial[i] - point[i])
-            new = _index_at(trial, variables, program, port, space, trial_gradient)
+            new = _objective_at(trial, variables, program, port, trade_off, space, trial_gradient)
             count += 1
             near = new <= f + _ROUNDING and _projected_slope(trial, trial_gradient, variables) < slope
             if (along < 0.0 and new <= f + 1e-4 * along) or near:
@@ -166,12 +178,20 @@ def descend(variables: Variables, program: Program, port: Port, space: SearchSpa
 
 @kernel("search of a network", typed=True)
 def search_network(
-    samples: Matrix, tried: int, variables: Variables, program: Program, port: Port, points: Matrix, counts: Ints
+    samples: Matrix,
+    tried: int,
+    variables: Variables,
+    program: Program,
+    port: Port,
+    trade_off: TradeOff,
+    points: Matrix,
+    counts: Ints,
 ) -> Floats:
-    """Minima of the index from the best of each `tried` rows of `samples`, which lie in the unit cube.
+    """Minima from the best of each `tried` rows of `samples`, which lie in the unit cube.
 
-    `points` (starts, variables) and `counts` (starts,) are filled with the optima, as element values, and the numbers
-    of evaluations; the result has the values, infinite where all samples of a start are.
+    Minimised is the index, or the excess over the aim of a trade-off (`excess_in`) if that has criteria. `points`
+    (starts, variables) and `counts` (starts,) are filled with the optima, as element values, and the numbers of
+    evaluations; the result has the values, infinite where all samples of a start are.
     """
     k, starts = samples.shape[1], points.shape[0]
     leaves = variables.of_leaf.size
@@ -195,7 +215,7 @@ def search_network(
         for row in range(start * tried, (start + 1) * tried):
             for i in range(k):
                 space.trial[i] = variables.lower[i] + samples[row, i] * (variables.upper[i] - variables.lower[i])
-            f = _index_at(space.trial, variables, program, port, space, none)
+            f = _objective_at(space.trial, variables, program, port, trade_off, space, none)
             if f < best:
                 best, chosen = f, row
         if chosen < 0:
@@ -203,8 +223,8 @@ def search_network(
             continue
         for i in range(k):
             space.point[i] = variables.lower[i] + samples[chosen, i] * (variables.upper[i] - variables.lower[i])
-        f, count = descend(variables, program, port, space)
-        result[start], counts[start] = np.exp(f), tried + count
+        f, count = descend(variables, program, port, trade_off, space)
+        result[start], counts[start] = np.exp(f) if trade_off.aims.size == 0 else f, tried + count
         for i in range(k):
             points[start, i] = np.exp(space.point[i])
     return result

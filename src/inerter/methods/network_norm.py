@@ -6,7 +6,7 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.indices.definition import Combination, Index, IndexDefinition
-from inerter.kernels.network_norms import Port, indices
+from inerter.kernels.network_norms import Port, TradeOff, indices
 from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
     ARMS,
@@ -39,6 +39,7 @@ from inerter.vehicle.vehicle import Vehicle
 Array = NDArray[np.float64]
 PLACE = "admittance_in_question"
 TRIED = 32  # samples of which each start is the best
+_INDEX_ALONE = TradeOff(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,27 +168,71 @@ class NetworkIndex:
         One start for each `TRIED` rows of `samples` (rows, values) in the unit cube. None if the index is infinite for
         all values, and for values that are tied.
         """
+        over = self.over(network, lower, upper)
+        return None if over is None else over.search(samples)
+
+    def over(self, network: Network, lower: Array, upper: Array) -> IndexOverNetwork | None:
+        """The index over the free values of a network; None where `search` gives None."""
         program = network_program(network)
         port, leaves = self.port(program), [element.value for element in network.elements()]
         if port is None or port.weights.size == 0 or any(isinstance(value, Tied) for value in leaves):
             return None
         names = list(dict.fromkeys(value.name for value in leaves if isinstance(value, Free)))
         of_leaf = [names.index(value.name) if isinstance(value, Free) else -1 for value in leaves]
-        gains = [element.gain for element in network.elements()]
-        if any(gain != 1.0 for gain in gains):
+        if any(element.gain != 1.0 for element in network.elements()):
             return None
         numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
         variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
-        assert samples.shape[1] == lower.size == upper.size == len(names), "each free value has a name of its own"
-        starts = samples.shape[0] // TRIED
-        points, counts = np.zeros((starts, len(names))), np.zeros(starts, np.int64)
-        given = samples, TRIED, variables, program.program, port, points, counts
-        values = np.asarray(network_kernel(self.definition)(*given))
-        if self.is_peak:
-            values = values * np.sqrt(port.weights[0])
+        assert lower.size == upper.size == len(names), "each free value has a name of its own"
+        return IndexOverNetwork(self.definition, variables, program.program, port, (lower, upper))
+
+
+@dataclass(frozen=True, eq=False)
+class IndexOverNetwork:
+    """An index over the free values of one network, for compiled code."""
+
+    definition: IndexDefinition
+    variables: Variables
+    program: Program
+    port: Port
+    ends: tuple[Array, Array]
+
+    def values(self, points: Array) -> Array:
+        """The index at each row of free values, of r.m.s. values; infinite where it is not known."""
+        of_leaf = self.variables.of_leaf
+        rows = np.tile(self.variables.values, (points.shape[0], 1))
+        rows[:, of_leaf >= 0] = points[:, of_leaf[of_leaf >= 0]]
+        return np.asarray(indices(rows, self.program, self.port, np.zeros((0, of_leaf.size)), np.zeros(len(rows))))
+
+    def search(self, samples: Array, tried: int = TRIED, trade_off: TradeOff = _INDEX_ALONE) -> CompiledSearch:
+        """Optima of the index from the best of each `tried` rows of `samples` (rows, values) in the unit cube.
+
+        With a trade-off the values are excesses over its aim, whose criteria are sums of the groups of the index.
+        """
+        lower, upper = self.ends
+        starts = samples.shape[0] // tried
+        points, counts = np.zeros((starts, lower.size)), np.zeros(starts, np.int64)
+        given = samples, tried, self.variables, self.program, self.port
+        if self.definition.is_peak:
+            values = np.asarray(search_network_peak(*given, points, counts)) * np.sqrt(self.port.weights[0])
+        else:
+            values = np.asarray(search_network(*given, trade_off, points, counts))
         for end in (lower, upper):  # which logarithms miss by a rounding
             points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
         return CompiledSearch(points, values, counts)
+
+
+def join_indices(several: Sequence[NetworkIndex]) -> tuple[NetworkIndex, NDArray[np.int64]]:
+    """Indices of r.m.s. values as one, their sum, and the number of the index to which each of its groups belongs."""
+    counts = [int(one.groups.max()) + 1 for one in several]
+    first = np.cumsum([0, *counts[:-1]])
+    together = NetworkIndex(
+        several[0].definition,
+        tuple(function for one in several for function in one.functions),
+        np.concatenate([one.weights for one in several]),
+        np.concatenate([one.groups + start for one, start in zip(several, first, strict=True)]),
+    )
+    return together, np.repeat(np.arange(len(several)), counts)
 
 
 def network_kernel(definition: IndexDefinition) -> Any:

@@ -22,7 +22,7 @@ from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.network_norm import NetworkIndex, admittance_program
 from inerter.methods.norm import EXACT_NORM
-from inerter.network_search.search import SearchPlan, places_of, plan_search, with_chosen_network
+from inerter.network_search.plan import SearchPlan, places_of, plan_search, with_chosen_network
 from inerter.networks.elements import Damper, Network
 from inerter.networks.free_network import FreeNetwork
 from inerter.synthesis.best_admittance import best_admittance

@@ -19,7 +19,7 @@ from inerter.networks.equivalence import equivalence_classes, transform_values
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from inerter.network_search.search import SearchPlan
+    from inerter.network_search.plan import SearchPlan
 
 TIED = 1e-8  # relative difference up to which two networks have the same value
 _LIKE = 1e-3  # the same for a network and what is left of it without elements at their bounds

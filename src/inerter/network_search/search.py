@@ -1,110 +1,36 @@
-"""`search`: the best values of every network that a free network may be, ranked.
+"""`search`: the best values of every network that a free network may be, ranked, or the front of several indices.
 
 A norm over random roads or forces without delays is searched in compiled code that takes any network
-(`methods.network_norm`); anything else by `optimise`, network by network.
+(`methods.network_norm`); anything else by `optimise` or `pareto_front`, network by network.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache, partial
+from dataclasses import replace
+from functools import partial
 from numbers import Integral
+from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inerter.errors import DesignError, InerterError, StatusKind
+from inerter.errors import DesignError
 from inerter.kernels.prepare import prepare_on
-from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
-from inerter.methods.method import Method, check_request
-from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index, network_kernel
-from inerter.methods.norm import is_exact_norm
+from inerter.methods.composite_index import IndexLike
+from inerter.methods.method import Method
+from inerter.network_search.front_results import NetworkFront
+from inerter.network_search.fronts import FrontPlan, NetworkPoints, front_group, front_waves, plan_front
 from inerter.network_search.network_optimum import SearchedNetwork
+from inerter.network_search.plan import SearchPlan, plan_search, search_group
 from inerter.network_search.results import SearchResult, collect_results
-from inerter.networks.elements import Damper, Element, Network, Spring, free
-from inerter.networks.enumeration import Topology
-from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
-from inerter.optimisation.limits import Limit, check_limits
-from inerter.optimisation.optimise import AGREEMENT, optimise, quasi_random_points
-from inerter.vehicle.replace_values import mounted_elements, with_networks
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
-from inerter.work.pool import worker_pool
+from inerter.optimisation.limits import Limit
+from inerter.vehicle.vehicle import Vehicle
+from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import report
 
-Array = NDArray[np.float64]
-_STARTS = 8  # searches for each value
-_SELDOM, _MORE = 10, 4  # where at most one start in so many finds the best value, so many times as many follow
-_GROUP = 24  # networks that are handed out together
-_CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
-_AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
-
-@dataclass(frozen=True)
-class SearchPlan:
-    """A search that can be handed to other processes in groups of networks."""
-
-    vehicle: Vehicle
-    index: IndexLike
-    method: Method
-    limits: tuple[Limit, ...]
-    seed: int
-    starts: int | None
-    place: FreeNetwork
-    compiled: NetworkIndex | None  # None: by `optimise`
-
-    @cached_property
-    def topologies(self) -> list[Topology]:
-        """All networks, by number of elements, then by expression."""
-        return self.place.topologies()
-
-    def groups(self) -> list[tuple[Topology, ...]]:
-        """The networks in groups, those with the most elements first, since they take longest."""
-        several = self.topologies[::-1]
-        size = _GROUP if self.compiled is not None else 1
-        return [tuple(several[i : i + size]) for i in range(0, len(several), size)]
-
-    @cached_property
-    def taken_names(self) -> frozenset[str]:
-        """Names of the elements beside the free network."""
-        return frozenset(element.label for part in mounted_elements(self.vehicle) for element in part)
-
-    def network(self, topology: Topology) -> Network:
-        """A network with free values."""
-        return self.place.network(topology, self.taken_names)
-
-    def design(self, topology: Topology) -> Vehicle:
-        """The vehicle with a network with free values."""
-        return with_chosen_network(self.vehicle, self.place, self.network(topology))
-
-    def topology_text(self, topology: Topology) -> str:
-        """The expression of a network by the names that its elements have in the design."""
-        return topology.format_expression(topology.names(self.taken_names))
-
-    def ends(self, topology: Topology) -> list[tuple[float, float]]:
-        """Bounds of the elements in the order of the expression."""
-        by_symbol = {kind.symbol: ends for kind, ends in self.place.bounds.items()}
-        return [by_symbol[symbol] for symbol in topology.kinds]
-
-    def keeps_bounds(self, topology: Topology, values: Sequence[float]) -> bool:
-        """Whether element values lie between their bounds."""
-        return all(low <= value <= high for value, (low, high) in zip(values, self.ends(topology), strict=True))
-
-    def active_bounds(self, topology: Topology, values: Sequence[float]) -> dict[str, str]:
-        """Elements at a bound, with "lower" or "upper", by name."""
-        found = {}
-        for name, value, (low, high) in zip(topology.names(self.taken_names), values, self.ends(topology), strict=True):
-            place = np.log(value / low) / np.log(high / low)
-            if place < _AT_BOUND or place > 1.0 - _AT_BOUND:
-                found[name] = "lower" if place < _AT_BOUND else "upper"
-        return found
-
-    def kernels(self) -> list[object]:
-        """Compiled code that the search calls."""
-        return [] if self.compiled is None else [network_kernel(self.compiled.definition)]
-
-
+@overload
 def search(
     vehicle: Vehicle,
     index: IndexLike,
@@ -115,7 +41,36 @@ def search(
     starts: int | None = None,
     jobs: int = 1,
     executor: Executor | None = None,
-) -> SearchResult:
+) -> SearchResult: ...
+
+
+@overload
+def search(
+    vehicle: Vehicle,
+    index: Sequence[IndexLike],
+    method: Method,
+    *,
+    points: int = 25,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    starts: int | None = None,
+    jobs: int = 1,
+    executor: Executor | None = None,
+) -> NetworkFront: ...
+
+
+def search(
+    vehicle: Vehicle,
+    index: IndexLike | Sequence[IndexLike],
+    method: Method,
+    *,
+    points: int = 25,
+    subject_to: Sequence[Limit] = (),
+    seed: int = 0,
+    starts: int | None = None,
+    jobs: int = 1,
+    executor: Executor | None = None,
+) -> SearchResult | NetworkFront:
     """The best values of every network that the free network in `vehicle` may be, ranked by `index`.
 
     The vehicle has one `any_network(...)`; in several places it is the same network with the same values. Each network
@@ -123,165 +78,58 @@ def search(
     `optimise`. `jobs` processes or an `executor` (of `concurrent.futures`, of a dask client, of mpi4py) share the
     networks. The same seed gives the same result, whatever shares the work.
 
-    Raises `DesignError` without exactly one free network, or if `seed`, `starts` or `jobs` are not valid, and what
-    `optimise` raises for the index, the method and the constraints.
+    For two or three indices the result is the front over all networks, with about `points` designs between the single
+    optima.
+
+    Raises `DesignError` without exactly one free network, or if `seed`, `starts`, `points` or `jobs` are not valid, and
+    what `optimise` and `pareto_front` raise for the indices, the method and the constraints.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.any_network(2, dampers=(10, 1e6), inerters=(0.01, 1e5))
     >>> car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
-    >>> found = it.search(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm())
+    >>> road = it.Road(roughness=5e-7, speed=25)
+    >>> found = it.search(car, it.RideComfort(road), it.Norm())
     >>> found.ranking[0].layout, round(found.ranking[0].value, 4)
     ('c1 - b1', 2.4281)
+    >>> it.search(car, (it.RideComfort(road), it.TyreLoad(road)), it.Norm(), points=5).networks
+    ('c1 - b1',)
     """
-    plan = plan_search(vehicle, index, method, subject_to, seed, starts)
     if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs < 1:
         raise DesignError(f"`jobs` must be a positive integer, got {jobs!r}.")
-    groups = plan.groups()
-    found: list[SearchedNetwork] = []
+    if isinstance(index, Sequence) and not isinstance(index, str):
+        front = plan_front(vehicle, index, method, subject_to, seed, starts, points)
+        with worker_pool(int(jobs), executor) as pool:
+            prepare_on(pool, front.kernels())
+            return _search_front(front, pool)
+    plan = plan_search(vehicle, index, method, subject_to, seed, starts)
     with worker_pool(int(jobs), executor) as pool:
         prepare_on(pool, plan.kernels())
-        for result in pool.spread(partial(search_group, replace(plan)), groups):  # without all topologies in its cache
-            found.extend(result)
-            best = min((one.value for one in found), default=np.inf)
-            report("networks", len(found), len(plan.topologies), best=best if np.isfinite(best) else None)
+        return _search_one_index(plan, pool)
+
+
+def _search_one_index(plan: SearchPlan, pool: Pool) -> SearchResult:
+    groups = plan.groups()
+    found: list[SearchedNetwork] = []
+    for result in pool.spread(partial(search_group, replace(plan)), groups):  # without all topologies in its cache
+        found.extend(result)
+        best = min((one.value for one in found), default=np.inf)
+        report("networks", len(found), len(plan.topologies), best=best if np.isfinite(best) else None)
     return collect_results(plan, found)
 
 
-def plan_search(
-    vehicle: Vehicle,
-    index: IndexLike,
-    method: Method,
-    subject_to: Sequence[Limit] = (),
-    seed: int = 0,
-    starts: int | None = None,
-) -> SearchPlan:
-    """The search as a plan; see `search`."""
-    check_vehicle(vehicle)
-    for what, number, least in (("seed", seed, 0), ("starts", 1 if starts is None else starts, 1)):
-        if isinstance(number, bool) or not isinstance(number, Integral) or number < least:
-            raise DesignError(f"`{what}` must be an integer of at least {least}, got {number!r}.")
-    places = places_of(vehicle)
-    if len(set(places)) != 1:
-        found = "no free network" if not places else f"{len(set(places))} different free networks"
-        raise DesignError(
-            f"A search needs a design with one free network, such as Spring(120e3) | any_network(4, ...); got {found}."
-        )
-    place, limits = places[0], check_limits(subject_to)
-    for asked in (index, *(limit.of for limit in limits)):
-        check_request(with_chosen_network(vehicle, place, _probe(place)), asked, method)
-    plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
-    if not plan.topologies:
-        raise DesignError(f"There is no network to search: {place!r} leaves out all of them.")
-    alone = len(places) == 1 and not limits and is_exact_norm(method) and not is_composite(index)
-    if not alone:
-        return plan
-    probe = with_chosen_network(vehicle, place, Damper(free(1.0, 2.0, PLACE), PLACE))
-    if set(probe.free_values()) != {PLACE}:
-        return plan
-    sprung = with_chosen_network(vehicle, place, Spring(1.0))
+def _search_front(plan: FrontPlan, pool: Pool) -> NetworkFront:
+    searches = [_search_one_index(one, pool) for one in plan.plans]
+    waves, done = front_waves(plan, searches), 0
+    sent = replace(plan, plans=tuple(map(replace, plan.plans)))  # without all topologies in their caches
     try:
-        mechanism = probe.mechanism()
-        definition, other = (index.definition(m) for m in (mechanism, sprung.mechanism()))  # type: ignore[union-attr]
-        if definition.outputs != other.outputs:  # the index depends on which networks carry weight
-            return plan
-        return replace(plan, compiled=network_index(mechanism, definition, PLACE))
-    except InerterError:  # `optimise` says which networks have no index
-        return plan
-
-
-def places_of(vehicle: Vehicle) -> list[FreeNetwork]:
-    """The free networks of a vehicle, as often as they occur."""
-    found: list[FreeNetwork] = []
-
-    def look(network: Network) -> Network:
-        found.extend(free_networks(network))
-        return network
-
-    with_networks(vehicle, look)
-    return found
-
-
-def with_chosen_network(vehicle: Vehicle, place: FreeNetwork, network: Network) -> Vehicle:
-    """The vehicle with a network in the place of its free network."""
-    return with_networks(vehicle, lambda mounted: with_free_networks(mounted, {place: network}))
-
-
-def _probe(place: FreeNetwork) -> Element:
-    kind, ends = next(iter(place.bounds.items()))
-    return kind.of(free(*ends), PLACE)
-
-
-def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:
-    """Optima of some networks; a network that fails says why."""
-    one: Callable[[SearchPlan, Topology], SearchedNetwork] = _search_compiled if plan.compiled else _search_by_optimise
-    found = []
-    for topology in group:
-        try:
-            found.append(one(plan, topology))
-        except InerterError as error:
-            found.append(SearchedNetwork(topology, reason=str(error)))
-    return found
-
-
-@lru_cache(maxsize=16)
-def _samples(count: int, size: int, seed: int) -> Array:
-    return quasi_random_points(count, size, seed)
-
-
-def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
-    assert plan.compiled is not None
-    network = plan.network(topology)
-    lower, upper = np.array(plan.ends(topology)).T
-    starts = plan.starts or _STARTS * topology.size
-    found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
-    if found is None:  # for an index that is infinite, or zero, whatever the values
-        return _search_by_optimise(plan, topology)
-    if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
-        starts *= _MORE
-        found = plan.compiled.search(network, lower, upper, _samples(starts * TRIED, topology.size, plan.seed))
-        assert found is not None
-    values, points = found.values, found.points
-    if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
-        middle = dict(zip(topology.names(plan.taken_names), np.sqrt(lower * upper).tolist(), strict=True))
-        if np.isfinite(estimate_of(plan.design(topology).with_values(middle), plan.index, plan.method).value):
-            return _search_by_optimise(plan, topology)
-        return SearchedNetwork(topology, starts, reason="no start has a finite index")
-    best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
-    if best is None:
-        return _search_by_optimise(plan, topology)
-    agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))
-    return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(points[best].tolist()))
-
-
-def _count_equal(values: Array) -> int:
-    return int(np.sum(values <= values.min() * (1.0 + AGREEMENT)))
-
-
-def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:
-    """The best of some optima whose value is that of the method itself, since a search may miss a sharp peak."""
-    design, names = plan.design(topology), topology.names(plan.taken_names)
-    for number in np.argsort(values, kind="stable")[:_CONFIRMED].tolist():
-        values_of = dict(zip(names, points[number].tolist(), strict=True))
-        estimate = estimate_of(design.with_values(values_of), plan.index, plan.method)
-        if estimate.status.ok and abs(estimate.value - values[number]) <= _EQUAL * values[number]:
-            return int(number)
-    return None
-
-
-def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
-    design = plan.design(topology)
-    found = optimise(design, plan.index, plan.method, subject_to=plan.limits, seed=plan.seed, starts=plan.starts)
-    if not np.isfinite(found.value) or found.status.kind is StatusKind.INFEASIBLE:
-        return SearchedNetwork(topology, found.n_starts, reason=found.status.message or "the index is infinite")
-    names = topology.names(plan.taken_names)
-    others = {name: value for name, value in found.parameters.items() if name not in names}
-    reason = "" if found.status.ok else str(found.status)
-    return SearchedNetwork(
-        topology,
-        found.n_starts,
-        found.n_converged,
-        found.value,
-        tuple(found.parameters[name] for name in names),
-        others,
-        reason,
-    )
+        scale, tasks = next(waves)
+        while True:
+            found: list[NetworkPoints] = []
+            for result in pool.spread(partial(front_group, sent, scale), [(task,) for task in tasks]):
+                found.extend(result)
+                report("networks between single optima", done + len(found), done + len(tasks))
+            done += len(found)
+            scale, tasks = waves.send(found)
+    except StopIteration as end:
+        front: NetworkFront = end.value
+        return front

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -65,6 +66,15 @@ def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, re
             with np.errstate(invalid="ignore"):  # at a pole
                 result[:, :, column] += response[:, :, j] * factor[:, None]
     return result
+
+
+def resonant_range(matrices: Sequence[Matrix]) -> Matrix:
+    """Angular frequencies from a decade below the slowest resonance to a decade above the fastest."""
+    poles = np.concatenate([np.linalg.eigvals(A) for A in matrices]) if matrices else np.array([1.0])
+    resonances = np.abs(poles[np.abs(poles.imag) > 0.3 * np.abs(poles)])
+    sizes = resonances if resonances.size else np.abs(poles)[np.abs(poles) > 0.0]
+    low, high = (sizes.min(), sizes.max()) if sizes.size else (1.0, 1.0)
+    return np.geomspace(low / 10.0, high * 10.0, 601)
 
 
 def resolvent(system: LinearSystem) -> Any:

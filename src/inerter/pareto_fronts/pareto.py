@@ -7,7 +7,7 @@ So points are evenly spread for convex and non-convex fronts, and each starts fr
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -30,7 +30,7 @@ from inerter.optimisation.active_constraints import constraint_results
 from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region_within
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, trust_region
-from inerter.optimisation.optimise import Optimum, check_free, optimise
+from inerter.optimisation.optimise import check_free, optimise
 from inerter.optimisation.threads import one_blas_thread
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.points import (
@@ -96,9 +96,39 @@ def pareto_front(
             if not np.isfinite(end.value) or end.status.kind is StatusKind.INFEASIBLE:
                 return _empty(criteria, int(seed), end.status)
             ends.append(end)
-        trade = _trade(vehicle, criteria, method, limits, free, ends, int(seed)).from_strict_ends()
+        found_ends = [np.array(list(end.parameters.values())) for end in ends]
+        trade = _trade(vehicle, criteria, method, limits, free, found_ends, int(seed)).from_strict_ends()
         found = trade.front(int(points))
         return _front(trade, found, int(seed))
+
+
+def points_at_aims(
+    vehicle: Vehicle,
+    indices: Sequence[IndexLike],
+    method: Method,
+    limits: tuple[Limit, ...],
+    *,
+    ends: Sequence[Mapping[str, float]],
+    scale: tuple[Array, Array],
+    aims: Array,
+    seed: int,
+) -> list[FrontPoint | None]:
+    """Designs whose largest excess over each of `aims` is the smallest; None where none is feasible.
+
+    Aims (aims, criteria) are multiples of the `scale`, smallest value and range of each criterion. `ends` are the free
+    values of single optima, from which the searches start.
+    """
+    free = check_free(vehicle)
+    points = [np.array([end[name] for name in free]) for end in ends]
+    with one_blas_thread():
+        trade = replace(_trade(vehicle, tuple(indices), method, limits, free, points, seed), given_scale=scale)
+        known = [trade.at(point) for point in trade.ends]
+        found: list[FrontPoint | None] = []
+        for aim in aims:
+            one = trade.solve(aim, known)
+            found.append(one)
+            known += [] if one is None else [one]
+    return found
 
 
 def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[IndexLike, ...]:
@@ -128,6 +158,7 @@ class _Trade:
     ends: tuple[Array, ...]  # points
     hints: Array  # points of the front of a quick method
     seed: int
+    given_scale: tuple[Array, Array] | None = None  # instead of that of the ends
 
     def criteria(self, points: Array) -> Array:
         """The indices (n, criteria) at each row of `points`."""
@@ -136,6 +167,8 @@ class _Trade:
     @cached_property
     def scale(self) -> tuple[Array, Array]:
         """Smallest value of each criterion at the ends, and its range."""
+        if self.given_scale is not None:
+            return self.given_scale
         table = self.criteria(np.array(self.ends))
         ideal = table.min(axis=0)
         size = table.max(axis=0) - ideal
@@ -336,10 +369,9 @@ def _trade(
     method: Method,
     limits: tuple[Limit, ...],
     free: dict[str, Free],
-    ends: Sequence[Optimum],
+    found: Sequence[Array],
     seed: int,
 ) -> _Trade:
-    found = [np.array(list(end.parameters.values())) for end in ends]
     return _Trade(
         vehicle=vehicle,
         indices=indices,

@@ -34,7 +34,8 @@ from inerter.report.sections import Section
 from inerter.table import records
 
 _NEAR = 0.01  # share within which a smaller network is as good as the best
-_MOST_FAILED = 5  # networks that are told one by one
+_MOST_FAILED = 5  # networks that are named for one reason
+_MOST_REASONS = 3
 
 
 def search_sections(found: StudySearch) -> Iterator[Section]:
@@ -79,11 +80,15 @@ def search_notes(found: StudySearch) -> list[str]:
         reasons: dict[str, list[str]] = {}
         for network, reason in one.result.failed:
             reasons.setdefault(reason, []).append(network)
-        for reason, networks in reasons.items():
+        told = sorted(reasons.items(), key=lambda entry: -len(entry[1]))
+        for reason, networks in told[:_MOST_REASONS]:
             more = f" and {len(networks) - _MOST_FAILED} more" * (len(networks) > _MOST_FAILED)
             named = ", ".join(networks[:_MOST_FAILED])
             have = "1 network has" if len(networks) == 1 else f"{len(networks)} networks have"
             notes.append(f"{one.heading}: {have} no value ({named}{more}): {reason.rstrip('.')}")
+        rest = sum(len(networks) for _, networks in told[_MOST_REASONS:])
+        if rest:
+            notes.append(f"{one.heading}: {rest} more networks have no value; search.csv has the reason of each")
     return notes
 
 

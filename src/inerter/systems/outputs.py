@@ -99,6 +99,19 @@ def stroke_of(label: str) -> str:
     return f"{label}_stroke"
 
 
+def rename_output(output: str, elements: Mapping[str, str]) -> str:
+    """Name of an output once elements have other names, by the old ones.
+
+    >>> rename_output("k_force", {"k": "spring"}), rename_output("sprung_velocity", {"k": "spring"})
+    ('spring_force', 'sprung_velocity')
+    """
+    for old, new in elements.items():
+        for output_of in (force_of, velocity_of, stroke_of):
+            if output == output_of(old):
+                return output_of(new)
+    return output
+
+
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
     found = [

@@ -216,12 +216,17 @@ def _end_of_range(found: BudgetAnswer) -> str:
     """Break-even value as text, or the range if the design is worse again beyond another crossing; empty if none."""
     if found.value is None:
         return ""
-    end = format_quantity(found.value, found.unit, error=found.standard_error or nan)
-    beyond = [c for c in found.crossings if (c < found.value if found.at_most else c > found.value)]
+    return range_text(found.value, found.unit, found.standard_error or nan, found.crossings, at_most=found.at_most)
+
+
+def range_text(value: float, unit: str, error: float, crossings: Sequence[float], *, at_most: bool) -> str:
+    """Range of values on the better side of a break-even value (below it if `at_most`), up to the next crossing."""
+    end = format_quantity(value, unit, error=error)
+    beyond = [c for c in crossings if (c < value if at_most else c > value)]
     if beyond:
-        other = format_quantity(max(beyond) if found.at_most else min(beyond), found.unit)
-        return f"from {other} to {end}" if found.at_most else f"from {end} to {other}"
-    return f"up to {end}" if found.at_most else f"from {end} on"
+        other = format_quantity(max(beyond) if at_most else min(beyond), unit)
+        return f"from {other} to {end}" if at_most else f"from {end} to {other}"
+    return f"up to {end}" if at_most else f"from {end} on"
 
 
 def _remark(found: BudgetAnswer) -> str:

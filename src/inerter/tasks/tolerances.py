@@ -184,7 +184,7 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
         compared = f", {format_share(part)} better than {base.layout}, which scatters too"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"
-    due = f", mostly due to {next(iter(_shares(best)))[1]}" if best.effects else ""
+    due = f", mostly due to {_shares(best)[0][1]}" if _shares(best) else ""
     order = f" Without scatter {nominal.layout} is best." if nominal is not best else ""
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
@@ -196,7 +196,8 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
 
 def _shares(one: ToleranceAnswer) -> list[tuple[float, str]]:
     """Pairs of total-order Sobol' index and name of the value, largest first."""
-    return sorted(((total, name) for name, (_, total) in one.effects.items()), reverse=True)
+    known = [(total, name) for name, (_, total) in one.effects.items() if np.isfinite(total)]
+    return sorted(known, reverse=True)
 
 
 def _due(one: ToleranceAnswer) -> str:

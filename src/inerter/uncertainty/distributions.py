@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, NonlinearitySupport
+from inerter.methods.registry import METHODS, nonlinearities_of
 from inerter.networks.elements import Element, Free, Tied
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import (
@@ -123,23 +124,33 @@ def _number(name: str, value: float | Free) -> float:
     return value
 
 
-def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> Status:
-    """Status of a method that neglects elements with tolerances, as linear analysis does.
+def neglected_scatter(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> list[str]:
+    """Names of values with tolerances that the method neglects, as linear analysis does.
 
     `idle` names values without effect: with friction neglected, elements without force have none.
     """
     if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
-        return OK
+        return []
     elements = [element for strut in vehicle.mechanism().struts for element in strut.network.elements()]
     switching = {element.label for element in elements if element.acts}
-    unseen = [name for name in scatter.names if name in switching or (switching and name in idle)]
+    return [name for name in scatter.names if name in switching or (switching and name in idle)]
+
+
+def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> Status:
+    """Status of a method that neglects elements with tolerances: `inaccurate`, or `failed` if it neglects all."""
+    unseen = neglected_scatter(vehicle, method, scatter, idle)
     if not unseen:
         return OK
     return Status(
-        StatusKind.INACCURATE,
+        StatusKind.FAILED if len(unseen) == len(scatter.names) else StatusKind.INACCURATE,
         "the linear model neglects friction and treats gaps as closed, and so ignores the tolerance of "
-        f"{' and '.join(unseen)}; use a method that simulates",
+        f"{' and '.join(unseen)}; use a method that models them, such as {_simulating_method()}",
     )
+
+
+def _simulating_method() -> str:
+    """Name of the first method that models friction and gaps."""
+    return next(name for name in METHODS if nonlinearities_of(name) is NonlinearitySupport.BOTH)
 
 
 def with_free_scatter(vehicle: Vehicle, scatter: Scatter) -> Vehicle:

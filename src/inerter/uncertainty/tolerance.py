@@ -22,6 +22,7 @@ from inerter.optimisation.threads import one_blas_thread
 from inerter.uncertainty.distributions import (
     Scatter,
     elements_scatter,
+    neglected_scatter,
     nominal,
     scatter_left_out,
     scatter_of,
@@ -44,8 +45,9 @@ class Tolerance:
     """Distribution of an index under tolerances of a design.
 
     `first_order` and `total_order` are the Sobol' indices of each value (estimates without error bound, which may
-    slightly exceed the range 0 to 1). `worst` is the largest value found, at the `worst_values`, in the sample and at
-    the corners of the tolerances. All are nan, with a status, where the index has no value for some of the sample.
+    slightly exceed the range 0 to 1), nan for values that the method neglects. `worst` is the largest value found, at
+    the `worst_values`, in the sample and at the corners of the tolerances. All are nan, with a status, where the index
+    has no value for some of the sample, or where the method neglects all values with tolerances.
     """
 
     nominal: Estimate
@@ -179,8 +181,14 @@ def _analyse(
     names = scatter.names
     same = np.all(mixed_values == both[:samples], axis=1)
     idle = [name for name, is_same in zip(names, same.tolist(), strict=True) if is_same]
-    status = worst_of((status, scatter_left_out(design, method, scatter, idle)))
+    status, unseen = (
+        worst_of((status, scatter_left_out(design, method, scatter, idle))),
+        neglected_scatter(design, method, scatter, idle),
+    )
+    if len(unseen) == count:  # nothing is known of a scatter that the method neglects
+        known, both = False, np.full(both.shape, np.nan)
     first, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
+    effects = [(np.nan,) * 2 if n in unseen else (f, t) for n, f, t in zip(names, first, total, strict=True)]
     top = int(np.argmax(extreme)) if known else 0
     own = nominal(design, scatter)
     return Tolerance(
@@ -189,8 +197,8 @@ def _analyse(
         standard_deviation=float(both.std(ddof=1)),
         worst=float(extreme[top]) if known else np.nan,
         worst_values={n: own[n] * f if known else np.nan for n, f in zip(names, factors[top].tolist(), strict=True)},
-        first_order=dict(zip(names, first.tolist(), strict=True)),
-        total_order=dict(zip(names, total.tolist(), strict=True)),
+        first_order={name: float(one) for name, (one, _) in zip(names, effects, strict=True)},
+        total_order={name: float(one) for name, (_, one) in zip(names, effects, strict=True)},
         values=both,
         scatter=scatter,
         seed=seed,

@@ -203,6 +203,8 @@ function Layouts({ store }) {
       ${renaming && html`<form onSubmit=${formHandler((form) => {
         const name = String(form.get("name")).trim();
         if (name && !layouts.includes(name)) store.change({ type: "layoutRenamed", name });
+        else if (name && name !== document.layout)
+          store.say(`Got ${name}, the name of another layout; expected an unused name.`, "layout name");
         setRenaming(false);
       })}>
         <label>New name <input name="name" key=${document.layout} defaultValue=${document.layout}

@@ -24,10 +24,21 @@ import { Files } from "./files.js";
 
 const ALL = ""; // layouts
 
+/** The indices of which a front can be: those of the study, first those of its trade-off; else all that there are.
+ * @param {State} state @returns {{symbol: string, title: string}[]} */
+function frontIndices(state) {
+  const known = state.about?.indices ?? [];
+  const { trade_off: wanted = [] } = state.history.present.study.study ?? {};
+  const named = wanted.map((/** @type {string} */ symbol) =>
+    known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
+  const all = [...named, ...indicesOf(state).filter(({ symbol }) => !wanted.includes(symbol))];
+  return all.length > 1 ? all : known;
+}
+
 /** @param {{state: State}} props */
 export function FrontForm({ state }) {
-  const indices = indicesOf(state);
-  if (indices.length < 2) return html`<span class="quiet">The study has only one index.</span>`;
+  const indices = frontIndices(state);
+  if (indices.length < 2) return html`<span class="quiet">No two indices are known.</span>`;
   /** @param {string} name @param {number} chosen */
   const choice = (name, chosen) => html`<${Select} name=${name} aria-label=${`${name} index`}
     choices=${indexChoices(indices)} selected=${indices[chosen].symbol} />`;

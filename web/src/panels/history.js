@@ -67,7 +67,7 @@ function declared(value, picked, document) {
   const [rms, peak] = [value.rms, value.peaks].map((of) => of?.[signal.name] ?? Number.NaN);
   return {
     title: `${signal.label} over time, ${value.name ?? value.layout}`,
-    x: { what: "time", unit: "s" },
+    x: { what: "time", unit: "s", from: 0, to: value.duration },
     y: { what: signal.label, unit: signal.unit },
     curves: [...compared, value].map((of) => {
       const { time, values } = /** @type {Signal} */ (signalOf(of));

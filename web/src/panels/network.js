@@ -3,8 +3,12 @@
 import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
+<<<<<<< HEAD
 import { isRange, strutsOf, textOf } from "../state/document.js";
 import { brief, printed } from "../state/scale.js";
+=======
+import { isRange, own, strutsOf, textOf } from "../state/document.js";
+>>>>>>> main
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
@@ -28,7 +32,7 @@ export function NetworkPanel({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const mounts = mountsOf(state.about, document);
-  const parted = strutsOf(document.study.layouts?.[document.layout]);
+  const parted = strutsOf(own(document.study.layouts, document.layout));
   return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title">
     <${Editor} store=${store} api=${api}>
     ${mounts.length > 0 && html`<div class="row struts pad" role="group" aria-label="Struts">
@@ -329,8 +333,8 @@ const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[
 /** The value of an element as it is written. @param {State} state @param {string} name */
 function valueOf(state, name) {
   const { study, values, layout } = state.history.present;
-  const entry = study.elements?.[name];
-  return isRange(entry) ? (values[layout]?.[name] ?? "free") : typeof entry === "string" ? entry : "";
+  const entry = own(study.elements, name);
+  return isRange(entry) ? (own(own(values, layout), name) ?? "free") : typeof entry === "string" ? entry : "";
 }
 
 /** @param {Path} a @param {Path} b */

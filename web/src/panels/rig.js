@@ -75,6 +75,52 @@ async function takeIn(store, api, fit) {
   store.say(text, "device");
 }
 
+/** What a fit advises: another model, a setting, or a value that has to be stated.
+ * @typedef {{label: string, model?: string, config?: {[section: string]: object},
+ * ask?: {section: string, key: string, example: string}}} Offer */
+
+/** What may be wrong with a fit that is not to be relied on, the likeliest first, and what can be done about it.
+ * @param {{store: Store, api: Api, result: any}} props */
+function Causes({ store, api, result }) {
+  /** @type {{sentence: string, explained: number, remedy: string, offers: Offer[]}[]} */
+  const causes = result.causes ?? [];
+  return causes.length === 0 ? null : html`<h4>Possible causes, most likely first</h4><ol class="causes">
+    ${causes.map(({ sentence, explained, remedy, offers }, number) => html`<li key=${sentence}>
+      ${capital(sentence)}: explains ${Math.round(100 * explained)} % of the residual.
+      ${remedy && html` <span class="quiet">${capital(remedy)}.</span>`}
+      ${offers.map((offer) => html`<${Offered} key=${offer.label} store=${store} api=${api} result=${result}
+        offer=${offer} main=${number === 0} />`)}</li>`)}</ol>`;
+}
+
+/** @param {string} text */
+const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** A button that fits the same records again, as a fit advises.
+ * @param {{store: Store, api: Api, result: any, offer: Offer, main?: boolean}} props */
+function Offered({ store, api, result, offer: { label, model, config = {}, ask }, main = false }) {
+  const [told, setTold] = useState("");
+  const sources = (result.records ?? []).map((/** @type {any} */ { source }) => source);
+  const records = store.get().records.filter(({ name }) => sources.includes(name));
+  if (records.length < new Set(sources).size)
+    return html`<p class="quiet">${label}: drop the record of this fit on the page again.</p>`;
+  return html`<form class="row" onSubmit=${formHandler(async (form) => {
+    const stated = ask ? { [ask.section]: { [ask.key]: String(form.get("value")).trim() } } : config;
+    const title = `Identify ${records.map(({ name }) => name).join(", ")}: ${label}`;
+    setTold(await tryToBegin(store, api, { kind: "identify", title, study: {},
+      records: records.map(({ id }) => id), model: model ?? result.asked?.model,
+      config: mergedTables(result.asked?.config ?? {}, stated) }));
+  })}>
+    ${ask && html`<label>${label} <input name="value" class="entry" required placeholder=${ask.example}
+      autocomplete="off" spellcheck=${false} /></label>`}
+    <button class=${main ? "main" : ""}>${ask ? "Fit again" : label}</button>
+    ${told && html`<span class="problem" role="alert">${told}</span>`}</form>`;
+}
+
+/** Tables with the entries of others. @param {{[section: string]: object}} some
+ * @param {{[section: string]: object}} others */
+const mergedTables = (some, others) => ({ ...some,
+  ...Object.fromEntries(Object.entries(others).map(([section, table]) => [section, { ...some[section], ...table }])) });
+
 /** @param {{store: Store, api: Api, job: Job}} props */
 function Fit({ store, api, job }) {
   const { result } = job;
@@ -82,7 +128,9 @@ function Fit({ store, api, job }) {
     <${JobHead} store=${store} api=${api} job=${job} />
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
     ${result &&
-    html`<${Doubts} members=${[{ of: result.model, status: result.status }]} />
+    html`<${Doubts} members=${[{ of: result.model, status: result.status,
+      message: result.reason }]} />
+      <${Causes} store=${store} api=${api} result=${result} />
       <${Table} label="Identified values" heads=${["", "value", "95 % interval", ""]}>
         ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
           <th scope="row">${name}</th>
@@ -95,6 +143,8 @@ function Fit({ store, api, job }) {
         ? html`<button type="button" class="main"
           onClick=${() => void takeIn(store, api, result)}>Take the device into the editor</button>`
         : html`<p>${withheld(result)}</p>`}
+      ${(result.offers ?? []).map((/** @type {Offer} */ offer) => html`<${Offered} key=${offer.label} store=${store}
+        api=${api} result=${result} offer=${offer} />`)}
       <${Files} api=${api} job=${job} />`}
   </section>`;
 }

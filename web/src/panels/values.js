@@ -1,15 +1,25 @@
 // Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, and
 // whether it may vary; and the best values of what may.
 
+<<<<<<< HEAD
 import { layoutsWith, numbersOf, treeOf } from "../library.js";
 import { partAt } from "../network/algebra.js";
+=======
+import { enter, isBeingRead, wronglyTyped } from "../entering.js";
+import { layoutsWith, numbersOf } from "../library.js";
+>>>>>>> main
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, goalOf, unitKey } from "../questions.js";
+<<<<<<< HEAD
 import { entryAt, isRange, textOf } from "../state/document.js";
 import { STEPS, brief, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
+=======
+import { entryAt, isRange, own } from "../state/document.js";
+import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
+>>>>>>> main
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -126,7 +136,7 @@ function amountOf(state, row) {
   const entry = entryAt(study, path);
   const label = labelOf(row);
   if (isRange(entry)) {
-    const text = values[layout]?.[name] ?? middle(state, entry, unit);
+    const text = own(own(values, layout), name) ?? middle(state, entry, unit);
     const set = (/** @type {string} */ value) =>
       /** @type {Change} */ ({ type: "valued", layout, values: { [name]: value } });
     return { row, label, text, range: entry, free: true, set };
@@ -135,7 +145,7 @@ function amountOf(state, row) {
   const bare = typeof entry === "number" || unit === PURE || unit === "";
   const set = (/** @type {string} */ value) =>
     /** @type {Change} */ ({ type: "placed", place: path, value: bare ? written(value) : value });
-  return { row, label, text, range: ranges[idOf(row)] ?? decade(text), free: false, set };
+  return { row, label, text, range: own(ranges, idOf(row)) ?? decade(text), free: false, set };
 }
 
 /** What a number is called below the title of its section, or of its table. An element has its own name, and its
@@ -196,11 +206,12 @@ function AmountRow({ store, amount, wide, chosen }) {
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
-  const problems = problemsOf(state).filter((problem) => isAt(problem, place));
+  const wrong = wronglyTyped(state, id);
+  const problems = wrong ? [{ sentence: wrong }] : problemsOf(state).filter((problem) => isAt(problem, place));
   const gesture = `slide ${id}`;
   /** @param {number} next */
   const slide = (next) => {
-    if (!free && !(id in state.history.present.ranges)) {
+    if (!free && !Object.hasOwn(state.history.present.ranges, id)) {
       store.change({ type: "ranged", place: id, from: range.from, to: range.to }, gesture);
     }
     store.change(set(inUnitOf(state, text, unit, next)), gesture);
@@ -216,8 +227,13 @@ function AmountRow({ store, amount, wide, chosen }) {
     else return;
     event.preventDefault();
   };
+<<<<<<< HEAD
   const classes = ["amount", wide && "wide", free && "free", chosen && "chosen"].filter(Boolean);
   return html`<div class=${classes.join(" ")} data-place=${id}>
+=======
+  return html`<div class=${`amount ${wide ? "wide" : ""} ${free ? "free" : ""}`} data-place=${id}
+    aria-busy=${isBeingRead(state, id)}>
+>>>>>>> main
     <${Bounds} store=${store} amount=${amount} />
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label} title=${`${range.from} to ${
       range.to}`} value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
@@ -225,7 +241,7 @@ function AmountRow({ store, amount, wide, chosen }) {
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      done=${(/** @type {string} */ value) => store.change(set(value))} />
+      done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text }, value, set(value))} />
     ${row.may_be_free && html`<input type="checkbox" checked=${free} aria-label=${`${label} may vary`}
       onChange=${vary} />`}
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
@@ -245,18 +261,22 @@ function Bounds({ store, amount }) {
   const { path: place, sentence, words } = row;
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
-  /** @param {{from: string, to: string}} next */
-  const setRange = (next) => (free ? store.change({ type: "placed", place, value: next })
-    : store.change({ type: "ranged", place: place.join("."), ...next }));
+  const id = place.join(".");
+  /** @param {string} value @param {"from" | "to"} end */
+  const setEnd = (value, end) => {
+    const next = { ...range, [end]: value };
+    enter(store, { id, unit: row.unit, before: range[end] }, value, free ? { type: "placed", place, value: next }
+      : { type: "ranged", place: id, ...next });
+  };
   return html`<details class="bounds">
     <summary aria-label=${`${label}: bounds`} class=${section === ELEMENTS ? "symbol-name" : ""}
       title=${sentence || words}><${Name} label=${label} element=${section === ELEMENTS} /></summary>
     <div class="menu-body">
       <p class="quiet">${sentence || words}</p>
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
-        done=${(/** @type {string} */ from) => setRange({ from, to: range.to })} /></label>
+        done=${(/** @type {string} */ from) => setEnd(from, "from")} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to}
-        done=${(/** @type {string} */ to) => setRange({ from: range.from, to })} /></label>
+        done=${(/** @type {string} */ to) => setEnd(to, "to")} /></label>
       ${removable && html`<button type="button"
         onClick=${() => store.change({ type: "elementRemoved", name: element })}>Delete ${element}</button>`}
     </div>

@@ -48,15 +48,16 @@ const CHANGES = {
   restored: (_, { document }) => standing(document),
   placed: (document, { place, value }) => withEntry(document, place, value),
   valued: (document, { layout, values }) =>
-    ({ ...document, values: { ...document.values, [layout]: { ...document.values[layout], ...values } } }),
+    ({ ...document, values: { ...document.values, [layout]: { ...own(document.values, layout), ...values } } }),
   valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
   freed: (document, { place, name, from, to, method }) => {
     const entry = entryAt(document.study, place);
     const text = typeof entry === "string" ? entry : null;
     const users = text === null ? [] : Object.keys(document.study.layouts ?? {});
-    const values = { ...document.values };
-    for (const layout of users) values[layout] = { ...values[layout], [name]: /** @type {string} */ (text) };
+    const chosen = Object.fromEntries(users.map((layout) =>
+      [layout, { ...own(document.values, layout), [name]: /** @type {string} */ (text) }]));
+    const values = { ...document.values, ...chosen };
     const { study } = document;
     // What is free needs a method that chooses it.
     const has = method === undefined || study.study?.optimise !== undefined;
@@ -78,19 +79,19 @@ const CHANGES = {
   },
   networkTaken: (document, { layout, entry, elements, values }) => {
     const study = { ...document.study, elements: { ...document.study.elements, ...elements } };
-    const chosen = { ...document.values, [layout]: { ...document.values[layout], ...values } };
+    const chosen = { ...document.values, [layout]: { ...own(document.values, layout), ...values } };
     return standing(withEntry({ ...document, study, layout, values: chosen }, ["layouts", layout], entry));
   },
   selected: (document, { layout, strut }) => standing({ ...document, layout, strut: strut ?? null }),
   layoutAdded: (document, { name }) => {
-    const values = { ...document.values, [name]: document.values[document.layout] ?? {} };
-    const like = document.study.layouts?.[document.layout] ?? Object.keys(document.study.elements ?? {})[0] ?? "";
+    const values = { ...document.values, [name]: own(document.values, document.layout) ?? {} };
+    const like = own(document.study.layouts, document.layout) ?? Object.keys(document.study.elements ?? {})[0] ?? "";
     return standing(withEntry({ ...document, values, layout: name }, ["layouts", name], like));
   },
   layoutRenamed: (document, { name }) => {
     const { study, values, layout: old } = document;
     const layouts = study.layouts ?? {};
-    if (!(old in layouts) || name in layouts) return document;
+    if (own(layouts, old) === undefined || own(layouts, name) !== undefined) return document;
     const renamed = { ...document, layout: name, values: keyRenamed(values, old, name),
       study: { ...study, layouts: keyRenamed(layouts, old, name) } };
     return study.study?.baseline === old ? withEntry(renamed, ["study", "baseline"], name) : renamed;
@@ -135,7 +136,7 @@ function standing(document) {
   const layouts = document.study.layouts ?? {};
   const known = Object.keys(layouts);
   const layout = known.includes(document.layout) ? document.layout : (known.at(-1) ?? "");
-  const struts = strutsOf(layouts[layout]);
+  const struts = strutsOf(own(layouts, layout));
   const strut = struts.length === 0 ? null : struts.includes(document.strut ?? "") ? document.strut : struts[0];
   return layout === document.layout && strut === document.strut ? document : { ...document, layout, strut };
 }
@@ -146,8 +147,8 @@ export const strutsOf = (entry) => (entry !== null && typeof entry === "object" 
 
 /** The text of the network that is edited. @param {Document} document @returns {string} */
 export function textOf({ study, layout, strut }) {
-  const entry = study.layouts?.[layout];
-  const text = entry !== null && typeof entry === "object" ? entry[strut ?? ""] : entry;
+  const entry = own(study.layouts, layout);
+  const text = entry !== null && typeof entry === "object" ? own(entry, strut ?? "") : entry;
   return typeof text === "string" ? text : "";
 }
 
@@ -178,8 +179,13 @@ function elementRenamed(document, old, name, study) {
   return standing({ ...document, values, ranges, study });
 }
 
+/** What a table itself has by a name; a name such as `constructor` is one like any other. @param {any} table
+ * @param {string} key @returns {any} */
+export const own = (table, key) => (table !== null && typeof table === "object" && Object.hasOwn(table, key)
+  ? table[key] : undefined);
+
 /** What stands in a table at a place. @param {any} table @param {string[]} place @returns {any} */
-export const entryAt = (table, place) => place.reduce((inside, key) => inside?.[key], table);
+export const entryAt = (table, place) => place.reduce(own, table);
 
 /** The document with something at a place of its study. @param {Document} document @param {string[]} place
  * @param {unknown} value @returns {Document} */
@@ -189,7 +195,7 @@ const withEntry = (document, place, value) => ({ ...document, study: placed(docu
  * @param {unknown} value @returns {any} */
 function placed(table, place, value) {
   const [key, ...rest] = place;
-  if (rest.length > 0) return { ...table, [key]: placed(table?.[key] ?? {}, rest, value) };
+  if (rest.length > 0) return { ...table, [key]: placed(own(table, key) ?? {}, rest, value) };
   return value === undefined ? without(table, key) : { ...table, [key]: value };
 }
 

@@ -10,9 +10,11 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @import { Path, Tree } from "../network/algebra.js" */
 /** @import { Parts } from "../library.js" */
 /** @import { Answers } from "./answers.js" */
+/** @import { Typed } from "../entering.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
-/** What the page has to say: `about` tells which message a newer one replaces.
- * @typedef {{about: string, text: string}} Message */
+/** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does.
+ * @typedef {{label: string, act: () => void}} Offer */
+/** @typedef {{about: string, text: string, offer?: Offer}} Message */
 /** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
  * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
  * seconds since 1970, by the clock of the server; `found`: a result so far */
@@ -25,11 +27,11 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
- * known, by their texts.
+ * known, by their texts. `typed`: what was typed into a field, and is not taken over.
  * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
  * choosing: Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
  * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, records: any[], view: View,
- * about: any, connection: Connection, messages: Message[]}} State */
+ * about: any, connection: Connection, messages: Message[], typed: Typed | null}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
@@ -50,18 +52,20 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "viewed", view: Partial<View>}
  *  | {type: "told", about: any}
  *  | {type: "connected", connection: Connection}
- *  | {type: "said", text: string, about?: string}
- *  | {type: "closed", about: string}} Action */
+ *  | {type: "said", text: string, about?: string, offer?: Offer}
+ *  | {type: "closed", about: string}
+ *  | {type: "typed", typed: Typed}
+ *  | {type: "read", typed: Typed, sentence?: string}} Action */
 
 /** `change` changes the document, `look` what of it is shown; `say` gives a message.
  * @typedef {{get: () => State, dispatch: (action: Action) => void, subscribe: (told: () => void) => () => void,
  * change: (change: Change, gesture?: string | null) => void, look: (view: Partial<View>) => void,
- * say: (text: string, about?: string) => void}} Store */
+ * say: (text: string, about?: string, offer?: Offer) => void}} Store */
 
 /** @returns {State} */
 export const initial = () => ({
   history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
-  parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [],
+  parts: null, trees: {}, records: [], about: null, connection: "connecting", messages: [], typed: null,
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
     compared: [], against: "", seconds: 10, seed: 0, across: false, tall: false, ghosts: [],
@@ -73,13 +77,14 @@ const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another 
 
 /** The state with another document in it: nothing that was said or answered of the one before is about it.
  * @param {State} state @param {DocumentHistory} history @returns {State} */
-const elsewhere = (state, history) => ({ ...state, history, answers: turned(state.answers), messages: [] });
+const elsewhere = (state, history) =>
+  ({ ...state, history, answers: turned(state.answers), messages: [], typed: null });
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
   changed: (state, { change, gesture }) => {
     const history = changed(state.history, after(state.history.present, change), gesture);
-    return ELSEWHERE.includes(change.type) ? elsewhere(state, history) : { ...state, history };
+    return ELSEWHERE.includes(change.type) ? elsewhere(state, history) : { ...state, history, typed: null };
   },
   began: (state) => ({ ...state, history: beginning(state.history.present) }),
   rested: (state) => ({ ...state, history: rested(state.history) }),
@@ -105,9 +110,15 @@ const STEPS = {
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text }) =>
-    ({ ...state, messages: [...others(state, about), { about, text }].slice(-MOST) }),
+  said: (state, { text, about = text, offer }) =>
+    ({ ...state, messages: [...others(state, about), { about, text, ...(offer ? { offer } : {}) }].slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
+  typed: (state, { typed }) => ({ ...state, typed, answers: without(state.answers, "typed") }),
+  read: (state, { typed, sentence }) => {
+    if (state.typed !== typed) return state;
+    return sentence ? { ...state, typed: { ...typed, sentence } } : reduce(state, { type: "changed",
+      change: typed.change, gesture: null });
+  },
 };
 
 /** The trees of networks, by their texts. @param {Parts} parts @returns {{[text: string]: Tree}} */
@@ -141,7 +152,7 @@ export function createStore(state = initial()) {
       if (isChange(change)) dispatch({ type: "changed", change, gesture });
     },
     look: (view) => dispatch({ type: "viewed", view }),
-    say: (text, about) => dispatch({ type: "said", text, about }),
+    say: (text, about, offer) => dispatch({ type: "said", text, about, offer }),
     subscribe: (told) => {
       listeners.add(told);
       return () => void listeners.delete(told);

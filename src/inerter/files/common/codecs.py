@@ -9,6 +9,7 @@ from typing import Any
 from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, RawEntry, TableCodec
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
+from inerter.systems.outputs import rename_output
 from inerter.units import quote_value
 
 
@@ -135,6 +136,16 @@ class NamesCodec(Codec):
     def table_codecs(self, place: KeyPath) -> Iterator[tuple[KeyPath, TableCodec]]:
         """The tables of its entries."""
         yield from self.item.table_codecs((*place, "*"))
+
+
+@dataclass(frozen=True)
+class WeightsCodec(NamesCodec):
+    """Weights of outputs by their names, which may be outputs of elements."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The table with the other names of elements in those of outputs."""
+        raw = super().rename(raw, names)
+        return {rename_output(name, names): one for name, one in raw.items()} if isinstance(raw, Mapping) else raw
 
 
 def with_name(words: str, name: str) -> str:

@@ -17,6 +17,7 @@ from inerter.formatting import format_alike, format_number, format_range
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
+from inerter.systems.outputs import rename_output
 from inerter.units import parse_quantity, quote_value, unit_in
 
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
@@ -159,7 +160,8 @@ def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: boo
     """
     example = f'{one.key} = "{one.example}"'
     if isinstance(one, TextChoice):
-        codec: Codec = word(f"a {one.key.replace('_', ' ')}", one.options) if one.options else TEXT
+        free_text: Codec = ELEMENT_NAME if one.of_element else TEXT
+        codec: Codec = word(f"a {one.key.replace('_', ' ')}", one.options) if one.options else free_text
         return Declaration(codec, one.sentence, example, REQUIRED if one.needed else None, one.key, one.key)
     least = "not negative" if one.default == 0.0 and not optional else "positive"
     default = None if optional else REQUIRED if one.default is None else one.default
@@ -226,6 +228,26 @@ def text(value: Any) -> str:
 
 
 TEXT = Scalar(text, lambda: TEXT_SCHEMA)
+
+
+class ElementNameCodec(Scalar):
+    """The name of an element."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The other name of the element."""
+        return names.get(raw, raw) if isinstance(raw, str) else raw
+
+
+class OutputNameCodec(Scalar):
+    """The name of an output of the vehicle, which may be one of an element."""
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The name of the output with the other name of its element."""
+        return rename_output(raw, names) if isinstance(raw, str) else raw
+
+
+ELEMENT_NAME = ElementNameCodec(text, lambda: TEXT_SCHEMA)
+OUTPUT_NAME = OutputNameCodec(text, lambda: TEXT_SCHEMA)
 
 
 def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:

@@ -19,8 +19,8 @@ from inerter.files.common.codec import (
     keys_in,
     table_of,
 )
-from inerter.files.common.codecs import NamesCodec, TaggedCodec
-from inerter.files.common.entries import EXPRESSION, TEXT, declaration_of, not_negative, positive, word
+from inerter.files.common.codecs import NamesCodec, TaggedCodec, WeightsCodec
+from inerter.files.common.entries import EXPRESSION, OUTPUT_NAME, TEXT, declaration_of, not_negative, positive, word
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
@@ -137,7 +137,7 @@ class LeverCodec(Codec):
 
 @dataclass(frozen=True)
 class PortCodec(NamesCodec):
-    """Names with levers: coordinates that a port is joined to, or outputs with their weights."""
+    """Coordinates that a port is joined to, with their levers."""
 
     item: Codec = LeverCodec()
     name: Callable[[Any], str] = part_name
@@ -147,8 +147,14 @@ class PortCodec(NamesCodec):
         return _levers(value)
 
 
+@dataclass(frozen=True)
+class OutputsCodec(PortCodec, WeightsCodec):
+    """Outputs with their weights."""
+
+
 PORT = PortCodec(least=1)
 SOME_PORT = PortCodec()
+_OUTPUTS = OutputsCodec()
 
 
 @keyed_dataclass
@@ -195,20 +201,20 @@ class MeasureTable:
     """Which outputs answer the questions of indices."""
 
     comfort: Mapping[str, float] = key(
-        SOME_PORT,
+        _OUTPUTS,
         "Outputs of ride comfort J1, with their weights.",
         "comfort = { body_acceleration = 1 }",
         default=NOTHING,
     )
     tyre_load: Mapping[str, float] | None = key(
-        SOME_PORT,
+        _OUTPUTS,
         "Outputs of the dynamic tyre load J3, with their weights.",
         "tyre_load = { wheel_load = 1 }",
         default=None,
     )
     load_input: str | None = key(TEXT, "The force of load carrying.", 'load_input = "load"', default=None)
     load_output: str | None = key(
-        TEXT, "Displacement output of load carrying J5.", 'load_output = "body_displacement"', default=None
+        OUTPUT_NAME, "Displacement output of load carrying J5.", 'load_output = "body_displacement"', default=None
     )
 
 

@@ -25,7 +25,7 @@ from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import MethodWithChecks, MethodWithKernels, constituents_of
 from inerter.methods.registry import is_blind
-from inerter.network_search.search import SearchPlan, plan_search
+from inerter.network_search.plan import SearchPlan, plan_search
 from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free

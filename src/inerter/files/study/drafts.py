@@ -5,23 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
-from inerter.errors import NetworkError
+from inerter.errors import InerterError, NetworkError
 from inerter.files.common.codec import INVALID, KeyPath, RawEntry
 from inerter.files.common.codecs import with_name
 from inerter.files.common.elements import ElementCodec, with_tied_values
 from inerter.files.common.entries import LOWER, UPPER, ExpressionCodec, element_name
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
+from inerter.files.study.loading import study_of
 from inerter.files.study.place import Place
 from inerter.files.study.sections import study_codec
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import names
+from inerter.systems.outputs import main_outputs, rename_output
 from inerter.units import quote_value
 
 Tables = Mapping[str, Any]
 _LAYOUTS = "layouts"
+_WITH_OUTPUTS = ("indices", "vehicle")  # sections that may name outputs
+_ANY_ROAD = {"speed": "1 m/s", "roughness": "1e-6 m^3/cycle"}
 
 
 @dataclass(frozen=True)
@@ -132,7 +137,8 @@ def _names(text: str) -> tuple[str, ...]:
 def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any]:
     """The tables with other names of elements, wherever the file has them.
 
-    Raises `EntryError` for a name that an element cannot have, or that another one has.
+    Raises `EntryError` for a name that an element cannot have, or that another one has; also for one that would make
+    an output of an element one of the vehicle's, or the other way round.
     """
     given = tables.get("elements")
     known = given if isinstance(given, Mapping) else {}
@@ -140,4 +146,35 @@ def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any
         element_name(new)
         if (new in known and new not in renamed) or list(renamed.values()).count(new) > 1:
             raise EntryError(got=quote_value(new), fault="the name of another element", expected="an unused name")
-    return dict(study_codec().rename(tables, renamed))
+    found = dict(study_codec().rename(tables, renamed))
+    if any(found.get(section) != tables.get(section) for section in _WITH_OUTPUTS):
+        _check_outputs(tables, renamed)
+    return found
+
+
+def _check_outputs(tables: Tables, renamed: Mapping[str, str]) -> None:
+    """Raises `EntryError` if the name of an output in the tables is, or would become, one of a part of the vehicle."""
+    try:
+        study = study_of({**tables, **({"road": _ANY_ROAD} if "road" in tables else {})}, Path("study.toml"))
+        own = {name for layout in study.layouts for name in main_outputs(study.design(layout).mechanism())}
+    except InerterError:
+        return
+    used = {text for section in _WITH_OUTPUTS for text in _texts(tables.get(section))}
+    for output in sorted(used):
+        other = rename_output(output, renamed)
+        if other != output and own & {output, other}:
+            raise EntryError(
+                got=quote_value(other),
+                fault=f"the name of an output of the vehicle, or that of {quote_value(output)}, which is one",
+                expected="a name of an element that no part of the vehicle has",
+            )
+
+
+def _texts(tables: Any) -> Iterator[str]:
+    """All texts and keys of tables."""
+    match tables:
+        case str():
+            yield tables
+        case Mapping():
+            for name, entry in tables.items():
+                yield from (name, *_texts(entry))

@@ -13,8 +13,8 @@ from typing import Any, ClassVar
 from inerter.errors import RegistryError
 from inerter.field_metadata import TypedField
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, Scalar
-from inerter.files.common.codecs import NamesCodec
-from inerter.files.common.entries import TEXT
+from inerter.files.common.codecs import WeightsCodec
+from inerter.files.common.entries import OUTPUT_NAME, TEXT
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.study.excitations import (
@@ -84,7 +84,7 @@ class WeightCodec(Scalar):
         yield (), Number(PURE, words or "weight", value, signed=True)
 
 
-_OUTPUTS = NamesCodec(WeightCodec(_weight, lambda: _WEIGHT_SCHEMA), least=1)
+_OUTPUTS = WeightsCodec(WeightCodec(_weight, lambda: _WEIGHT_SCHEMA), least=1)
 
 
 def _sum(weights: Mapping[str, float]) -> str:
@@ -92,10 +92,10 @@ def _sum(weights: Mapping[str, float]) -> str:
     return " + ".join(in_words(name) + (f" x {format_number(w)}" if w != 1.0 else "") for name, w in weights.items())
 
 
-def _name(what: str) -> Form:
+def _name(what: str, codec: Codec = TEXT) -> Form:
     """The form of a name that has to be the vehicle's."""
     return Form(
-        TEXT,
+        codec,
         told=lambda name: [(what.capitalize(), in_words(name))],
         named=lambda name: [NameReference((), what, name)],
     )
@@ -122,7 +122,7 @@ FORMS: dict[str, Form] = {
         sized=StatedExcitation.size_references,
     ),
     "input": _name("input"),
-    "output": _name("output"),
+    "output": _name("output", OUTPUT_NAME),
     "amplitude": Form(
         AmountCodec(_OF_INPUTS, "input"),
         made=lambda amount, road: amount.value,

@@ -16,7 +16,7 @@ from inerter.formatting import format_number, format_quantity
 from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
-from inerter.norms.response import frequency_response
+from inerter.norms.response import frequency_response, resonant_range
 from inerter.systems.descriptor import close
 from inerter.systems.outputs import input_unit, unit_of
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
@@ -43,7 +43,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
         except (MechanismError, LinearSystemError):  # friction or a gap alone holds a part
             if all(map(is_blind, study.methods)):
                 raise
-    omega = _frequencies([system.A for _, system in systems.values()])
+    omega = resonant_range([system.A for _, system in systems.values()])
     data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
     for index in study.indices:
         mine = {layout: entry for (layout, i), entry in systems.items() if i == index}
@@ -104,12 +104,3 @@ def _output_label(output: OutputWeight, own: str, unit: str) -> str:
     if own and not unit:
         return f"{output.output} over {format_quantity(1.0 / output.weight, own)}"
     return f"{output.output} x {format_number(output.weight)}{' m' if own.startswith('rad') else ''}"
-
-
-def _frequencies(matrices: list[Array]) -> Array:
-    """Angular frequencies from a decade below the slowest resonance to a decade above the fastest."""
-    poles = np.concatenate([np.linalg.eigvals(A) for A in matrices]) if matrices else np.array([1.0])
-    resonances = np.abs(poles[np.abs(poles.imag) > 0.3 * np.abs(poles)])
-    sizes = resonances if resonances.size else np.abs(poles)[np.abs(poles) > 0.0]
-    low, high = (sizes.min(), sizes.max()) if sizes.size else (1.0, 1.0)
-    return np.geomspace(low / 10.0, high * 10.0, 601)

@@ -24,8 +24,8 @@ from inerter.files.study.search_tables import networks_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.network_search.network_optimum import SearchedNetwork
+from inerter.network_search.plan import SearchPlan, search_group
 from inerter.network_search.results import SearchResult, collect_results
-from inerter.network_search.search import SearchPlan, search_group
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import names
 from inerter.table import csv_rows, csv_text

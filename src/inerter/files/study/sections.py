@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,21 +90,33 @@ class ConditionEntry:
     numbers: Mapping[str, Any]
 
 
-def rename_places(table: Any, names: Mapping[str, str]) -> Any:
-    """A table by places, written in either way, with other names of elements in them."""
+def rename_places(table: Any, names: Mapping[str, str], *, keys: Collection[str] = (), entries: bool = False) -> Any:
+    """A table by places, written in either way, with other names of elements in them; `entries` as of `by_place`.
+
+    `keys` are no places. An element whose name alone would be one of them, or a section, is named with its section.
+    """
     if not isinstance(table, Mapping):
         return table
+    nested = {label for label, entry in table.items() if [*by_place({label: entry}, entries=entries)] != [label]}
+    kept = {*keys, *nested, *(label for label in table if label not in names)}
     renamed = {}
     for label, entry in table.items():
         place = place_of(label)
-        first, *more = place.key.split(".")
-        if label == ELEMENTS and isinstance(entry, Mapping):
-            renamed[label] = {names.get(name, name): one for name, one in entry.items()}
-        elif place.section == ELEMENTS:
-            renamed[label.removesuffix(place.key) + ".".join([names.get(first, first), *more])] = entry
-        else:
+        if label == ELEMENTS and label in nested:
+            renamed[label] = {_renamed_key(name, names): one for name, one in entry.items()}
+        elif label in nested or label in keys or place.section != ELEMENTS:
             renamed[label] = entry
+        else:
+            new = _renamed_key(place.key, names)
+            is_bare = label == place.key and (new == label or new not in kept)
+            renamed[new if is_bare else f"{ELEMENTS}.{new}"] = entry
     return renamed
+
+
+def _renamed_key(key: str, names: Mapping[str, str]) -> str:
+    """A place within the section of elements, with the other name of its element."""
+    first, *more = key.split(".")
+    return ".".join([names.get(first, first), *more])
 
 
 class ConditionCodec(TableCodec):
@@ -112,7 +124,7 @@ class ConditionCodec(TableCodec):
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
         """The table with other names of elements in its places."""
-        return rename_places(raw, {old: new for old, new in names.items() if old not in self.names})
+        return rename_places(raw, names, keys=self.names)
 
 
 class PlacesCodec(ByPlaceCodec):
@@ -120,7 +132,7 @@ class PlacesCodec(ByPlaceCodec):
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
         """The table with other names of elements in its places."""
-        return rename_places(raw, names)
+        return rename_places(raw, names, entries=self.entries)
 
 
 _CONDITION = ConditionCodec(

@@ -46,12 +46,12 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     asked, method = study.resolve_index(index, layout), quick_method(study, vehicle)
     if not (_is_late(vehicle, asked) or (not is_blind(method) and _rubs(vehicle))):
         return {}, ""
-    found = [_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
+    found = [value_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
     values, messages = [value for value, _ in found], [message for _, message in found if message]
     return {method: values}, "; ".join(dict.fromkeys(messages))
 
 
-def _at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
+def value_at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
     """Value at `factor` times the speed of the study (nan if none), and a message if it is doubtful or missing."""
     layout, index, method = asked
     assert study.road is not None

@@ -1,0 +1,61 @@
+"""Implementation of `inerter export`."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from inerter.cli.interrupts import interruptible
+from inerter.errors import StudyError
+from inerter.exports.export import check_suffix, export_contents
+from inerter.exports.registry import EXPORTS
+from inerter.exports.request import ExportSpec
+from inerter.files.common.folder import check_single, single
+from inerter.files.study.chosen_design import chosen_design
+
+_BY = "export"
+
+
+def export(
+    source: Path,
+    to: str,
+    layout: str | None,
+    index: str | None,
+    point: int | None,
+    only: tuple[str, ...],
+    output: Path | None,
+    *,
+    linear: bool,
+    force: bool,
+) -> None:
+    """Export a design of a study file or of a folder of results to a file."""
+    kind = EXPORTS[to]
+    if output is not None:
+        check_suffix(kind, output)
+        if output.is_dir():
+            raise StudyError(f"{output}: is a folder; give the name of a file, such as -o {output / 'design'}.")
+        if not output.parent.is_dir():
+            raise StudyError(f"{output.parent}: folder not found. Create it, or choose another with -o.")
+        check_single(output, by=_BY, inputs=(), force=force)
+    else:
+        check_suffix(kind, f"design{kind.suffixes[0]}" if kind.is_file else "design")
+    with interruptible():
+        design = chosen_design(source, layout, index, point)
+        stem = source.stem if source.is_file() else source.resolve().name
+        path = output or Path(f"{stem}-{design.name}{kind.suffixes[0]}")
+        check_single(path, by=_BY, inputs=design.inputs, force=force)
+        title = f"{' '.join(design.study.title.split())}, {design.case.name}"
+        indices = {design.case.index: design.study.index(design.case.index)}
+        request = ExportSpec(
+            design.vehicle(),
+            to,
+            outputs=only or None,
+            linear=linear,
+            indices=indices,
+            conventions=design.study.conventions,
+            title=title,
+        )
+        contents = export_contents(kind, request, path)
+        with single(path, by=_BY, inputs=design.inputs, force=force) as draft:
+            draft.write_bytes(contents)
+    print(f"inerter: {kind.description}: {path}", file=sys.stderr)

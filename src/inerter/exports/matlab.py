@@ -1,0 +1,85 @@
+"""Matrices for MATLAB and Octave: a file of version 5, or a script that builds `ss` or `dss` with names and units."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from inerter.exports.kind import ExportKind
+from inerter.exports.named_system import NamedQuantity, NamedSystem
+from inerter.exports.request import ExportSpec
+
+Matrix = NDArray[np.float64]
+
+
+def _make(request: ExportSpec, suffix: str) -> str | bytes:
+    system = request.system_as_it_is()
+    return matlab_script(system) if suffix == ".m" else matlab_file(system)
+
+
+def matlab_file(system: NamedSystem) -> bytes:
+    """Variables A, B, C, D, E of a descriptor, and names, units, notes and title."""
+    data: dict[str, object] = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
+    if system.E is not None:
+        data["E"] = system.E
+    for what, several in _signals(system).items():
+        data[f"{what}_names"] = _cells([one.name for one in several])
+        data[f"{what}_units"] = _cells([one.unit for one in several])
+    data |= {"notes": _cells(system.notes), "title": system.title}
+    content = io.BytesIO()
+    scipy.io.savemat(content, data, format="5", oned_as="column")  # type: ignore[arg-type]
+    return re.sub(
+        rb"\A.{116}", b"MATLAB 5.0 MAT-file, written by inerter".ljust(116), content.getvalue(), flags=re.DOTALL
+    )
+
+
+def matlab_script(system: NamedSystem) -> str:
+    """A script that makes the variable `sys`; numbers have 17 digits."""
+    lines = [f"% {' '.join(system.title.split())}, written by inerter", *(f"% {note}" for note in system.notes)]
+    matrices = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
+    if system.E is not None:
+        matrices["E"] = system.E
+    for name, matrix in matrices.items():
+        lines += _matrix_lines(name, matrix)
+    lines.append("sys = ss(A, B, C, D);" if system.E is None else "sys = dss(A, B, C, D, E);")
+    named = {"StateName": system.states, "InputName": system.inputs, "OutputName": system.outputs}
+    lines += [f"sys.{key} = {_cell_text([one.name for one in several])};" for key, several in named.items()]
+    lines.append("if ~exist('OCTAVE_VERSION', 'builtin')  % whose systems have no units")
+    units = {"StateUnit": system.states, "InputUnit": system.inputs, "OutputUnit": system.outputs}
+    lines += [f"    sys.{key} = {_cell_text([one.unit for one in several])};" for key, several in units.items()]
+    return "\n".join([*lines, "end", ""])
+
+
+def _signals(system: NamedSystem) -> dict[str, tuple[NamedQuantity, ...]]:
+    return {"state": system.states, "input": system.inputs, "output": system.outputs}
+
+
+def _cells(texts: Sequence[str]) -> NDArray[np.object_]:
+    found = np.empty((len(texts), 1), dtype=object)
+    found[:, 0] = texts
+    return found
+
+
+def _cell_text(texts: Sequence[str]) -> str:
+    quoted = ("'" + text.replace("'", "''") + "'" for text in texts)
+    return "{" + "; ".join(quoted) + "}"
+
+
+def _matrix_lines(name: str, matrix: Matrix) -> list[str]:
+    if not matrix.size:
+        return [f"{name} = zeros({matrix.shape[0]}, {matrix.shape[1]});"]
+    rows = [" ".join(map(exact, row)) for row in matrix.tolist()]
+    return [f"{name} = [", *(f"    {row}" for row in rows), "];"]
+
+
+def exact(number: float) -> str:
+    """A number with the digits that read back to the last bit."""
+    return repr(float(number)) if number else "0"
+
+
+MATLAB = ExportKind("matlab", "matrices with names and units for MATLAB and Octave", (".mat", ".m"), _make)

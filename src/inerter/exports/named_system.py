@@ -1,0 +1,225 @@
+"""The linear model of a vehicle with the name and unit of every state, input and output: all that exports know of it.
+
+Inputs are called what they are: a road acts by its velocity, so that the input at `road` is `road_velocity` [m/s].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.errors import DesignError, ExportError, LinearSystemError
+from inerter.exports.refusals import delay_notes, refuse_nonlinear
+from inerter.norms.response import frequency_response
+from inerter.systems.assemble import state_space
+from inerter.systems.descriptor import Descriptor, describe
+from inerter.systems.graph import linear_graph
+from inerter.systems.linear import LinearSystem, check_names
+from inerter.systems.outputs import input_unit, velocity_of
+from inerter.systems.unknowns import state_units, unknowns
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
+
+if TYPE_CHECKING:
+    import scipy.signal
+
+Matrix = NDArray[np.float64]
+FORMS = ("state-space", "descriptor")
+
+
+@dataclass(frozen=True)
+class NamedQuantity:
+    """A state, input or output with its unit; an empty one is not known."""
+
+    name: str
+    unit: str = ""
+
+    @property
+    def label(self) -> str:
+        """Name with the unit in brackets, such as `road_velocity [m/s]`."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+
+Quantities = tuple[NamedQuantity, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class NamedSystem:
+    """E x' = A x + B u, y = C x + D u, with names and units; without `E`, x' = A x + B u."""
+
+    A: Matrix
+    B: Matrix
+    C: Matrix
+    D: Matrix
+    states: Quantities
+    inputs: Quantities
+    outputs: Quantities
+    E: Matrix | None = None
+    notes: tuple[str, ...] = ()  # what the model leaves out, a sentence each
+    title: str = "linear model"
+
+    def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
+        """Frequency response (len(omega), outputs, inputs), omega in rad/s."""
+        if self.E is None:
+            return frequency_response(LinearSystem(self.A, self.B, self.C, self.D), omega)
+        E = self.E
+        return np.array(
+            [
+                self.C @ np.linalg.solve(1j * w * E - self.A, self.B.astype(complex)) + self.D
+                for w in np.atleast_1d(np.asarray(omega, dtype=float))
+            ]
+        )
+
+    def to_control(self) -> Any:
+        """A `StateSpace` of python-control, whose signals are called `name [unit]`.
+
+        Points in names, which python-control does not allow, are underscores there.
+
+        Raises `ExportError` if python-control is missing, or for a descriptor system, which it does not have.
+        """
+        self._check_is_state_space("python-control")
+        try:
+            import control  # noqa: PLC0415 - heavy, and optional
+        except ImportError:
+            raise ExportError('For python-control install it too: pip install "inerter[control]".') from None
+        named = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
+        labels = {what: _without_points([one.label for one in several]) for what, several in named.items()}
+        return control.StateSpace(self.A, self.B, self.C, self.D, remove_useless_states=False, **labels)
+
+    def to_scipy(self) -> scipy.signal.StateSpace:
+        """A `StateSpace` of SciPy, with the tuples `state_labels`, `input_labels` and `output_labels`: `name [unit]`.
+
+        Raises `ExportError` for a descriptor system, which SciPy does not have.
+        """
+        import scipy.signal  # noqa: PLC0415 - heavy
+
+        self._check_is_state_space("SciPy")
+        system = scipy.signal.StateSpace(self.A, self.B, self.C, self.D)
+        for what, several in (("state", self.states), ("input", self.inputs), ("output", self.outputs)):
+            setattr(system, f"{what}_labels", tuple(one.label for one in several))
+        return system
+
+    def _check_is_state_space(self, program: str) -> None:
+        if self.E is not None:
+            raise ExportError(f'{program} has no descriptor systems. Export the form "state-space".')
+
+
+def named_system(
+    of: Vehicle | LinearSystem,
+    inputs: Sequence[str] | str | None = None,
+    outputs: Sequence[str] | str | None = None,
+    *,
+    linear: bool = False,
+    form: str = "state-space",
+    title: str = "",
+) -> NamedSystem:
+    """The linear model of a vehicle without free values, or of a `LinearSystem`, with names and units.
+
+    Roads are named without `_velocity` in `inputs`, as in `state_space`. With `linear`, friction and gaps are left out,
+    as the notes tell. The form "descriptor" keeps the unknowns that no inertia carries, such as motions of nodes
+    without mass; it has the values of elements themselves in its matrices.
+
+    Raises `ExportError` for friction or gaps without `linear`, or for a system with delays; `DesignError` if a value is
+    free, `MechanismError` or `LinearSystemError` as `state_space` does.
+    """
+    if form not in FORMS:
+        raise ExportError(f"Unknown form {form!r}; available: {', '.join(FORMS)}.")
+    if isinstance(of, LinearSystem):
+        return _of_system(of.subsystem(inputs, outputs), form, title)
+    check_vehicle(of)
+    mechanism = of.mechanism()
+    refuse_free(mechanism)
+    if not linear:
+        refuse_nonlinear(mechanism)
+    columns = None if inputs is None else check_names("inputs", inputs)
+    rows = None if outputs is None else check_names("outputs", outputs)
+    descriptor = describe(mechanism, columns, rows)
+    made = _state_space(mechanism, descriptor, columns, rows) if form == FORMS[0] else _descriptor(descriptor)
+    notes = [f"{note}." for note in linear_graph(mechanism).notes] + delay_notes(mechanism, descriptor.inputs)
+    return replace(made, notes=tuple(notes), title=title or "linear model")
+
+
+def refuse_free(mechanism: Mechanism) -> None:
+    """Raise `DesignError` if a value is free."""
+    if free := ", ".join(mechanism.free_values()):
+        raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+
+
+def has_massless_nodes(mechanism: Mechanism) -> bool:
+    """Whether the linear model has a node that no mass holds."""
+    return len(linear_graph(mechanism).nodes) > len(mechanism.masses)
+
+
+def _state_space(
+    mechanism: Mechanism, descriptor: Descriptor, inputs: Sequence[str] | None, outputs: Sequence[str] | None
+) -> NamedSystem:
+    system = state_space(mechanism, inputs, outputs)
+    states = tuple(map(NamedQuantity, system.states, state_units(descriptor)))
+    return NamedSystem(system.A, system.B, system.C, system.D, states, *_signals(descriptor))
+
+
+def _descriptor(d: Descriptor) -> NamedSystem:
+    """The equations of the descriptor with its unknowns as further states, which have no rates."""
+    if d.precision_warning:
+        raise LinearSystemError(d.precision_warning)
+    S, R, F, Y_eta, Y_x, Y_u = (stack[0].astype(float) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    n, e = R.shape[1], S.shape[0]
+    named = zip(d.states, state_units(d), strict=True)
+    states = tuple(NamedQuantity(*one) for one in (*named, *unknowns(d)))
+    scale = 2.0 ** -np.rint(np.log2(np.abs(S).max(axis=1, keepdims=True, initial=1.0)))  # exact, for pivots of others
+    A = np.block([[d.X_x, d.X_eta], [scale * R, -scale * S]])
+    E = np.diag(np.concatenate([np.ones(n), np.zeros(e)]))
+    return NamedSystem(A, np.vstack([d.X_u, scale * F]), np.hstack([Y_x, Y_eta]), Y_u, states, *_signals(d), E)
+
+
+def _signals(d: Descriptor) -> tuple[Quantities, Quantities]:
+    """Inputs and outputs; a road is an input by its velocity."""
+    roads = [road.name for road in d.mechanism.roads]
+    known = d.model.outputs
+    inputs = []
+    for name in d.inputs:
+        own = velocity_of(name) if name in roads else name
+        inputs.append(NamedQuantity(own, input_unit(d.mechanism, own) or "N"))  # beside an element it is a force
+    return tuple(inputs), tuple(NamedQuantity(name, known[name].unit) for name in d.outputs)
+
+
+def _of_system(system: LinearSystem, form: str, title: str) -> NamedSystem:
+    if form != FORMS[0]:
+        raise ExportError(
+            'A LinearSystem is a state space, and has no descriptor. Export its vehicle, or its "state-space".'
+        )
+    if np.any(system.delays) or len(set(system.sources)) < len(system.inputs):
+        raise ExportError(
+            "Inputs of this system share a source or arrive late, which matrices cannot say. Export the system before "
+            "with_delays(...), whose inputs are independent, and delay them in the other program."
+        )
+    states, inputs, outputs = (
+        tuple(map(NamedQuantity, names)) for names in (system.states, system.inputs, system.outputs)
+    )
+    return NamedSystem(
+        system.A,
+        system.B,
+        system.C,
+        system.D,
+        states,
+        inputs,
+        outputs,
+        notes=tuple(system.notes),
+        title=title or "linear model",
+    )
+
+
+def _without_points(labels: Sequence[str]) -> list[str]:
+    """Labels without points, each different."""
+    found: list[str] = []
+    for label in labels:
+        name, number = label.replace(".", "_"), 1
+        while name in found:
+            number += 1
+            name = f"{label.replace('.', '_')} ({number})"
+        found.append(name)
+    return found

@@ -1,0 +1,114 @@
+"""What is exported, and the options with which it is: each kind of export takes of it what its format can say."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inerter.errors import ExportError
+from inerter.exports.named_system import FORMS, NamedSystem, has_massless_nodes, named_system, refuse_free
+from inerter.exports.refusals import refuse_moving_ground, refuse_nonlinear, refuse_notes
+from inerter.indices.definition import Index
+from inerter.networks.elements import Network
+from inerter.networks.transform import linearise
+from inerter.simulation.trajectory import Trajectory
+from inerter.systems.linear import LinearSystem
+from inerter.validation import is_number
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
+
+Exportable = Vehicle | Network | LinearSystem | Trajectory
+
+
+@dataclass(frozen=True, eq=False)
+class ExportSpec:
+    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted."""
+
+    of: Exportable
+    to: str
+    inputs: Sequence[str] | str | None = None
+    outputs: Sequence[str] | str | None = None
+    linear: bool = False  # whether friction and gaps are left out on purpose
+    form: str = ""  # of the linear model; by default that of the kind
+    frequencies: Sequence[float] | None = None  # [Hz]
+    indices: Mapping[str, Index] | None = None  # by name, whose responses are wanted too
+    conventions: str = "exact"  # of those
+    title: str = ""
+
+    def system(self, form: str = "") -> NamedSystem:
+        """The linear model, in the form that was asked for, or else in `form`."""
+        of = self.of if isinstance(self.of, LinearSystem) else self._vehicle("a vehicle or a LinearSystem")
+        chosen = self.form or form or FORMS[0]
+        return named_system(of, self.inputs, self.outputs, linear=self.linear, form=chosen, title=self.title)
+
+    def system_as_it_is(self) -> NamedSystem:
+        """The linear model, as a descriptor where nodes without mass make it one, unless a form was asked for."""
+        if isinstance(self.of, LinearSystem):
+            return self.system()
+        mechanism = self._vehicle("a vehicle or a LinearSystem").mechanism()
+        if not self.linear:
+            refuse_nonlinear(mechanism)
+        return self.system(FORMS[1] if has_massless_nodes(mechanism) else FORMS[0])
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism of the vehicle, without free values; raises `ExportError` if it is none."""
+        mechanism = self._vehicle("a vehicle").mechanism()
+        refuse_free(mechanism)
+        return mechanism
+
+    def linear_mechanism(self, program: str) -> Mechanism:
+        """The mechanism on ground at rest; raises `ExportError` for friction or gaps unless they are left out."""
+        refuse_moving_ground(self.mechanism, program)
+        if not self.linear:
+            refuse_nonlinear(self.mechanism)
+        return self.mechanism
+
+    @property
+    def networks(self) -> dict[str, Network]:
+        """The network of every mount, or the network itself, by name; raises `ExportError` if there is none."""
+        if isinstance(self.of, Network):
+            return {"strut": self.of}
+        mechanism = self._vehicle("a network or a vehicle").mechanism()
+        return {mount.name: mount.network for mount in mechanism.struts}
+
+    def linear_networks(self) -> tuple[dict[str, Network], list[str]]:
+        """The networks without friction and gaps, and what was left out, in words.
+
+        Raises `ExportError` if there is something to leave out and that was not said to be on purpose.
+        """
+        found, notes = {}, []
+        for name, network in self.networks.items():
+            made = linearise(network)
+            notes += [f"{e.key} {e.label!r} in {name!r} left out" for e in made.left_out]
+            notes += [f"{e.key} {e.label!r} in {name!r} closed" for e in made.closed]
+            if not self.linear:
+                refuse_notes(notes)
+            if made.network is None:
+                what = "is rigid" if made.rigid else "carries no force"
+                raise ExportError(f"{name!r} {what} without friction and with closed gaps. Export one with more in it.")
+            found[name] = made.network
+        return found, notes
+
+    @property
+    def hertz(self) -> NDArray[np.float64] | None:
+        """Frequencies [Hz] that were asked for; raises `ExportError` unless they are positive numbers."""
+        if self.frequencies is None:
+            return None
+        given = list(self.frequencies) if isinstance(self.frequencies, Sequence | np.ndarray) else [self.frequencies]
+        if not given or not all(is_number(one) and one > 0.0 for one in given):
+            raise ExportError(f"Frequencies are positive numbers of Hz, got {self.frequencies!r}.")
+        return np.asarray(given, dtype=float)
+
+    def _vehicle(self, wanted: str) -> Vehicle:
+        """What is exported, as a vehicle; raises `ExportError` if it is none."""
+        if isinstance(self.of, type) or not hasattr(self.of, "mechanism"):
+            raise ExportError(f"An export to {self.to} is one of {wanted}, got {type(self.of).__name__}.")
+        found: Any = self.of
+        vehicle: Vehicle = found
+        return vehicle

@@ -1,0 +1,96 @@
+"""Netlists of struts: force is current, velocity voltage, and so a spring k is 1/k H, a damper 1/c ohm, an inerter b F.
+
+Each strut is a subcircuit between the nodes `upper` and `lower`, whose admittance is that of the strut [N s/m].
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from inerter.errors import ExportError
+from inerter.exports.kind import ExportKind
+from inerter.exports.matlab import exact
+from inerter.exports.request import ExportSpec
+from inerter.networks.elements import Bridge, Element, Network, Parallel, Series
+from inerter.networks.elements.roles import LinearRole
+from inerter.networks.transform import UpsideDown
+
+_LETTERS = {LinearRole.STIFFNESS: "L", LinearRole.DAMPING: "R", LinearRole.MASS: "C"}
+_WORD = re.compile(r"[^A-Za-z0-9_]")
+
+
+def _make(request: ExportSpec, suffix: str) -> str:
+    networks, notes = request.linear_networks()
+    head = [f"* {' '.join((request.title or 'struts').split())}, written by inerter"]
+    if len(networks) > 1 or request.title:
+        head.append(f"* subcircuits: {', '.join(networks)}")
+    head += [
+        "* force [N] is current [A], velocity [m/s] is voltage [V]",
+        "* spring k: inductor 1/k; damper c: resistor 1/c; inerter b: capacitor b",
+        "* loops of springs have no operating point; analyse with .options noopac",
+    ]
+    head += [f"* {note}" for note in notes]
+    return "\n".join([*head, *(line for one in networks.items() for line in subcircuit(*one)), ""])
+
+
+def subcircuit(name: str, network: Network) -> list[str]:
+    """Lines of the subcircuit of a linear network without free values."""
+    lines = list(_Netlist().lines(network, "upper", "lower"))
+    return [f".subckt {_WORD.sub('_', name)} upper lower", *lines, f".ends {_WORD.sub('_', name)}"]
+
+
+class _Netlist:
+    """Names of inner nodes and of parts, each once."""
+
+    def __init__(self) -> None:
+        self._nodes = 0
+        self._names: set[str] = set()
+
+    def lines(self, network: Network, upper: str, lower: str) -> Iterator[str]:
+        match network:
+            case Parallel(parts):
+                for part in parts:
+                    yield from self.lines(part, upper, lower)
+            case Series(parts):
+                ends = [upper, *(self._node() for _ in parts[1:]), lower]
+                for part, top, bottom in zip(parts, ends, ends[1:], strict=False):
+                    yield from self.lines(part, top, bottom)
+            case Bridge(a, b, c, d, e):
+                left, right = self._node(), self._node()
+                places = ((a, upper, left), (b, left, lower), (c, upper, right), (d, right, lower), (e, left, right))
+                for arm, top, bottom in places:
+                    yield from self.lines(arm, top, bottom)
+            case UpsideDown(turned):
+                yield from self.lines(turned, lower, upper)
+            case Element():
+                yield self._part(network, upper, lower)
+            case _:
+                raise ExportError(f"A netlist has no part for {network!r}.")
+
+    def _node(self) -> str:
+        self._nodes += 1
+        return f"n{self._nodes}"
+
+    def _part(self, element: Element, upper: str, lower: str) -> str:
+        letter, number = _LETTERS[element.linear], element.coefficient
+        stem = f"{letter}{_WORD.sub('_', element.label)}"
+        name, count = stem, 1
+        while name.lower() in self._names:
+            count += 1
+            name = f"{stem}_{count}"
+        self._names.add(name.lower())
+        value = number if letter == "C" else 1.0 / number
+        return f"{name} {upper} {lower} {exact(value)}"
+
+
+def admittance_netlist(text: str, name: str, frequencies: Mapping[str, float]) -> str:
+    """A deck that drives the subcircuit `name` of a netlist by a force of 1 N: the voltage of `upper` is 1/Y.
+
+    `frequencies` are `points`, `first` and `last` [Hz], at logarithmic distances.
+    """
+    sweep = f".ac dec {int(frequencies['points'])} {frequencies['first']!r} {frequencies['last']!r}"
+    return "\n".join([text, f"xs upper 0 {name}", "iforce 0 upper dc 0 ac 1", ".options noopac", sweep, ".end", ""])
+
+
+SPICE = ExportKind("spice", "netlists of the struts, force as current", (".cir", ".sp"), _make)

@@ -1,0 +1,119 @@
+"""One design of a study with numbers only: the best one for an index, from a result folder or found anew."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from inerter.errors import StudyError, WorkError
+from inerter.files.common.problems import refusal
+from inerter.files.common.suggest import nearest, some
+from inerter.files.study.cases import Case, cases, run_case
+from inerter.files.study.loading import load_study, unchosen_problems
+from inerter.files.study.running import DATASET, RESOLVED
+from inerter.files.study.study import Study
+from inerter.vehicle.vehicle import Vehicle
+
+
+@dataclass(frozen=True, eq=False)
+class ChosenDesign:
+    """A design of a study: the case whose optimum it is, and where its numbers are from."""
+
+    study: Study
+    case: Case
+    source: Path
+    inputs: tuple[Path, ...]  # files that were read
+
+    @property
+    def name(self) -> str:
+        """Layout, and index and point where they tell designs apart."""
+        is_free = bool(self.study.design(self.case.layout).free_values())
+        parts = [self.case.layout, *([self.case.index] if is_free else [])]
+        return "-".join([*parts, *([f"point-{self.case.point + 1}"] if self.study.sweeps else [])])
+
+    def vehicle(self) -> Vehicle:
+        """The vehicle with numbers only; of a study file with free values they are found by its search.
+
+        Raises `StudyError` for results without them, `WorkError` where the search finds none.
+        """
+        vehicle = self.study.at(self.case.swept).design(self.case.layout)
+        if not vehicle.free_values():
+            return vehicle
+        values = _read(self.source, self.study, self.case) if self.source.is_dir() else _found(self.study, self.case)
+        return vehicle.with_values({name: values[name] for name in vehicle.free_values()})
+
+
+def chosen_design(source: Path, layout: str | None, index: str | None, point: int | None) -> ChosenDesign:
+    """The design of a layout of a study file, or of a folder of results; the best one for an index if values are free.
+
+    `point` numbers the swept values from 1.
+
+    Raises `StudyError` for a source that is neither, and for an unknown or missing layout, index or point.
+    """
+    study = load_study(source / RESOLVED if source.is_dir() else source)
+    if problems := list(unchosen_problems(study)):
+        raise refusal(study.path, problems)
+    chosen = _chosen("layout", layout, list(study.layouts), source)
+    is_free = bool(study.design(chosen).free_values())
+    asked = _chosen("index", index, list(study.indices), source) if is_free or index else study.indices[0]
+    every = cases(study)
+    number = _point(point, every.points, study, source)
+    case = Case(chosen, asked, number, every.sweep_values(number))
+    inputs = (*study.inputs, source / DATASET) if source.is_dir() else study.inputs
+    return ChosenDesign(study, case, source, inputs)
+
+
+def _chosen(what: str, given: str | None, known: list[str], source: Path) -> str:
+    if given is None:
+        if len(known) == 1:
+            return known[0]
+        plural = {"layout": "layouts", "index": "indices"}[what]
+        raise StudyError(f"{source}: has several {plural}, {some(known)}. Choose one with --{what}.")
+    if given not in known:
+        hint = nearest(given, known)
+        raise StudyError(f"{source}: has no {what} {given!r}, but {some(known)}.{f' {hint}' if hint else ''}")
+    return given
+
+
+def _point(point: int | None, count: int, study: Study, source: Path) -> int:
+    if not study.sweeps:
+        if point is not None:
+            raise StudyError(f"{source}: nothing is swept, so that it has no points. Leave --point out.")
+        return 0
+    if point is None or not 1 <= point <= count:
+        given = "" if point is None else f", got {point}"
+        swept = some([sweep.label for sweep in study.sweeps])
+        raise StudyError(f"{source}: sweeps {swept}. Choose a point with --point, 1 to {count}{given}.")
+    return point - 1
+
+
+def _found(study: Study, case: Case) -> dict[str, float]:
+    """Values found by the search of the study."""
+    assert study.optimise is not None
+    outcome = run_case(replace(study, evaluate=(study.optimise,)), case)
+    if not outcome.parameters:
+        raise WorkError(f"{study.path}: no values found for {case.name} ({outcome.message}).")
+    return outcome.parameters
+
+
+def _read(folder: Path, study: Study, case: Case) -> dict[str, float]:
+    """Values of the results in a folder."""
+    try:
+        with xr.open_dataset(folder / DATASET, engine="h5netcdf") as data:
+            found = data["parameter_value"].load()
+    except (OSError, KeyError, ValueError) as error:
+        raise StudyError(f"{folder / DATASET}: cannot be read as results ({error}).") from None
+    at = np.unravel_index(case.point, tuple(len(sweep.values) for sweep in study.sweeps)) if study.sweeps else ()
+    place = {sweep.label: int(i) for sweep, i in zip(study.sweeps, at, strict=True)}
+    try:
+        row = found.sel(layout=case.layout, index=case.index).isel(place)
+        values = {str(name): float(value) for name, value in zip(row["parameter"].values, row.values, strict=True)}
+    except (KeyError, IndexError, ValueError):
+        raise StudyError(f"{folder}: its results are not of its study. Run the study again.") from None
+    known = study.free_units
+    if any(np.isnan(values.get(name, np.nan)) for name in known if name in study.design(case.layout).free_values()):
+        raise StudyError(f"{folder}: has no values for {case.name}, as the status there tells.")
+    return values

@@ -1,0 +1,406 @@
+"""Margins of one design against the baseline: break-even values, other speeds, and tolerances.
+
+Each is computed by a method that models what it is about; where the given one does not, another one is chosen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite, nan
+
+from inerter.decision.of_study import nonlinear_elements
+from inerter.decision.results import Improvement
+from inerter.errors import StatusKind
+from inerter.figures.labels import capital, format_list, title_with_name
+from inerter.files.study.method_problems import simulating_method
+from inerter.files.study.parts import FAILURES
+from inerter.files.study.speeds import BESIDE, asks_at_one_speed, quick_method, value_at_speed
+from inerter.files.study.study import Study, elements_used
+from inerter.formatting import format_percent, format_quantity, format_share
+from inerter.methods.method import evaluate
+from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps
+from inerter.network_search.real_inerters import RealInerter
+from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
+from inerter.networks.elements.algebra import CombinedNetwork
+from inerter.networks.transform import map_elements
+from inerter.statements import Severity
+from inerter.tasks.budgets import element_break_even, range_text
+from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.vehicle.replace_values import with_networks
+from inerter.vehicle.vehicle import Vehicle
+
+USUAL: Mapping[type[Element], float] = {Damper: 0.2}  # relative tolerances where a study gives none, by kind of element
+_USUAL = 0.1  # of all other kinds
+SHARES = (0.05, 0.5, 0.95)  # of the sample, of the quantiles that are told
+_SAMPLES, _FEW = 1024, 256  # of the sample, by a method with compiled code, and by one that linearises
+Progress = Callable[[int, int, str], object]
+
+
+@dataclass(frozen=True)
+class MarginRequest:
+    """Design and baseline whose margins are computed, the index, and the method of the decision."""
+
+    study: Study
+    layout: str
+    design: Vehicle
+    baseline_layout: str
+    baseline: Vehicle
+    index: str
+    method: str
+    threads: int = 1
+
+    @property
+    def words(self) -> str:
+        """Index in words."""
+        return title_with_name(self.study.index(self.index).title, self.index)
+
+
+@dataclass(frozen=True)
+class BreakEvenMargin:
+    """Break-even value of one element [SI], None if there is none; `is_present` is False for one of a real inerter."""
+
+    parameter: str
+    is_present: bool
+    unit: str
+    method: str
+    value: float | None
+    standard_error: float | None
+    interval: tuple[float, float] | None
+    status: str
+    message: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class SpeedMargin:
+    """Improvement over the baseline at `factor` times the speed of the study [%]."""
+
+    factor: float
+    speed: float
+    method: str
+    improvement_percent: float | None
+    status: str
+    message: str
+
+
+@dataclass(frozen=True)
+class ScatterMargin:
+    """Distribution of the index under tolerances; `worst_percent` is the worst value above the nominal one [%]."""
+
+    index: str
+    unit: str
+    method: str
+    spread: Mapping[str, float]
+    is_assumed: bool
+    nominal: float
+    worst: float
+    worst_percent: float
+    worst_improvement_percent: float
+    quantiles: Mapping[str, float]
+    status: str
+    message: str
+    sentence: str
+
+
+@dataclass(frozen=True)
+class MarginCaveat:
+    """Caveat of the margins."""
+
+    sentence: str
+    severity: str = Severity.WARNING.value
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Margins of a design against the baseline."""
+
+    layout: str
+    index: str
+    break_even: list[BreakEvenMargin] = field(default_factory=list)
+    speeds: list[SpeedMargin] = field(default_factory=list)
+    scatter: ScatterMargin | None = None
+    caveats: list[MarginCaveat] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """Element whose break-even value is computed, in a design that has it."""
+
+    parameter: str
+    words: str
+    design: Vehicle
+    is_present: bool
+
+    @property
+    def element(self) -> Element:
+        """The element, or the first of several with its label."""
+        return next(one for one in _elements(self.design) if one.label == self.parameter)
+
+
+def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: None) -> Margins:
+    """Margins of a design: each friction, gap and compliance that it has or a real inerter has, speeds, tolerances."""
+    trials = list(_trials(asked))
+    caveats = [] if trials else [MarginCaveat(f"{asked.layout} has no inerter, friction or gap.", Severity.INFO.value)]
+    found = []
+    for done, trial in enumerate(trials):
+        tell(done, len(trials) + 2, trial.words)
+        found.append(_break_even(asked, trial))
+    tell(len(trials), len(trials) + 2, "other speeds")
+    speeds = list(_speeds(asked))
+    tell(len(trials) + 1, len(trials) + 2, "tolerances")
+    scatter, left_out = _scatter(asked)
+    caveats += [*_speed_caveats(asked, speeds), *left_out]
+    return Margins(asked.layout, asked.index, found, speeds, scatter, caveats)
+
+
+def method_that_models(asked: MarginRequest, design: Vehicle, *, gaps: bool) -> str:
+    """Method of the decision if it models friction (and `gaps`); else a quick one that does, or one that simulates."""
+    has_gaps = gaps or any(part.acts and _needs_simulation(part) for part in _elements(design))
+    known = [asked.method, *asked.study.evaluate, *methods_that(lambda name: not is_blind(name) and refuses_gaps(name))]
+    suited = [name for name in known if not is_blind(name) and not (has_gaps and refuses_gaps(name))]
+    return suited[0] if suited else simulating_method()
+
+
+def _needs_simulation(element: Element) -> bool:
+    """Whether no damper represents an element that switches, such as a gap, at any positive value."""
+    return element.switch is not None and not (element if element.acts else element.with_value(1.0)).is_damped
+
+
+def _elements(design: Vehicle) -> list[Element]:
+    return [element for strut in design.mechanism().struts for element in strut.network.elements()]
+
+
+def _trials(asked: MarginRequest) -> Iterator[_Trial]:
+    """Elements whose break-even value is computed: those of the design first."""
+    own = {element.label: element for element in _elements(asked.design)}
+    budgets = [n for n in asked.study.budgets if asked.layout in elements_used(asked.study).get(n, ())]
+    compliant = {label for strut in asked.design.mechanism().struts for label in compliant_springs(strut.network)}
+    labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
+    for label in labels:
+        what = "stiffness" if label in compliant else own[label].key
+        yield _Trial(label, f"{what} {label}", asked.design, is_present=True)
+    present = {own[label].key for label in labels}
+    inerters = [label for label, element in own.items() if isinstance(element, Inerter)]
+    if not inerters:
+        return
+    real, of = RealInerter(), format_list(inerters)
+    if Friction.key not in present:
+        yield _hypothetical(asked, own, Friction(0.0), f"friction of inerter {of}", lambda b, new: b | new)
+    if not compliant:
+        shaft, damping = Spring(real.stiffness), Damper(real.damping)
+        yield _hypothetical(
+            asked, own, shaft, f"stiffness of the shaft of inerter {of}", lambda b, new: (new | damping) - b
+        )
+    if Gap.key not in present:
+        yield _hypothetical(asked, own, Gap(0.0), f"backlash of inerter {of}", lambda b, new: new - b)
+
+
+def _hypothetical(
+    asked: MarginRequest,
+    own: Mapping[str, Element],
+    element: Element,
+    words: str,
+    join: Callable[[Element, Element], Network],
+) -> _Trial:
+    """Trial with an element of a real inerter joined to each inerter of the struts."""
+    name = f"inerter_{element.symbol}"
+    while name in own:
+        name += "_"
+    new = element.of(element.value, name)
+
+    def change(part: Element) -> Network:
+        return join(part, new) if isinstance(part, Inerter) and part.label in own else part
+
+    design = with_networks(asked.design, lambda network: map_elements(network, change))
+    return _Trial(name, words, design, is_present=False)
+
+
+def compliant_springs(network: Network) -> set[str]:
+    """Labels of springs, alone or with dampers, in series with an inerter."""
+    if not isinstance(network, CombinedNetwork):
+        return set()
+    found = set[str]().union(*map(compliant_springs, network.parts))
+    if isinstance(network, Series):
+        kinds = [list(part.elements()) for part in network.parts]
+        shafts = [part for part in kinds if all(isinstance(one, Spring | Damper) for one in part)]
+        if any(isinstance(one, Inerter) for part in kinds for one in part):
+            found |= {one.label for part in shafts for one in part if isinstance(one, Spring)}
+    return found
+
+
+def _break_even(asked: MarginRequest, trial: _Trial) -> BreakEvenMargin:
+    """Break-even value by a method that models the element; simulated where a quick one that was chosen is not sure."""
+    method, element = asked.method, trial.element
+    if element.switch is not None:
+        method = method_that_models(asked, trial.design, gaps=_needs_simulation(element))
+    found = _break_even_by(asked, trial, method)
+    if found.status == StatusKind.INACCURATE and method != asked.method and refuses_gaps(method):
+        found = _break_even_by(asked, trial, simulating_method())
+    return found
+
+
+def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEvenMargin:
+    study, element = asked.study, trial.element
+    try:
+        by = study.method(method, asked.threads)
+        found = element_break_even(study, trial.design, asked.baseline, asked.index, trial.parameter, by)
+    except FAILURES as error:
+        message = str(error).rstrip(".")
+        sentence = f"{capital(trial.words)}: break-even value not computed ({message})."
+        return BreakEvenMargin(
+            trial.parameter,
+            trial.is_present,
+            element.unit,
+            method,
+            None,
+            None,
+            None,
+            StatusKind.FAILED.value,
+            message,
+            sentence,
+        )
+    known = isfinite(found.value)
+    who = f"{asked.layout} is better than {asked.baseline_layout}"
+    if known:
+        ends = [crossing.value for crossing in found.crossings]
+        end = range_text(found.value, found.unit, found.standard_error, ends, at_most=element.may_vanish)
+        sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
+    else:
+        end = found.status.message.replace("the design is better", who).rstrip(".")
+        sentence = f"{capital(trial.words)}: {end}."
+    is_sure = found.status.ok or found.status.kind is StatusKind.UNBOUNDED
+    doubt = f" Not certain: {found.status.message.rstrip('.')}." if known and not is_sure else ""
+    return BreakEvenMargin(
+        trial.parameter,
+        trial.is_present,
+        found.unit,
+        method,
+        found.value if known else None,
+        found.standard_error if isfinite(found.standard_error) else None,
+        found.interval if all(map(isfinite, found.interval)) else None,
+        found.status.kind.value,
+        found.status.message,
+        f"{sentence}{doubt}",
+    )
+
+
+def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:
+    """Improvements at other speeds; none where speed is not a property of the study."""
+    study = asked.study
+    if not asks_at_one_speed(study) or not study.needs_road(asked.index) or study.road is None:
+        return
+    method = _quick_method(asked, has_friction=any(part.acts for part in _elements(asked.design)))
+    for factor in BESIDE:
+        if factor == 1.0:
+            continue
+        ends = [
+            value_at_speed(study, vehicle, (layout, asked.index, method), factor)
+            for layout, vehicle in ((asked.layout, asked.design), (asked.baseline_layout, asked.baseline))
+        ]
+        (own, first), (base, second) = ends
+        percent = 100.0 * (1.0 - own / base) if isfinite(own) and isfinite(base) and base else None
+        message = "; ".join(dict.fromkeys(filter(None, (first, second))))
+        kind = StatusKind.FAILED if percent is None else StatusKind.INACCURATE if message else StatusKind.OK
+        yield SpeedMargin(factor, factor * study.road.speed, method, percent, kind.value, message)
+
+
+def _speed_caveats(asked: MarginRequest, speeds: Sequence[SpeedMargin]) -> Iterator[MarginCaveat]:
+    study = asked.study
+    if not speeds and study.needs_road(asked.index):
+        yield MarginCaveat(
+            "The improvement at other speeds is not computed: the study has several speeds, or a quantile.",
+            Severity.INFO.value,
+        )
+    for one in speeds:
+        at = format_quantity(3.6 * one.speed, "km/h")
+        if one.message:
+            yield MarginCaveat(f"The improvement at {at} is unreliable: {one.message.rstrip('.')}.")
+        elif one.improvement_percent is not None and one.improvement_percent < 0.0:
+            worse = format_percent(-one.improvement_percent).removeprefix("+")
+            yield MarginCaveat(
+                f"At {at} {asked.layout} is {worse} worse than {asked.baseline_layout} in {asked.words}."
+            )
+    _, neglected = nonlinear_elements(asked.design.mechanism(), speeds[0].method if speeds else asked.method)
+    if speeds and neglected:
+        yield MarginCaveat(f"Other speeds: {format_list(neglected)} neglected by {brief_words_of(speeds[0].method)}.")
+
+
+def _scatter(asked: MarginRequest) -> tuple[ScatterMargin | None, list[MarginCaveat]]:
+    """Distribution under the tolerances of the study, or assumed ones, and caveats."""
+    given = asked.study.spread(asked.layout)
+    spread = dict(given) or usual_tolerances(asked.design)
+    own = {element.label: element for element in _elements(asked.design)}
+    gaps = [name for name in spread if name in own and own[name].acts and _needs_simulation(own[name])]
+    caveats = []
+    if gaps:  # a sample of simulations takes too long for a panel
+        spread = {name: part for name, part in spread.items() if name not in gaps}
+        caveats.append(MarginCaveat(f"The tolerance of {format_list(gaps)} is left out: only simulation models it."))
+    if not spread:
+        return None, caveats
+    has_friction = any(name in own and own[name].acts for name in spread)
+    method = _quick_method(asked, has_friction=has_friction)
+    try:
+        return _analyse(asked, spread, method, is_assumed=not given), caveats
+    except FAILURES as error:
+        return None, [*caveats, MarginCaveat(f"Tolerances are not analysed: {str(error).rstrip('.')}.")]
+
+
+def _quick_method(asked: MarginRequest, *, has_friction: bool) -> str:
+    """Method without random roads: one that models the friction of the design where that matters, if it can."""
+    method = asked.method if not has_friction else method_that_models(asked, asked.design, gaps=False)
+    return quick_method(replace(asked.study, evaluate=(method,)), asked.design)
+
+
+def usual_tolerances(design: Vehicle) -> dict[str, float]:
+    """Tolerances that are assumed where a study gives none: 20 % of dampings, 10 % of all other values."""
+    return {element.label: USUAL.get(type(element), _USUAL) for element in _elements(design) if element.value}
+
+
+def _analyse(asked: MarginRequest, spread: Mapping[str, float], method: str, *, is_assumed: bool) -> ScatterMargin:
+    study = asked.study
+    index, by = study.over_conditions(asked.index), study.method(method)
+    found = tolerance_analysis(
+        asked.design,
+        index,
+        by,
+        spread=spread,
+        samples=_SAMPLES if is_blind(method) else _FEW,
+        seed=study.seed,
+    )
+    base = evaluate(asked.baseline, index, by).value
+    nominal = found.nominal.value
+    status = found.status
+    made = ScatterMargin(
+        index=asked.index,
+        unit=study.unit(asked.index),
+        method=method,
+        spread=spread,
+        is_assumed=is_assumed,
+        nominal=nominal,
+        worst=found.worst,
+        worst_percent=100.0 * (found.worst / nominal - 1.0) if nominal else nan,
+        worst_improvement_percent=100.0 * (1.0 - found.worst / base) if base else nan,
+        quantiles={str(share): found.quantile(share) for share in SHARES},
+        status=status.kind.value,
+        message=status.message,
+        sentence="",
+    )
+    return replace(made, sentence=_scatter_sentence(asked, made))
+
+
+def _scatter_sentence(asked: MarginRequest, found: ScatterMargin) -> str:
+    """Sentence on the worst case and the 95th percentile, compared with the baseline at its nominal values."""
+    parts = format_list([f"{name} +- {format_share(part)}" for name, part in found.spread.items()])
+    given = f"Tolerances {'(assumed, since the study has none) ' if found.is_assumed else ''}of {parts}"
+    if not isfinite(found.worst):
+        return f"{given}: the distribution of {asked.words} is not computed ({found.message.rstrip('.')})."
+    quantile = format_quantity(found.quantiles[str(SHARES[-1])], found.unit)
+    above = format_percent(found.worst_percent).removeprefix("+")
+    compared = Improvement(found.worst_improvement_percent)
+    versus = "as good as" if compared.is_equal else f"{compared.words} than"
+    doubt = f" Not certain: {found.message.rstrip('.')}." if found.status != StatusKind.OK else ""
+    return (
+        f"{given}: at worst {asked.words} of {asked.layout} is {above} above its nominal value, and {versus} "
+        f"{asked.baseline_layout} at nominal values; 95 % of designs are below {quantile}.{doubt}"
+    )

@@ -1,0 +1,186 @@
+"""Margins of a design: the library's numbers, by methods that model what they are asked about."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from starlette.testclient import TestClient
+from study_text import load_text
+
+import inerter as it
+from inerter.app.documents import study_from
+from inerter.cli.commands import run as run_command
+from inerter.cli.options import OWN
+from inerter.files.common.toml import as_toml
+from inerter.methods.registry import is_blind, refuses_gaps
+from inerter.tasks.margins import compliant_springs, usual_tolerances
+
+VALUES = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+FEW = changed(study={"realisations": 2})
+FEW["study"]["evaluate"] = ["expected-value"]
+
+
+@pytest.fixture(scope="module")
+def told(client: TestClient) -> dict[str, Any]:
+    """Margins of S3, whose decision is that of the norm."""
+    found: dict[str, Any] = ask(
+        client, "panel/margins", study=FEW, values=VALUES, layout="S3", index="J1", methods=["norm"]
+    )
+    return found
+
+
+def car(name: str) -> Any:
+    return study_from(FEW).design(name).with_values(VALUES[name])
+
+
+def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str, Any]) -> None:
+    """Friction of the design, and the shaft and backlash of a real inerter; none of them by a method blind to it."""
+    by = {one["parameter"]: one for one in told["break_even"]}
+    assert {name: one["is_present"] for name, one in by.items()} == {
+        "f": True,
+        "inerter_k": False,
+        "inerter_gap": False,
+    }
+    assert not is_blind(by["f"]["method"])
+    assert not is_blind(by["inerter_gap"]["method"])
+    assert not refuses_gaps(by["inerter_gap"]["method"])
+    for one in by.values():
+        assert one["sentence"].endswith(".")
+        assert (one["value"] is None) <= (one["status"] != "ok")
+
+
+def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> None:
+    by, study = {one["parameter"]: one for one in told["break_even"]}, study_from(FEW)
+    method = study.method(by["f"]["method"])
+    found = it.break_even(car("S3"), car("S1"), study.index("J1"), parameter="f", method=method)
+    assert (by["f"]["value"], by["f"]["status"]) == (
+        None if np.isnan(found.value) else found.value,
+        found.status.kind.value,
+    )
+    b, k, c = it.Inerter(60.0, "b"), it.Spring(1e6, "k_shaft"), it.Damper(3200.0)
+    real = it.QuarterCar(
+        sprung_mass=250.0,
+        unsprung_mass=35.0,
+        tyre_stiffness=150e3,
+        strut=it.Spring(20e3) | it.Damper(3000.0) - ((k | c) - b | it.Friction(20.0)),
+    )
+    shaft = it.break_even(real, car("S1"), study.index("J1"), parameter="k_shaft", method=it.Norm(), bounds=(1e3, 1e8))
+    assert by["inerter_k"]["method"] == "norm"
+    value = by["inerter_k"]["value"]
+    assert (np.nan if value is None else value) == pytest.approx(shaft.value, rel=1e-9, nan_ok=True)
+
+
+def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> None:
+    study = study_from(FEW)
+    assert [one["factor"] for one in told["speeds"]] == [0.8, 1.2]
+    for one in told["speeds"]:
+        index = it.RideComfort(it.Road(study.road.roughness, one["factor"] * 25.0))  # type: ignore[union-attr]
+        own, base = (it.evaluate(car(name), index, study.method(one["method"])).value for name in ("S3", "S1"))
+        assert one["improvement_percent"] == pytest.approx(100.0 * (1.0 - own / base), rel=1e-9)
+
+
+def test_tolerances_are_assumed_where_the_study_has_none(client: TestClient, told: dict[str, Any]) -> None:
+    scatter = told["scatter"]
+    assert scatter["is_assumed"]
+    assert scatter["spread"] == usual_tolerances(car("S3")) == {"k": 0.1, "c": 0.2, "b": 0.1, "f": 0.1}
+    assert not is_blind(scatter["method"])
+    body = {"study": FEW, "layout": "S3", "values": VALUES, "index": "J1", "spread": scatter["spread"]}
+    there = ask(client, "panel/tolerance", **body, method=scatter["method"], samples=256)
+    assert (scatter["worst"], scatter["quantiles"]) == (there["worst"], there["quantiles"])
+    assert scatter["worst_percent"] == pytest.approx(100.0 * (there["worst"] / there["nominal"] - 1.0))
+    given = changed(study={"tolerance": {"c": "5 %"}})
+    own = ask(client, "panel/margins", study={**given, "layouts": {"S1": "k | c", "S2": "k | c"}}, **_no_inerter())
+    assert (own["scatter"]["is_assumed"], own["scatter"]["spread"]) == (False, {"c": 0.05})
+
+
+def _no_inerter() -> dict[str, Any]:
+    return {"layout": "S2", "values": {"S1": {"c": 1500.0}, "S2": {"c": 2000.0}}, "index": "J1"}
+
+
+def test_a_job_gives_the_same_margins(client: TestClient) -> None:
+    study = {**DOCUMENT, "layouts": {"S1": "k | c", "S2": "k | c"}}
+    panel = ask(client, "panel/margins", study=study, **_no_inerter())
+    job = ask(client, "work", kind="margins", study=study, wait=30, **_no_inerter())["result"]
+    assert {**panel, "sequence": 0} == {**job, "sequence": 0}
+    assert any("no inerter, friction or gap" in one["sentence"] for one in job["caveats"])
+
+
+@pytest.mark.parametrize(
+    ("layout", "values", "text"),
+    [
+        ("S1", VALUES, "it is the baseline"),
+        ("S3", {"S1": {"c": 1.0}}, "No value of c and b of S3 has been chosen yet."),
+    ],
+)
+def test_without_two_chosen_designs_there_are_no_margins(
+    client: TestClient, layout: str, values: dict[str, Any], text: str
+) -> None:
+    told = ask(client, "panel/margins", study=DOCUMENT, layout=layout, values=values)
+    assert (told["break_even"], told["speeds"], told["scatter"]) == ([], [], None)
+    assert text in told["caveats"][0]["sentence"]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("k | c - (ks | cs) - (b | f)", {"ks"}),
+        ("k | c - b", set()),
+        ("k | c | (ks - b)", {"ks"}),
+        ("k | c", set()),
+        ("(k | c) - ks", set()),
+        ("bridge(k, c, ks - b, cs, f)", {"ks"}),
+    ],
+)
+def test_springs_in_series_with_an_inerter_are_its_compliance(text: str, found: set[str]) -> None:
+    kinds = {"k": it.Spring(1e4), "ks": it.Spring(1e6), "c": it.Damper(1e3), "cs": it.Damper(1e3)}
+    elements = {**kinds, "b": it.Inerter(50.0), "f": it.Friction(10.0)}
+    named = {name: element.of(element.value, name) for name, element in elements.items()}
+    assert compliant_springs(it.network(text, **named)) == found
+
+
+def test_a_tolerance_of_friction_by_a_norm_is_not_nought(client: TestClient) -> None:
+    """It is not known, and says so: alone nothing is computed, beside others its part is missing."""
+    body = {"study": DOCUMENT, "layout": "S3", "values": VALUES, "index": "J1", "method": "norm"}
+    alone = ask(client, "panel/tolerance", **body, spread={"f": 0.2})
+    assert (alone["status"], alone["total"], alone["standard_deviation"], alone["worst"]) == (
+        "failed",
+        {"f": None},
+        None,
+        None,
+    )
+    both = ask(client, "panel/tolerance", **body, spread={"f": 0.2, "c": 0.1})
+    assert (both["status"], both["total"]["f"], both["main"]["f"]) == ("inaccurate", None, None)
+    assert both["total"]["c"] == pytest.approx(1.0, abs=0.1)
+    for one in (alone, both):
+        assert "ignores the tolerance of f" in one["message"]
+        assert "expected-value" in one["message"]
+
+
+def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
+    """Byte for byte: of designs in the page, whose study is written and run, and of a whole study."""
+    designs = [{"layout": name, "values": values} for name, values in VALUES.items()]
+    text = ask(client, "study/write", study=DOCUMENT, designs=designs)["text"]
+    job = ask(client, "work", kind="report", study=DOCUMENT, designs=designs, wait=30)
+    assert job["state"] == "done", job
+    page = client.get(f"/api/work/{job['id']}/files/{job['result']['file']}").content
+    assert page == _report_of(text, tmp_path / "fixed")
+    assert len(page) == job["result"]["size"]
+    assert page.startswith(b"<!DOCTYPE html>")
+    limits = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    whole = ask(client, "work", kind="report", study=limits, wait=30)
+    page = client.get(f"/api/work/{whole['id']}/files/{whole['result']['file']}").content
+    assert page == _report_of(as_toml(limits), tmp_path / "whole")
+
+
+def _report_of(text: str, folder: Path) -> bytes:
+    """Report of `inerter run` of the study file with this text."""
+    folder.mkdir()
+    load_text(folder, text)
+    (path,) = folder.glob("*.toml")
+    run_command(path, folder / "results", 1, OWN, resume=False, force=False, as_json=True)
+    return (folder / "results" / "report.html").read_bytes()

@@ -1,0 +1,109 @@
+"""`inerter export` as a person meets it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy
+
+import inerter as it
+from inerter.cli.main import call
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STUDY = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
+SHORT = re.sub(r"^S[12]e? = .*\n|^S3e = .*\n", "", STUDY, flags=re.MULTILINE)
+SHORT = SHORT.replace('["J1", "J3", "J5"]', '["J1", "J3"]').replace('baseline = "S1"', 'baseline = "S3"')
+REAL = (
+    SHORT.replace('S3 = "k | c - b"', 'S3 = "k | c - (b | f)"')
+    .replace("[layouts]", "[layouts]\n")
+    .replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "300 kg"\nf = "20 N"')
+    .replace('c = { from = "100 N s/m", to = "100 kN s/m" }', 'c = "7 kN s/m"')
+    .replace('optimise = "norm"', "")
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "car.toml").write_text(SHORT, encoding="utf-8")
+    (tmp_path / "real.toml").write_text(REAL, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_a_study_and_its_results_give_the_same_design(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["export", "car.toml", "--index", "J1", "--to", "matlab"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines()[-1] == "inerter: matrices with names and units for MATLAB and Octave: car-S3-J1.mat"
+    assert call(["run", "car.toml", "-o", "results"]) == 0
+    assert call(["export", "results", "--index", "J1", "--to", "matlab", "-o", "from-results.mat"]) == 0
+    one, other = (scipy.io.loadmat(folder / name) for name in ("car-S3-J1.mat", "from-results.mat"))
+    assert np.array_equal(one["A"], other["A"])
+    k, c, b = it.Spring(120e3), it.Damper(it.free(100, 1e5, name="c")), it.Inerter(it.free(1, 2000, name="b"))
+    car = it.QuarterCar(181.75, 25.0, 120e3, k | c - b)
+    best = it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm(), seed=0)
+    assert np.array_equal(one["A"], it.named_system(best.design, form="descriptor").A)
+
+
+@pytest.mark.parametrize("kind", ["matlab", "csv", "netcdf", "modelica", "spice", "svg", "pdf", "latex"])
+def test_every_kind(kind: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    linear = [] if kind in ("svg", "pdf", "latex") else ["--linear"]
+    assert call(["export", "real.toml", "--to", kind, *linear]) == 0
+    path = folder / f"real-S3{it.EXPORTS[kind].suffixes[0]}"
+    assert path.stat().st_size > 100
+    before = path.read_bytes()
+    assert call(["export", "real.toml", "--to", kind, *linear]) == 2
+    assert "exists. Replace it with --force" in capsys.readouterr().err
+    path.write_bytes(before + b" ")
+    assert call(["export", "real.toml", "--to", kind, *linear, "--force"]) == 2
+    assert "this command did not write it, or it was edited since" in capsys.readouterr().err
+    path.write_bytes(before)
+    assert call(["export", "real.toml", "--to", kind, *linear, "--force"]) == 0
+
+
+def test_friction_is_refused_in_a_sentence(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call(["export", "real.toml", "--to", "modelica", "-o", "real.mo"]) == 2
+    err = capsys.readouterr().err.strip().splitlines()
+    assert len(err) == 1
+    assert "friction 'f' in 'strut' left out" in err[0]
+    assert not (folder / "real.mo").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["car.toml", "--to", "matlab"], "has several indices, J1, J3. Choose one with --index."),
+        (["car.toml", "--to", "matlab", "--index", "J7"], "has no index 'J7', but J1, J3."),
+        (["car.toml", "--to", "matlab", "--index", "J1", "--layout", "S9"], "has no layout 'S9', but S3."),
+        (["car.toml", "--to", "matlab", "--index", "J1", "--point", "2"], "nothing is swept"),
+        (["car.toml", "--to", "excel", "--index", "J1"], "Unknown kind of export 'excel'"),
+        (["car.toml", "--to", "control", "--index", "J1"], "is an object of Python"),
+        (["car.toml", "--to", "matlab", "--index", "J1", "-o", "car.txt"], "suffix .mat or .m."),
+        (["car.toml", "--to", "matlab", "--index", "J1", "-o", "none/car.mat"], "folder not found"),
+        (["nothing.toml", "--to", "matlab"], "nothing.toml"),
+        ([".", "--to", "matlab"], "study.resolved.toml"),
+        (["real.toml", "--to", "matlab", "--linear", "--only", "wheel_speed"], "Unknown output 'wheel_speed'"),
+    ],
+)
+def test_what_cannot_be_exported_is_one_sentence(
+    arguments: list[str], sentence: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {path.name for path in folder.iterdir()}
+    assert call(["export", *arguments]) == 2
+    err = capsys.readouterr().err.strip()
+    assert sentence in err
+    assert "Traceback" not in err
+    assert {path.name for path in folder.iterdir()} == before
+
+
+def test_a_point_of_a_sweep(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    swept = REAL.replace('baseline = "S3"', 'baseline = "S3"\nsweep = { k = ["60 kN/m", "90 kN/m"] }')
+    (folder / "sweep.toml").write_text(swept, encoding="utf-8")
+    assert call(["export", "sweep.toml", "--to", "spice", "--linear"]) == 2
+    assert "Choose a point with --point, 1 to 2." in capsys.readouterr().err
+    assert call(["export", "sweep.toml", "--to", "spice", "--linear", "--point", "2"]) == 0
+    text = (folder / "sweep-S3-point-2.cir").read_text()
+    assert float(re.search(r"^Lk \w+ \w+ (\S+)$", text, re.MULTILINE)[1]) == 1.0 / 90e3  # type: ignore[index]

@@ -1,0 +1,125 @@
+"""`export` as its user meets it: kinds, refusals, files."""
+
+from __future__ import annotations
+
+import errno
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import inerter as it
+from inerter.exports.registry import EXPORTS
+
+K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
+CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
+REAL = it.QuarterCar(181.75, 25.0, 120e3, K | C - (B | it.Friction(20.0)) | it.Spring(1e4, "stop") - it.Gap(0.01))
+FILES = [kind.key for kind in EXPORTS.values() if kind.is_file]
+LINEAR = [key for key in EXPORTS if key not in ("svg", "pdf", "latex")]
+
+
+@pytest.mark.parametrize("key", LINEAR)
+def test_friction_and_gaps_are_refused_unless_they_are_left_out(key: str) -> None:
+    with pytest.raises(it.InerterError) as caught:
+        it.export(REAL, key)
+    sentence = str(caught.value)
+    assert sentence.startswith("A linear model has neither friction nor gaps: friction 'f' in 'strut' left out")
+    assert sentence.endswith("on purpose with linear=True, on the command line --linear.")
+    assert it.export(REAL, key, linear=True) is not None
+
+
+def test_what_was_left_out_is_in_the_file() -> None:
+    for key, mark in (("modelica", "// "), ("spice", "* "), ("csv", "# ")):
+        text = it.export(REAL, key, linear=True)
+        assert f"{mark}friction 'f' in 'strut' left out" in text
+        assert f"{mark}gap 'gap' in 'strut' closed" in text
+    assert "friction 'f' in 'strut' left out." in it.named_system(REAL, linear=True).notes
+
+
+@pytest.mark.parametrize("key", FILES)
+def test_a_file_is_whole_and_replaced_only_on_request(key: str, tmp_path: Path) -> None:
+    path = tmp_path / f"design{EXPORTS[key].suffixes[0]}"
+    assert it.export(CAR, key, path) == path
+    made = it.export(CAR, key)
+    if key != "netcdf":  # which holds times of its own
+        assert path.read_bytes() == (made.encode() if isinstance(made, str) else made)
+    before = path.read_bytes()
+    with pytest.raises(it.InerterError, match="exists"):
+        it.export(REAL, key, path, linear=True)
+    assert path.read_bytes() == before
+    it.export(REAL, key, path, linear=True, overwrite=True)
+    assert path.read_bytes() != before
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_file_that_fails_leaves_the_old_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = it.export(CAR, "modelica", tmp_path / "car.mo")
+    before = path.read_bytes()
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(it.InerterError, match="No space left"):
+        it.export(CAR, "modelica", path, overwrite=True)
+    monkeypatch.undo()
+    assert path.read_bytes() == before
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("key", FILES)
+def test_a_suffix_of_another_kind_is_refused(key: str, tmp_path: Path) -> None:
+    with pytest.raises(it.InerterError, match="is a file with the suffix"):
+        it.export(CAR, key, tmp_path / "design.docx")
+    assert not list(tmp_path.iterdir())
+
+
+def test_objects_are_no_files(tmp_path: Path) -> None:
+    for key in ("control", "scipy"):
+        with pytest.raises(it.InerterError, match="is an object of Python, not a file"):
+            it.export(CAR, key, tmp_path / "design.mat")
+
+
+def test_unknown_kinds_and_forms() -> None:
+    with pytest.raises(it.InerterError, match=r"Unknown kind of export 'matlba'.*Did you mean 'matlab'"):
+        it.export(CAR, "matlba")
+    with pytest.raises(it.InerterError, match="Unknown form 'dss'; available: state-space, descriptor"):
+        it.export(CAR, "matlab", form="dss")
+    with pytest.raises(it.InerterError, match="Unknown output 'sprung_speed'"):
+        it.export(CAR, "matlab", outputs=["sprung_speed"])
+
+
+@pytest.mark.parametrize(
+    ("key", "of", "wanted"),
+    [
+        ("modelica", K | C, "a vehicle"),
+        ("matlab", K | C, "a vehicle or a LinearSystem"),
+        ("spice", it.state_space(CAR), "a network or a vehicle"),
+        ("svg", 3.0, "a network or a vehicle"),
+        ("csv", it.QuarterCar, "a vehicle or a LinearSystem"),
+    ],
+)
+def test_what_cannot_be_exported(key: str, of: object, wanted: str) -> None:
+    with pytest.raises(it.InerterError, match=f"An export to {key} is one of {wanted}, got "):
+        it.export(of, key)  # type: ignore[arg-type]
+
+
+def test_a_kind_of_another_distribution_is_used_like_ours(tmp_path: Path) -> None:
+    kind = it.ExportKind("order", "number of states", (".txt",), lambda request, suffix: f"{len(request.system().A)}\n")
+    it.EXPORTS.add(kind)
+    try:
+        assert it.export(CAR, "order", tmp_path / "order.txt").read_text() == "5\n"
+    finally:
+        it.EXPORTS.remove(kind)
+
+
+def test_a_strut_without_linear_force_is_refused() -> None:
+    for strut, what in ((it.Friction(10.0), "carries no force"), (it.Gap(0.1), "is rigid")):
+        with pytest.raises(it.InerterError, match=what):
+            it.export(strut, "spice", linear=True)
+
+
+def test_matrices_are_those_of_the_state_space() -> None:
+    made, system = it.export(CAR, "scipy"), it.state_space(CAR)
+    for name in "ABCD":
+        assert np.array_equal(getattr(made, name), getattr(system, name))

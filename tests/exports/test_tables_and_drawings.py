@@ -1,0 +1,135 @@
+"""Tables hold what the figures show, to the last bit; drawings hold every element."""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import replace
+from xml.etree import ElementTree
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from designs import ALWAYS, design
+
+import inerter as it
+from inerter.exports.request import ExportSpec
+from inerter.exports.tables import responses_of
+from inerter.files.study.cases import cases
+from inerter.files.study.loading import load_study
+from inerter.files.study.responses import responses
+
+K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
+CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+
+
+def table(text: str) -> pd.DataFrame:
+    return pd.read_csv(io.StringIO(text), comment="#")
+
+
+@pytest.mark.parametrize("number", ALWAYS)
+def test_csv_and_netcdf_are_the_frequency_responses(number: int) -> None:
+    vehicle, hertz = design(number), [0.5, 1.0, 1.5, 7.0, 30.0]
+    system = it.state_space(vehicle)
+    expected = it.frequency_response(system, 2.0 * np.pi * np.array(hertz))
+    found = table(it.export(vehicle, "csv", frequencies=hertz))
+    data = xr.open_dataset(io.BytesIO(it.export(vehicle, "netcdf", frequencies=hertz)), engine="h5netcdf")
+    assert np.array_equal(found["frequency [Hz]"], hertz)
+    assert np.array_equal(data["real"].values + 1j * data["imaginary"].values, expected)
+    named = it.named_system(vehicle)
+    for i, out in enumerate(named.outputs):
+        for j, inp in enumerate(named.inputs):
+            unit = str(data["gain_unit"].values[i, j])
+            gain = found[f"gain of {out.name} from {inp.name} [{unit}]"].to_numpy()
+            phase = found[f"phase of {out.name} from {inp.name} [deg]"].to_numpy()
+            assert np.array_equal(gain, np.abs(expected[:, i, j]))
+            assert np.allclose(gain * np.exp(1j * np.radians(phase)), expected[:, i, j], rtol=1e-12, atol=0.0)
+            assert np.array_equal(data["gain"].sel(output=out.name, input=inp.name), gain)
+    assert list(data["output_unit"].values) == [one.unit for one in named.outputs]
+
+
+def test_units_of_gains() -> None:
+    heads = it.export(CAR, "csv", frequencies=[1.0], outputs=["sprung_acceleration", "strut_travel"]).splitlines()[0]
+    assert [re.search(r"\[(.*)\]", head)[1] for head in heads.split(",")] == [  # type: ignore[index]
+        *("Hz", "(m/s^2)/(m/s)", "deg", "(m/s^2)/N", "deg", "m/(m/s)", "deg", "m/N", "deg")
+    ]
+
+
+@pytest.mark.parametrize("conventions", ["exact", "paper2008"])
+def test_curves_of_an_index_are_those_of_the_figure(conventions: str, examples: str) -> None:
+    """With the delay of the road between both axles, as the figure of a study has them."""
+    study = replace(load_study(f"{examples}/half-car.toml"), conventions=conventions)
+    layout = next(iter(study.layouts))
+    values = {name: (one.lower * one.upper) ** 0.5 for name, one in study.design(layout).free_values().items()}
+    case = next(case for case in cases(study) if (case.layout, case.index) == (layout, "J1"))
+    shown = responses(study, {case: values})["gain_J1"].isel(layout=0).transpose("output_J1", "omega")
+    hertz = shown["omega"].values / (2.0 * np.pi)
+    request = ExportSpec(
+        study.design(layout).with_values(values),
+        "csv",
+        frequencies=hertz,
+        indices={"J1": study.index("J1")},
+        conventions=conventions,
+    )
+    found = responses_of(request)
+    outputs, gains = found.of_indices["J1"]
+    assert outputs == ("sprung_acceleration", "pitch_acceleration")
+    assert np.allclose(gains, shown.values, rtol=1e-12)
+    heads = it.EXPORTS["csv"].make(request, ".csv").splitlines()[1].split(",")
+    assert heads[-2:] == ["gain of sprung_acceleration in J1", "gain of pitch_acceleration in J1"]
+
+
+def test_a_trajectory_is_written_to_the_last_bit() -> None:
+    run = it.simulate(CAR, road=it.sine(0.01, 2.0), duration=0.3)
+    found = table(it.export(run, "csv", outputs=["sprung_acceleration", "strut_force"]))
+    assert list(found.columns) == ["time [s]", "sprung_acceleration [m/s^2]", "strut_force [N]"]
+    assert np.array_equal(found["strut_force [N]"], run["strut_force"])
+    data = xr.open_dataset(io.BytesIO(it.export(run, "netcdf")), engine="h5netcdf")
+    assert np.array_equal(data["sprung_acceleration"].values, run["sprung_acceleration"])
+    with pytest.raises(it.InerterError, match="one of a vehicle or a LinearSystem, got Trajectory"):
+        it.export(run, "control")
+
+
+def test_a_pole_at_a_frequency_is_refused() -> None:
+    car = it.Absorber(1000.0, 4e4, 50.0, it.Spring(1e4))
+    system = it.state_space(car)
+    pole = float(np.abs(np.linalg.eigvals(system.A)).max() / (2.0 * np.pi))
+    assert it.export(car, "csv", frequencies=[1.01 * pole])
+    for bad in ([0.0], [-1.0], [], [np.nan], "1 Hz"):
+        with pytest.raises(it.InerterError, match="Frequencies are positive numbers of Hz"):
+            it.export(car, "csv", frequencies=bad)
+
+
+@pytest.mark.parametrize("strut", [K | C - B, it.Bridge(K, C, B, C, K) | it.Friction(10.0), K - it.Gap(1e-3)])
+def test_drawings_hold_every_element(strut: it.Network) -> None:
+    """Nonlinear ones too, which nothing is left out of."""
+    count = len(list(strut.elements()))
+    svg = it.export(strut, "svg")
+    assert ElementTree.fromstring(svg).tag.endswith("svg")
+    assert svg == it.export(strut, "svg")
+    assert it.export(strut, "pdf").startswith(b"%PDF")
+    tikz = it.export(strut, "latex")
+    assert tikz.count("\\node[") == count
+    assert tikz.count("{") == tikz.count("}")
+    assert tikz.count("\\begin{tikzpicture}") == tikz.count("\\end{tikzpicture}") == 1
+    for line in re.findall(r"\\draw .*;", tikz):
+        assert re.fullmatch(r"\\draw \(.*\)( -- \(.*\))+;|\\draw \(.*\) circle \[radius=1\.6\];", line)
+
+
+def test_mounts_of_one_network_share_a_drawing() -> None:
+    tikz = it.export(design(2), "latex")
+    assert re.findall(r"^% (front.*|rear.*)$", tikz, re.MULTILINE) == [
+        "front left, front right",
+        "rear left, rear right",
+    ]
+
+
+def test_free_values_are_drawn_and_nothing_else() -> None:
+    free = it.Spring(1e5) | it.Damper(it.free(100, 1e5, name="c"))
+    car = it.QuarterCar(181.75, 25.0, 120e3, free)
+    assert b"svg" in it.export(car, "svg")
+    for kind in (key for key in it.EXPORTS if key not in ("svg", "pdf", "latex")):
+        with pytest.raises(it.InerterError, match="free"):
+            it.export(car, kind)

@@ -1,0 +1,263 @@
+"""Faults that were found in the page, and do not come back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor, wait_until
+from study_text import PAPER_CAR, study_text
+
+import inerter as it
+from inerter.files.rig.loading import load_rig
+
+
+def _open(visitor: Visitor, folder: Path, name: str, text: str) -> None:
+    path = folder / f"{name}.toml"
+    path.write_text(text)
+    visitor.open(path)
+    visitor.page.wait_for_selector(f"text={name}.toml is open")
+    visitor.settled()
+
+
+def _fill(visitor: Visitor, place: str, text: str) -> None:
+    entry = visitor.page.locator(f"[id='entry {place}']")
+    entry.fill(text)
+    entry.press("Enter")
+
+
+def _layout(visitor: Visitor, name: str) -> None:
+    visitor.page.locator(f"[aria-label=Layouts] button[title^='{name}']").first.click()
+
+
+@pytest.mark.parametrize(
+    ("place", "text", "words"),
+    [
+        ("elements.k", "5 kg", ["5 kg", "N/m"]),
+        ("elements.k", "12 furlong", ["furlong", "N/m"]),
+        ("elements.k", "7", ["unit missing"]),
+        ("elements.c", "9 N", ["9 N", "N s/m"]),
+        ("vehicle.sprung_mass", "3 m", ["3 m", "kg"]),
+        ("elements.k", "x" * 250, []),
+    ],
+)
+def test_a_text_of_another_dimension_is_an_error_at_its_field(
+    visitor: Visitor, place: str, text: str, words: list[str]
+) -> None:
+    """A spring does not become an inerter by what is typed: nothing changes, and the field says why."""
+    page = visitor.page
+    visitor.settled()
+    before, entry = visitor.values(), page.locator(f"[id='entry {place}']")
+    old = entry.get_attribute("title")
+    _fill(visitor, place, text)
+    told = page.locator(f"[data-place='{place}'] .problem")
+    told.wait_for()
+    assert all(word in told.inner_text() for word in words), told.inner_text()
+    assert entry.get_attribute("title") == old
+    assert entry.get_attribute("aria-invalid") == "true"
+    assert visitor.values() == before
+    _fill(visitor, "elements.ks", "900 kN/m")  # any other change takes the sentence away
+    told.wait_for(state="detached")
+
+
+def test_a_quantity_in_another_unit_is_taken_over(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    _fill(visitor, "elements.k", "120 N/mm")
+    page.wait_for_selector("[id='entry elements.k'][title='120 N/mm']")
+    assert page.locator("[data-place='elements.k'] .problem").count() == 0
+    _fill(visitor, "elements.k", "685.22 lbf/inch")
+    page.wait_for_selector("[id='entry elements.k'][title='685.22 lbf/inch']")
+
+
+def test_sizes_that_nothing_has_are_answered_at_once(visitor: Visitor) -> None:
+    """Whatever number is typed, no answer takes long, and nothing of the page stands still or fails."""
+    page = visitor.page
+    visitor.settled()
+    for text in ("1e60 N/m", "1e300 N/m", "1e-60 N/m", "1e50 N/m", "1e-50 N/m", "1e40 N/m", "1e-40 N/m", "1e20 N/m"):
+        for tab in ("response", "history"):
+            page.click(f"#tab-{tab}")
+            _fill(visitor, "elements.k", text)
+            page.wait_for_function("() => !document.querySelector('[aria-busy=true]')", timeout=15_000)
+            shown = page.inner_text("main")
+            assert "Invalid array" not in shown
+            assert "fault of the program" not in shown, shown
+    assert visitor.faults == []
+
+
+ODD = study_text(
+    'indices = ["J1"]\noptimise = "norm"',
+    vehicle=PAPER_CAR,
+    elements='constructor = "120 kN/m"\ntoString = { from = "100 N s/m", to = "100 kN s/m" }\nvalueOf = "300 kg"',
+    layouts='S1 = "constructor | toString"\n__proto__ = "constructor | toString - valueOf"',
+    title='title = "Odd names"',
+)
+
+
+def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Path) -> None:
+    _open(visitor, tmp_path, "odd", ODD)
+    page = visitor.page
+    assert visitor.text == "constructor | toString - valueOf"
+    assert visitor.values()["J1"] > 0.0
+    assert page.locator(".answers [data-better]").inner_text().endswith("%")
+    _fill(visitor, "elements.toString", "3 kN s/m")
+    visitor.settled()
+    _layout(visitor, "S1")
+    visitor.wait_for_text("constructor | toString")
+    visitor.settled()
+
+
+def _rename(visitor: Visitor, old: str, new: str) -> None:
+    page = visitor.page
+    page.locator(f".drawing [aria-label^='{old},']").first.click()
+    page.wait_for_function("old => document.getElementById('element-name').value === old", arg=old)
+    page.fill("#element-name", new)
+    page.keyboard.press("Enter")
+
+
+REFERENCES = study_text(
+    'indices = ["J1", "stroke"]\noptimise = "norm"\ntolerance = { k = "10 %" }\n'
+    'subject_to = { stroke = { at_most = "90 mm" } }',
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = { from = "100 N s/m", to = "100 kN s/m" }\nb = "300 kg"',
+    layouts='S1 = "k | c"\nS3 = "k | c - b"',
+    title='title = "References"',
+)
+REFERENCES += '[indices.stroke]\nkind = "element-stroke"\nelement = "k"\n'
+
+
+def test_an_element_is_renamed_wherever_the_study_names_it(visitor: Visitor, tmp_path: Path) -> None:
+    _open(visitor, tmp_path, "references", REFERENCES)
+    page, before = visitor.page, visitor.values()
+    for old, new in (("k", "constructor"), ("constructor", "main_spring"), ("c", "toString")):
+        _rename(visitor, old, new)
+        page.wait_for_function("new_ => document.getElementById('network-text').value.includes(new_)", arg=new)
+        assert visitor.values() == before
+        assert page.locator(".problem").count() == 0
+    saved = visitor.download("Study file", tmp_path).read_text()
+    assert 'element = "main_spring"' in saved
+    assert 'main_spring = "10 %"' in saved or "main_spring = 0.1" in saved
+
+
+def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    text = visitor.text
+    _rename(visitor, "k", "c")
+    page.wait_for_selector("form:has(#element-name) .problem")
+    assert "name of another element" in page.inner_text("form:has(#element-name) .problem")
+    assert visitor.text == text
+    page.get_by_text("This layout", exact=True).click()
+    page.get_by_role("button", name="Rename…").click()
+    page.locator("form:has-text('New name') input").fill("S1")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".notice:has-text('another layout')")
+    assert page.locator("[aria-label=Layouts] button[title^='S1']").count() == 1
+
+
+def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Visitor) -> None:
+    page = visitor.page
+    _layout(visitor, "S2")
+    visitor.settled()
+    before = visitor.values()
+    _layout(visitor, "S3e")
+    page.fill("#network-text", "k | c - nope")
+    page.wait_for_selector(".problem:has-text('nope')")
+    _layout(visitor, "S2")
+    visitor.settled()
+    wait_until(lambda: page.locator("td[data-index]").first.get_attribute("data-value") not in (None, ""))
+    assert visitor.values() == before
+    assert "%" in page.locator(".answers [data-better]").first.inner_text()
+    assert page.locator(".plot canvas").count() > 0
+    told = page.locator(".answers .problems").inner_text()
+    assert told.count("layouts.S3e") == 1
+
+
+def test_a_file_that_another_program_changes_is_told_and_read_again(
+    serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    text = study_text('indices = ["J1"]', title='title = "Mine"')
+    file.write_text(text)
+    visitor = visitors(serve(file)).visit()
+    page = visitor.page
+    before = visitor.values()
+    assert page.locator(".notice").count() == 0
+    file.write_text(text.replace('"20 kN/m"', '"30 kN/m"'))
+    notice = page.locator(".notice:has-text('mine.toml has changed')")
+    notice.wait_for()
+    assert visitor.values() == before  # nothing changes by itself
+    page.reload()
+    page.wait_for_selector("[data-connection=ready]", state="attached")
+    notice.wait_for()  # a page that keeps its work says so too
+    assert page.locator("[id='entry elements.k']").get_attribute("title") == "20 kN/m"
+    notice.get_by_role("button", name="Reload").click()
+    page.wait_for_selector("[id='entry elements.k'][title='30 kN/m']")
+    assert visitor.values() != before
+    assert notice.count() == 0
+    visitors(visitor.served).visit().page.wait_for_selector("[id='entry elements.k'][title='30 kN/m']")
+    file.write_text("[vehicle\n")
+    page.wait_for_selector(".notice:has-text('cannot be read')")
+    file.unlink()
+    page.wait_for_selector(".notice:has-text('removed or renamed')")
+
+
+def test_work_that_is_done_says_nothing_of_a_step(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    page.click("#tab-work")
+    page.locator("form.begin:has-text('Run the whole study')").get_by_role("button", name="Begin").click()
+    page.wait_for_selector(".job[data-state=done] table", timeout=120_000)
+    assert "figures and report" not in page.inner_text(".job[data-state=done]")
+    assert page.locator(".job[data-state=done] > p.quiet").count() == 0
+    page.locator(".job").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".job", state="detached")
+
+
+def _fits(visitor: Visitor, count: int) -> Any:
+    """The newest fit, once so many are done."""
+    visitor.page.wait_for_function(
+        "count => document.querySelectorAll('.fit[data-state=done] table').length === count", arg=count, timeout=240_000
+    )
+    return visitor.page.locator(".fit").first
+
+
+@pytest.mark.campaign
+def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_path: Path) -> None:
+    """First the reason and the likeliest cause, with a button each for what to do; then the device that it led to."""
+    page = visitor.page
+    visitor.settled()
+    record = tmp_path / "screw.csv"
+    it.write_record(replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=1.0).run(), record)
+    visitor.open(record)
+    page.wait_for_selector(".records li")
+    page.select_option("select[name=model]", "friction")
+    page.get_by_role("button", name="Identify").click()
+    fit = _fits(visitor, 1)
+    told = fit.inner_text()
+    assert "null" not in told
+    assert "undefined" not in told
+    assert told.index("times the sensor noise") < told.index("Possible causes") < told.index("95 % interval")
+    assert "the device is compliant" in told
+    assert fit.locator("td:text-is('withheld')").count() == 3
+    assert fit.get_by_role("button", name="Take the device").count() == 0
+    assert fit.locator("form:has-text('Fixture mass') input").count() == 1
+    fit.get_by_role("button", name="Fit the model elastic-friction").click()
+    fit = _fits(visitor, 2)
+    assert "elastic-friction" in fit.locator("b").first.inner_text()
+    fit.locator("form:has-text('Fixture mass') input").fill("heavy")
+    fit.locator("form:has-text('Fixture mass')").get_by_role("button").click()
+    page.wait_for_selector(".fit[data-state=failed] .problem")
+    assert "heavy" in page.inner_text(".fit[data-state=failed] .problem")
+    page.locator(".fit[data-state=failed]").get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit[data-state=failed]", state="detached")
+    fit = _fits(visitor, 2)
+    fit.get_by_role("button", name="Take the device").click()
+    page.wait_for_selector(".notice:has-text('The device is in the new layout')")
+    assert "shaft" in visitor.text
+    for _ in range(2):
+        page.locator(".fit").first.get_by_role("button", name="Forget").click()
+    page.wait_for_selector(".fit", state="detached")

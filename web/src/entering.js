@@ -1,0 +1,40 @@
+// What is typed into the field of a number: a text in a unit whose size is known becomes its value at once, any other
+// when the server has read it. What is no quantity of that unit changes nothing, and its sentence stands at the field.
+
+import { unitKey } from "./questions.js";
+import { takenApart } from "./state/scale.js";
+
+/** @import { Store, State } from "./state/store.js" */
+/** @import { Change } from "./state/document.js" */
+/** A text that was typed into a field, by its id; `change` is what it does if it is a quantity of `unit`, and
+ * `sentence` why it is none. @typedef {{id: string, text: string, unit: string, change: Change,
+ * sentence?: string}} Typed */
+
+/** Takes over what was typed in the place of `before`. @param {Store} store
+ * @param {{id: string, unit: string, before: string}} field @param {string} text @param {Change} change */
+export function enter(store, { id, unit, before }, text, change) {
+  if (isOf(store.get(), unit, before, text)) store.change(change);
+  else store.dispatch({ type: "typed", typed: { id, text, unit, change } });
+}
+
+const PURE = "1"; // the unit of a mere number
+
+/** Whether a text is known to be in a unit. @param {State} state @param {string} unit @param {string} before
+ * @param {string} text */
+function isOf({ quantities }, unit, before, text) {
+  if (unit === "" || unit === PURE) return true;
+  const apart = takenApart(text);
+  if (apart === null || apart.unit === "") return false;
+  const units = [unit, takenApart(before)?.unit];
+  return units.includes(apart.unit) || quantities[unitKey(apart.unit, unit)]?.value !== undefined;
+}
+
+/** Why nothing was taken over from a field; empty where nothing is wrong. @param {State} state @param {string} id */
+export const wronglyTyped = ({ typed, answers }, id) =>
+  (typed?.id === id ? (typed.sentence ?? refusalOf(answers.typed)) : "");
+
+/** @param {import("./state/answers.js").Answers | undefined} answers */
+const refusalOf = (answers) => answers?.kept[0]?.sentence ?? "";
+
+/** Whether the server is reading what was typed into a field. @param {State} state @param {string} id */
+export const isBeingRead = (state, id) => state.typed?.id === id && wronglyTyped(state, id) === "";

@@ -1,0 +1,97 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { enter, isBeingRead, wronglyTyped } from "../src/entering.js";
+import { freeIn, layoutsWith, numbersOf, unchosenIn } from "../src/library.js";
+import { choicesOf, designOf, questions } from "../src/questions.js";
+import { after, empty, entryAt, textOf } from "../src/state/document.js";
+import { createStore, initial } from "../src/state/store.js";
+import { partsOf } from "./reading.js";
+
+const NAMES = ["constructor", "toString", "valueOf", "hasOwnProperty", "isPrototypeOf", "__proto__"];
+
+/** A study with an element and a layout of this name. @param {string} name @returns {any} */
+const studyWith = (name) => JSON.parse(JSON.stringify({
+  vehicle: { model: "quarter-car", sprung_mass: "180 kg" },
+  elements: { c: "1 kN s/m" },
+  layouts: { S1: "c" },
+  study: { indices: ["J1"] },
+}).replace('"c":"1 kN s/m"', `"c":"1 kN s/m","${name}":{"from":"1 kg","to":"9 kg"}`)
+  .replace('"S1":"c"', `"S1":"c","${name}":"c | ${name}"`));
+
+for (const name of NAMES) {
+  test(`${name} is a name like any other`, () => {
+    const study = studyWith(name);
+    let document = after(empty(), { type: "opened", study });
+    assert.equal(document.layout, name);
+    assert.equal(textOf(document), `c | ${name}`);
+    const state = { ...initial(), history: { past: [], present: document, future: [], gesture: null },
+      parts: partsOf(study) };
+    if (name !== "__proto__") { // which no element can be called
+      assert.deepEqual(freeIn(state, name), [name]);
+      assert.deepEqual(layoutsWith(state, name), [name]);
+      assert.deepEqual(unchosenIn(state, designOf(document)), [name]);
+    }
+    assert.deepEqual(designOf(document).values, {});
+    assert.ok(questions(state).length > 0);
+    assert.deepEqual(choicesOf(document).map(({ name: each }) => each), ["S1", name]);
+    document = after(document, { type: "valued", layout: name, values: { c: "2 kN s/m" } });
+    assert.deepEqual(designOf(document).values, { c: "2 kN s/m" });
+    document = after(document, { type: "layoutRenamed", name: "S9" });
+    assert.deepEqual(Object.keys(document.study.layouts ?? {}), ["S1", "S9"]);
+    assert.deepEqual(designOf(document).values, { c: "2 kN s/m" });
+    document = after(after(document, { type: "selected", layout: "S1" }), { type: "layoutRenamed", name });
+    assert.deepEqual(Object.keys(document.study.layouts ?? {}), [name, "S9"]);
+    assert.equal(entryAt({}, [name]), undefined);
+    assert.deepEqual(JSON.parse(JSON.stringify(document)), document);
+  });
+}
+
+const OPEN = { type: "opened", study: { ...studyWith("b"), elements: { c: "1 kN s/m", b: "1 kg" } } };
+const FIELD = { id: "elements.c", unit: "N s/m", before: "1 kN s/m" };
+
+/** A store with this study, and what is typed into the field of its damper. @param {string} text */
+function typedInto(text) {
+  const store = createStore();
+  store.change(/** @type {any} */ (OPEN));
+  enter(store, FIELD, text, { type: "placed", place: ["elements", "c"], value: text });
+  return store;
+}
+
+/** @param {any} store */
+const damper = (store) => entryAt(store.get().history.present.study, ["elements", "c"]);
+
+/** @param {any} store */
+const asked = (store) => questions(store.get()).find(({ panel }) => panel === "typed");
+
+for (const text of ["2 kN s/m", "300 N s/m"]) {
+  test(`${text} is taken over at once`, () => {
+    const store = typedInto(text);
+    assert.equal(damper(store), text);
+    assert.equal(asked(store), undefined);
+  });
+}
+
+for (const text of ["5 kg", "12 furlong", "much", "7", "9 lbf s/ft"]) {
+  test(`${text} is read by the library before it is taken over`, () => {
+    const store = typedInto(text);
+    assert.equal(damper(store), FIELD.before);
+    assert.ok(isBeingRead(store.get(), FIELD.id));
+    assert.deepEqual(asked(store)?.body, { text, unit: FIELD.unit });
+    store.dispatch(/** @type {any} */ (asked(store)?.learnt?.({ sentence: "It is none." })));
+    assert.equal(damper(store), FIELD.before);
+    assert.equal(wronglyTyped(store.get(), FIELD.id), "It is none.");
+    assert.equal(asked(store), undefined);
+    enter(store, FIELD, "3 kN s/m", { type: "placed", place: ["elements", "c"], value: "3 kN s/m" });
+    assert.equal(wronglyTyped(store.get(), FIELD.id), "");
+  });
+
+  test(`${text} is taken over once the library knows it`, () => {
+    const store = typedInto(text);
+    store.dispatch(/** @type {any} */ (asked(store)?.learnt?.({ value: 3 })));
+    assert.equal(damper(store), text);
+    assert.equal(numbersOf(store.get()).length, 0);
+    assert.ok(!isBeingRead(store.get(), FIELD.id));
+    store.dispatch({ type: "undone" });
+    assert.equal(damper(store), FIELD.before);
+  });
+}

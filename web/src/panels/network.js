@@ -3,12 +3,8 @@
 import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
-<<<<<<< HEAD
-import { isRange, strutsOf, textOf } from "../state/document.js";
-import { brief, printed } from "../state/scale.js";
-=======
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
->>>>>>> main
+import { brief, printed } from "../state/scale.js";
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";

@@ -1,25 +1,16 @@
 // Every number of elements, vehicle and road: a slider on a logarithmic scale, exact entry in any unit, bounds, and
 // whether it may vary; and the best values of what may.
 
-<<<<<<< HEAD
+import { enter, isBeingRead, wronglyTyped } from "../entering.js";
 import { layoutsWith, numbersOf, treeOf } from "../library.js";
 import { partAt } from "../network/algebra.js";
-=======
-import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { layoutsWith, numbersOf } from "../library.js";
->>>>>>> main
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, goalOf, unitKey } from "../questions.js";
-<<<<<<< HEAD
-import { entryAt, isRange, textOf } from "../state/document.js";
+import { entryAt, isRange, own, textOf } from "../state/document.js";
 import { STEPS, brief, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
-=======
-import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
->>>>>>> main
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -227,13 +218,8 @@ function AmountRow({ store, amount, wide, chosen }) {
     else return;
     event.preventDefault();
   };
-<<<<<<< HEAD
   const classes = ["amount", wide && "wide", free && "free", chosen && "chosen"].filter(Boolean);
-  return html`<div class=${classes.join(" ")} data-place=${id}>
-=======
-  return html`<div class=${`amount ${wide ? "wide" : ""} ${free ? "free" : ""}`} data-place=${id}
-    aria-busy=${isBeingRead(state, id)}>
->>>>>>> main
+  return html`<div class=${classes.join(" ")} data-place=${id} aria-busy=${isBeingRead(state, id)}>
     <${Bounds} store=${store} amount=${amount} />
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label} title=${`${range.from} to ${
       range.to}`} value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}

@@ -41,9 +41,9 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
       ${caveats.map((/** @type {any} */ { sentence }) => html`<p key=${sentence}>${sentence}</p>`)}</div>`}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) ? "" : "problem"}>${sentence || message}</p>`)}
-    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed", "against the baseline"]}>
-      ${speeds.map((/** @type {any} */ { factor, improvement_percent: better, status }) => html`<tr key=${factor}>
-        <th scope="row">${signed(100 * (factor - 1), 0)}</th>
+    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed [m/s]", "against the baseline"]}>
+      ${speeds.map((/** @type {any} */ { factor, speed, improvement_percent: better, status }) => html`<tr key=${factor}>
+        <th scope="row">${shown(speed)} (${signed(100 * (factor - 1), 0)})</th>
         <td class="number">${isOk(status) ? "" : `${status}: `}${signed(better)}</td></tr>`)}<//>`}
     ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}`;
 }

@@ -90,7 +90,7 @@ function Row({ store, row, missing }) {
       <${Sketch} state=${state} tree=${treeOf(state, text)} />
       <span style=${{ color: layoutColour(document, layout) }}>${layout}
         ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
-    <td class="number" title=${row.message} data-index=${on && row.value !== undefined ? goal : undefined}
+    <td class="number" title=${row.message} data-index=${on ? goal : undefined}
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
       <${Against} row=${row} unchosen=${unchosen.length > 0} /></td>

@@ -5,7 +5,7 @@ import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
 import { DropDown, Select, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
-import { begin, openStudy } from "../working.js";
+import { begin, ended, openStudy } from "../working.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -39,6 +39,15 @@ export function Menu({ store, api }) {
     await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
     store.look({ tab: "work" });
   });
+  const page = attempt(async () => {
+    store.say("The report is being made: see Jobs.", "report");
+    const title = `Report of ${design.name}: ${study.title ?? "study"}`;
+    const designs = shownDesigns(history.present);
+    const job = await ended(store, await begin(store, api, { kind: "report", title, study, designs }));
+    store.dispatch({ type: "closed", about: "report" });
+    if (!job?.result) throw new Error(job?.sentence || "The report was stopped.");
+    download(await api.blob(`work/${job.id}/files/${job.result.file}`), `${name}-report.html`);
+  });
   return html`<div class="row" role="group" aria-label="Memory">
     <button type="button" title="Undo (Ctrl+Z)" disabled=${history.past.length === 0}
       onClick=${() => store.dispatch({ type: "undone" })}>Undo</button>
@@ -58,6 +67,7 @@ export function Menu({ store, api }) {
       ${index && html`<${Select} label="Response of" value=${index} choices=${indices} set=${setIndex} />
         ${figures("Response", `response-${index}`, shownDesigns(history.present))}`}
       ${figures("On the road", "history", [design], { duration: state.view.seconds, seed: state.view.seed })}
+      <button type="button" onClick=${page}>Report of these designs (HTML)</button>
       <button type="button" onClick=${report}>Report: run the study</button>
     <//>
     <${Share} store=${store} />`}

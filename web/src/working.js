@@ -268,7 +268,7 @@ export async function stop(store, api, id) {
 }
 
 /** A job once it has ended, undefined if it was dropped. @param {Store} store @param {string} id
- * @returns {Promise<Job | undefined>} */
+ * @returns {Promise<import("./state/store.js").Job | undefined>} */
 export const ended = (store, id) => new Promise((resolve) => {
   const leave = store.subscribe(() => {
     const job = store.get().work[id];

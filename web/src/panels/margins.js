@@ -11,6 +11,7 @@ import { html } from "../parts/html.js";
 import { printed, shown } from "../state/scale.js";
 import { begin, ended } from "../working.js";
 import { indicesOf, signed } from "./answers.js";
+import { JobHead, RUNNING } from "./work.js";
 
 /** @import { Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -46,13 +47,16 @@ async function compute(store, api) {
 export function MarginsPanel({ store, api }) {
   const state = store.get();
   const { layout } = state.history.present;
-  const { is, value, sentence } = soughtAnswer(state, "margins");
+  const { is, value, sentence } = soughtAnswer(state, NAME);
+  const job = Object.values(state.work).find(({ kind, state: how }) => kind === NAME && RUNNING.includes(how));
   if (layout === baselineOf(state.history.present).layout) return html`<p class="quiet">${layout} is the baseline:
     select another layout.</p>`;
   return html`<form class="row" aria-busy=${is === "coming"}
       onSubmit=${formHandler(() => void compute(store, api))}>
-      <button class="edged">What does it bear?</button>
-      <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : sentence}</p></form>
+      <button class="edged" disabled=${is === "coming"}>What does it bear?</button>
+      <p role="status">${is !== "coming" && sentence}</p></form>
+    ${is === "coming" && job && html`<${JobHead} store=${store} api=${api} job=${job} /><p class="quiet">
+      ${job.sentence}</p>`}
     ${value && html`<${Margins} value=${value} />`}
     <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />`;
 }

@@ -65,7 +65,7 @@ function Begin({ store, api, kind }) {
   </form>`;
 }
 
-const RUNNING = ["waiting", "running"];
+export const RUNNING = ["waiting", "running"];
 
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */

@@ -16,6 +16,15 @@ from inerter.field_metadata import choice_field as choice_field
 from inerter.field_metadata import mount as mount
 from inerter.field_metadata import quantity as quantity
 from inerter.field_metadata import typed_field as typed_field
+from inerter.figures.plots import plot_admittance as plot_admittance
+from inerter.figures.plots import plot_bode as plot_bode
+from inerter.figures.plots import plot_front as plot_front
+from inerter.figures.plots import plot_loop as plot_loop
+from inerter.figures.plots import plot_network as plot_network
+from inerter.figures.plots import plot_nyquist as plot_nyquist
+from inerter.figures.plots import plot_poles as plot_poles
+from inerter.figures.plots import plot_step_response as plot_step_response
+from inerter.figures.plots import plot_trajectory as plot_trajectory
 from inerter.files.common.folder import WriteMode as WriteMode
 from inerter.files.common.folder import open_results as open_results
 from inerter.files.common.signal_kinds import SIGNALS as SIGNALS

@@ -23,7 +23,14 @@ from inerter.cli.main import app, call
 from inerter.files.identification.loading import load_identification
 
 PYTHON = [page for page in PAGES if blocks(page)]
-LONG = {"README.md", "staged-protocol.md", "methods.md", "cluster.md", "limits.md"}  # pages whose blocks take long
+LONG = {
+    "README.md",
+    "recipes.md",
+    "staged-protocol.md",
+    "methods.md",
+    "cluster.md",
+    "limits.md",
+}  # pages whose blocks take long
 WRITTEN = {"exports.md": "car.mo", "study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 
@@ -82,6 +89,10 @@ def a_friction_test(folder: Path) -> None:
     assert call(shlex.split("rig examples/rig_friction.toml -o friction.csv")) == 0
 
 
+def a_sports_car(folder: Path) -> None:
+    (folder / "sports-car.toml").write_text(blocks("tutorial.md", "toml")[0].code, encoding="utf-8")
+
+
 def nothing(folder: Path) -> None:
     pass
 
@@ -92,11 +103,16 @@ SHOWN = f'{FITTED} --force-range "100 kgf"'
 SLOW = 'inerter identify friction.csv --model ball-screw --force-bandwidth "80 Hz"'
 EXPORTED = "inerter export examples/quarter-car.toml --layout S3 --index J1 --to"
 WHOLE = "inerter reproduce wang-su-2008 -o paper"
-SERVES = "inerter serve examples/quarter-car.toml"  # until it is stopped: see tests/app and tests/page
+SERVES = {
+    "inerter serve examples/quarter-car.toml",
+    "inerter serve sports-car.toml",
+}  # until it is stopped: see tests/app and tests/page
 COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter run examples/quarter-car.toml": nothing,
     "inerter search examples/search_quarter_car.toml": nothing,
+    "inerter run sports-car.toml": a_sports_car,
     "inerter new half-car": nothing,
+    "inerter new quarter-car": nothing,
     "inerter explain road.speed": nothing,
     "inerter simulate examples/backlash_rattle.toml": nothing,
     "inerter simulate my-car.toml -o motion --force": a_car,
@@ -120,6 +136,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
 }
 BRIEF = [
     f"{EXPORTED} matlab",
+    "inerter run sports-car.toml",
     "inerter new half-car",
     "inerter explain road.speed",
     "inerter simulate my-car.toml --window 2:4",
@@ -142,7 +159,7 @@ SELDOM = [  # those that take long, and of which a part, or what is much the sam
 
 def test_every_command_of_the_pages_is_run() -> None:
     """Those that only name one say which: their help is there."""
-    names = {*(f"inerter {name}" for name in app), SERVES}
+    names = {*(f"inerter {name}" for name in app), *SERVES}
     assert {command for command in commands() if command not in names | {"inerter"}} == set(COMMANDS)
 
 

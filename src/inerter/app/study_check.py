@@ -21,7 +21,9 @@ def check_document(document: object) -> dict[str, Any]:
 
     A layout that is invalid leaves out itself only.
     """
-    study, problems, notes = None, [], []
+    study: Study | None = None
+    problems: list[dict[str, Any]] = []
+    notes: list[str] = []
     try:
         study, problems = _valid_part(document)
         check_study(study)

@@ -15,6 +15,7 @@ from inerter.identification.statements.causes import Details, Suspect
 from inerter.identification.statements.identifiability import Identifiability
 from inerter.identification.statements.patterns import MisfitPattern
 from inerter.networks.elements import Network
+from inerter.notebook import shown_by
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.records.remedy import in_python
@@ -164,6 +165,8 @@ class Localisation(Statement):
 @dataclass(frozen=True, eq=False)
 class Fit:
     """The result of `identify`."""
+
+    _repr_html_ = shown_by("inerter.report.notebook:fit_html")
 
     parameters: dict[str, Parameter]
     identifiable: dict[str, Identifiability]

@@ -16,6 +16,7 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
 from inerter.methods.ties import ACCURACY
+from inerter.notebook import shown_by
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -42,6 +43,8 @@ class Difference:
 @dataclass(frozen=True)
 class Comparison:
     """Two designs by one index: `difference` is first less second, so negative where the first is better."""
+
+    _repr_html_ = shown_by("inerter.report.notebook:comparison_html")
 
     first: Estimate
     second: Estimate

@@ -27,6 +27,7 @@ from inerter.methods.composite_index import (
 )
 from inerter.methods.objective import Objective
 from inerter.norms.hinf import GainPeak
+from inerter.notebook import shown_by
 from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
@@ -45,6 +46,8 @@ class Estimate:
 
     What random inputs make of it is its `standard_error`; all other errors are among `error_sources`.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:estimate_html")
 
     value: float
     unit: str

@@ -16,6 +16,7 @@ from inerter.methods.method import Estimate
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.networks.enumeration import BRIDGE, PARALLEL, SERIES, Topology, Tree
 from inerter.networks.equivalence import equivalence_classes, transform_values
+from inerter.notebook import shown_by
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -71,6 +72,8 @@ class SearchResult:
     Networks whose values differ by less than 1e-8 are ranked by number of elements, then by layout. `failed` are
     networks without a value, each with the reason.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:search_html")
 
     symbol: str
     unit: str

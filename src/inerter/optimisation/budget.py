@@ -18,6 +18,7 @@ from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
+from inerter.notebook import shown_by
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle
@@ -57,6 +58,8 @@ class BreakEven:
     SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
     nan for a method that models friction and has none. `status` is no better than the worst of the compared estimates.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:break_even_html")
 
     parameter: str
     unit: str

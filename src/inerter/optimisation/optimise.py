@@ -26,6 +26,7 @@ from inerter.methods.objective import Differentiable, Objective
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.networks.free_network import check_chosen
+from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
 from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
@@ -67,6 +68,8 @@ class Optimum:
     same method on the same roads (a negative difference is an improvement); None where linear analysis does not
     determine all values.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:optimum_html")
 
     estimate: Estimate
     parameters: dict[str, float]

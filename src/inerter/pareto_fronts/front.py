@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.methods.composite_index import IndexLike
+from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
@@ -26,6 +27,8 @@ class ParetoFront:
     points. `jumps` are pairs of neighbours between which the front is discontinuous (for two criteria). `limits` has
     the constraints at each point. `status` gives the reason for a front without points.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:front_html")
 
     indices: tuple[IndexLike, ...]
     values: Array

@@ -88,8 +88,8 @@ class _Motion:
         motion = cls(run, rows, determined.T, loose, np.zeros((loose.shape[1], run.time.size)))
         if not loose.size:
             return motion
-        rates = [run.evaluate(Output("", "", "", velocity=column)) for column in loose.T]
-        moved = scipy.integrate.cumulative_trapezoid(rates, run.time, axis=1, initial=0.0)
+        rates = np.array([run.evaluate(Output("", "", "", velocity=column)) for column in loose.T])
+        moved = scipy.integrate.cumulative_trapezoid(rates, x=run.time, axis=1, initial=0)
         start = [motion.elongation(*row)[0] for row in zip(*rows, strict=True)]
         first = -np.linalg.lstsq(rows[0] @ loose, np.array(start), rcond=None)[0]
         return cls(run, rows, determined.T, loose, moved + first[:, None])

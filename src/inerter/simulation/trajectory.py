@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from inerter.atomic_io import export
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import MechanismError, SimulationError, Status
+from inerter.notebook import shown_by
 from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads
@@ -101,6 +102,8 @@ class Trajectory:
     `outputs` lists all names with units. If the integration had to stop, `status` says why and `time` ends there.
     """
 
+    _repr_html_ = shown_by("inerter.report.notebook:trajectory_html")
+
     time: Matrix  # [s]
     status: Status
     outputs: Mapping[str, Output]
@@ -115,6 +118,11 @@ class Trajectory:
     _evaluate: Callable[[Output], Matrix] = field(repr=False, default=lambda output: np.zeros(0))
     _list_events: Callable[[], tuple[Event, ...]] = field(repr=False, default=tuple)
     _known: dict[str, Any] = field(repr=False, default_factory=dict)
+
+    @property
+    def mechanism(self) -> Mechanism | None:
+        """Mechanism that moved; None where it is not known."""
+        return self._mechanism
 
     @property
     def events(self) -> tuple[Event, ...]:

@@ -18,6 +18,7 @@ from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
+from inerter.notebook import shown_by
 from inerter.optimisation.threads import one_blas_thread
 from inerter.uncertainty.distributions import (
     Scatter,
@@ -49,6 +50,8 @@ class Tolerance:
     the `worst_values`, in the sample and at the corners of the tolerances. All are nan, with a status, where the index
     has no value for some of the sample, or where the method neglects all values with tolerances.
     """
+
+    _repr_html_ = shown_by("inerter.report.notebook:tolerance_html")
 
     nominal: Estimate
     mean: float

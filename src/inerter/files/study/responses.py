@@ -64,7 +64,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
                 angles[number] = np.angle(response[:, :, 0] * np.sign(weights)).T
         mechanism = designs[next(iter(mine)), index].mechanism()
         attributes = {
-            "units": _per(definition.unit, _source_unit(mechanism, definition)),
+            "units": gain_unit(definition.unit, source_unit(mechanism, definition)),
             "long_name": _words(study, index),
         }
         data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
@@ -77,13 +77,13 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
     return data
 
 
-def _per(unit: str, per: str) -> str:
+def gain_unit(unit: str, per: str) -> str:
     """Unit of a gain: `unit` over `per`; `unit` alone if `per` is empty."""
     top, bottom = (f"({one})" if brackets & {*one} else one for one, brackets in ((unit, {"/"}), (per, {"/", " "})))
     return f"{top or 1}/{bottom}" if per else unit
 
 
-def _source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
+def source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
     """The unit of a source; empty for one input, whose unit that of its gain has in it already."""
     if definition.drive.unit or not definition.drive.is_random:
         return definition.drive.unit

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import DesignError, NetworkError
 from inerter.networks.elements.values import Free, Tied
+from inerter.notebook import shown_by
 
 if TYPE_CHECKING:
     from inerter.networks.elements.element import Element
@@ -23,6 +24,8 @@ Fraction = tuple[Complex, Complex]  # numerator and denominator
 
 class Network:
     """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`."""
+
+    _repr_svg_ = shown_by("inerter.figures.plots:network_svg")
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))

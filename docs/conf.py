@@ -1,0 +1,50 @@
+"""The site: pages of this folder, the reference of names, commands and keys, and the gallery."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from inerter import __version__ as release
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_extensions"))
+
+project = "inerter"
+author = "the inerter developers"
+project_copyright = f"2026, {author}"
+version = release
+language = "en"
+
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_copybutton",
+    "sphinx.ext.mathjax",
+    "reference_pages",
+]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+exclude_patterns = ["_build", "_extensions", "README.md"]
+suppress_warnings = ["myst.header"]  # sections of records begin at the second level
+
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
+myst_heading_anchors = 4
+
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_member_order = "bysource"
+autodoc_preserve_defaults = True
+
+html_theme = "furo"
+html_title = f"inerter {release}"
+_MATHJAX = find_spec("sphinx-mathjax-offline")  # the files of it: no page asks another host for anything
+assert _MATHJAX is not None
+assert _MATHJAX.origin is not None
+html_static_path = ["_static", str(Path(_MATHJAX.origin).parent / "static")]
+mathjax_path = "mathjax/tex-svg.js"
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False

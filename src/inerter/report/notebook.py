@@ -1,0 +1,167 @@
+"""Results in notebooks: a table of each, its status first where that is not ok."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from inerter.errors import OK, Status
+from inerter.figures.labels import capital
+from inerter.formatting import format_number, format_quantity
+from inerter.identification.fit import Fit
+from inerter.methods.compare import Comparison
+from inerter.methods.method import Estimate
+from inerter.network_search.results import SearchResult
+from inerter.optimisation.budget import BreakEven
+from inerter.optimisation.optimise import Optimum
+from inerter.pareto_fronts.front import ParetoFront
+from inerter.report.page import environment
+from inerter.simulation.trajectory import Trajectory
+from inerter.systems.outputs import main_outputs
+from inerter.table import Quantity, Row, Table, cells, columns
+from inerter.uncertainty.tolerance import Tolerance
+from inerter.vehicle.vehicle import Vehicle
+
+_MOST = 20  # rows of a ranking or a front
+
+Fact = tuple[str, object]
+
+
+def estimate_html(found: Estimate) -> str:
+    """Value with its errors, and what the method left out."""
+    facts: list[Fact] = [("value", _estimated(found))]
+    if found.interval is not None:
+        facts.append(("95 % interval", _interval(found.interval, found.unit)))
+    if found.error_sources:
+        facts.append(("largest relative error", format_number(found.error_bound, 2)))
+    return _html(_facts("Estimate", facts), found.status, found.notes)
+
+
+def comparison_html(found: Comparison) -> str:
+    """Both values, and the difference in words."""
+    facts = [("first", _estimated(found.first)), ("second", _estimated(found.second)), ("difference", str(found))]
+    return _html(_facts("Comparison", facts), found.status)
+
+
+def optimum_html(found: Optimum) -> str:
+    """Best value, its parameters with active bounds, active limits, and how many starts agree."""
+    facts: list[Fact] = [("value", _estimated(found.estimate)), *_parameters(found.parameters, found.design)]
+    facts += [(f"{bound} bound", name) for name, bound in found.active_bounds.items()]
+    facts += [("limit", label) for label in found.active_limits]
+    facts.append(("starts that agree", f"{found.n_converged} of {found.n_starts}"))
+    return _html(_facts("Optimum", facts), found.status, found.estimate.notes)
+
+
+def break_even_html(found: BreakEven) -> str:
+    """Break-even value with its interval."""
+    facts: list[Fact] = [(found.parameter, Quantity(found.value, found.unit, error=found.standard_error))]
+    facts.append(("95 % interval", _interval(found.interval, found.unit)))
+    return _html(_facts("Break-even value", facts), found.status)
+
+
+def tolerance_html(found: Tolerance) -> str:
+    """Distribution of an index, and the part of each value in its variance."""
+    facts: list[Fact] = [("nominal", _estimated(found.nominal)), ("mean", Quantity(found.mean, found.unit))]
+    facts += [
+        ("95 % quantile", Quantity(found.quantile(0.95), found.unit)),
+        ("worst", Quantity(found.worst, found.unit)),
+    ]
+    facts += [(f"first order of {name}", format_number(share, 3)) for name, share in found.first_order.items()]
+    return _html(_facts("Tolerance analysis", facts), found.status)
+
+
+def front_html(found: ParetoFront) -> str:
+    """Points of a front with their parameters; the knee is strong."""
+    names = list(found.parameters[0]) if found.parameters else []
+    heads = [f"{capital(index.title)} {index.symbol}" for index in found.indices]
+    units = _units(found.designs[0]) if found.designs else {}
+    rows = [
+        Row(
+            cells(
+                str(number + 1),
+                *(Quantity(float(v), index.unit) for v, index in zip(values, found.indices, strict=True)),
+                *(Quantity(parameters[name], units.get(name, "")) for name in names),
+            ),
+            strong=number == found.knee,
+            status="" if status.ok else str(status),
+        )
+        for number, (values, parameters, status) in enumerate(
+            zip(found.values, found.parameters, found.statuses, strict=True)
+        )
+    ]
+    return _html(Table("Pareto front", columns("point", *heads, *names), rows), found.status)
+
+
+def search_html(found: SearchResult) -> str:
+    """The best networks of a search."""
+    rows = [
+        Row(
+            cells(str(rank + 1), one.layout, str(one.n_elements), Quantity(one.value, one.unit)),
+            status="" if one.status.ok else str(one.status),
+        )
+        for rank, one in enumerate(found.ranking[:_MOST])
+    ]
+    more = [f"{found.n_networks - len(rows)} further networks."] if found.n_networks > len(rows) else []
+    return _html(Table("Networks", columns("rank", "network", "elements", found.symbol), rows), OK, more)
+
+
+def fit_html(found: Fit) -> str:
+    """Identified values with their intervals; one that is not known is a word."""
+    rows = [
+        Row(
+            cells(
+                each.name,
+                Quantity(each.value, each.unit, error=each.standard_error) if each.value == each.value else "not known",
+                _interval(each.interval, each.unit),
+            )
+        )
+        for each in found.parameters.values()
+    ]
+    first = [] if found.reliability_warning is None else [found.reliability_warning.sentence]
+    return _html(Table("Device", columns("parameter", "value", "95 % interval"), rows), found.status, first)
+
+
+def trajectory_html(run: Trajectory) -> str:
+    """R.m.s. and peak values of the main outputs of a motion."""
+    names = list(run.outputs) if run.mechanism is None else main_outputs(run.mechanism)
+    rows = [
+        Row(
+            cells(
+                run.outputs[name].title,
+                Quantity(run.rms(name), run.outputs[name].unit),
+                Quantity(run.peak(name).value, run.outputs[name].unit),
+            )
+        )
+        for name in names
+    ]
+    caption = f"Motion from {format_quantity(run.time[0], 's')} to {format_quantity(run.time[-1], 's')}"
+    said = [f"{len(run.events)} events.", *run.notes]
+    return _html(Table(caption, columns("output", "r.m.s.", "peak"), rows), run.status, said)
+
+
+def _facts(caption: str, facts: Sequence[Fact]) -> Table:
+    return Table(caption, columns("what", "value"), [Row(cells(name, content)) for name, content in facts])  # type: ignore[arg-type]
+
+
+def _estimated(found: Estimate) -> Quantity:
+    error = float("nan") if found.standard_error is None else found.standard_error
+    return Quantity(found.value, found.unit, error=error, bound=found.error_bound)
+
+
+def _interval(ends: tuple[float, float], unit: str) -> str:
+    return " to ".join(format_quantity(end, unit) for end in ends)
+
+
+def _parameters(values: Mapping[str, float], design: Vehicle) -> list[Fact]:
+    units = _units(design)
+    return [(name, Quantity(value, units.get(name, ""))) for name, value in values.items()]
+
+
+def _units(design: Vehicle) -> dict[str, str]:
+    """Units of the elements of a design, by their names."""
+    mounts = design.mechanism().mounts()
+    return {element.label: element.unit for mount in mounts for element in mount.network.elements()}
+
+
+def _html(table: Table, status: Status, said: Sequence[str] = ()) -> str:
+    template = environment().get_template("notebook.html")
+    return template.render(table=table, status="" if status.ok else str(status), said=said)

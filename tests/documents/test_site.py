@@ -1,0 +1,57 @@
+"""The site has a page for every public name, and every command and key; the theory names only tests that exist."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pages import ROOT, text_of
+
+import inerter
+from inerter.cli.main import app
+from inerter.files.common.keys import keys_of
+from inerter.files.study.schema import study_schema
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
+    reference_pages = pytest.importorskip("reference_pages", reason="the extra `site` is not installed")
+    folder = tmp_path_factory.mktemp("reference")
+    reference_pages.write_reference(folder)
+    yield folder
+    sys.path.remove(str(ROOT / "docs" / "_extensions"))
+
+
+def test_every_name_has_a_page(reference: Path) -> None:
+    names = {name for name in inerter.__all__ if name != "__version__"}
+    assert {path.stem for path in (reference / "python").iterdir()} == names
+    listed = (reference / "python.md").read_text(encoding="utf-8")
+    assert [name for name in names if f"(python/{name}.rst)" not in listed] == []
+    assert [name for name in names if listed.count(f"\npython/{name}\n") != 1] == []
+
+
+def test_every_command_is_there(reference: Path) -> None:
+    text = (reference / "commands.md").read_text(encoding="utf-8")
+    known = [name for name in app if not name.startswith("-")]
+    assert len(known) >= 10
+    assert [name for name in known if f"## inerter {name}\n" not in text] == []
+    assert text.count("Usage: inerter") == len(known)
+
+
+def test_every_key_is_there(reference: Path) -> None:
+    text = (reference / "keys.md").read_text(encoding="utf-8")
+    keys = keys_of(study_schema())
+    assert [key.place for key in keys if f"`{key.place}`" not in text] == []
+    assert [key.sentence for key in keys if key.sentence.replace("|", "\\|") not in text] == []
+
+
+def test_tests_that_the_theory_names_exist() -> None:
+    named = re.findall(
+        r"`((?:\w+/)?\w+(?:\.py)?)`", "".join(re.findall(r"Tests:(.*?)\n\n", text_of("theory.md") + "\n\n", re.DOTALL))
+    )
+    assert len(named) > 20
+    assert [name for name in named if not (ROOT / "tests" / name).exists()] == []

@@ -1,0 +1,128 @@
+"""What the plots draw are the numbers: read from their lines, against closed forms and SciPy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.signal
+
+import inerter as it
+
+MASS, WHEEL, TYRE, K, C = 250.0, 35.0, 150e3, 60e3, 2e3
+STRUT = it.Spring(K) | it.Damper(C)
+CAR = it.QuarterCar(MASS, WHEEL, TYRE, STRUT)
+
+
+def body_over_road(s: np.ndarray) -> np.ndarray:
+    """Displacement of the body over that of the road, by hand."""
+    strut = K + C * s
+    return strut * TYRE / ((MASS * s**2 + strut) * (WHEEL * s**2 + strut + TYRE) - strut**2)
+
+
+def test_bode_is_the_closed_form() -> None:
+    gain, phase = it.plot_bode(CAR, ("road", "sprung_acceleration"))
+    frequency, drawn = gain.lines[0].get_data()
+    s = 2j * np.pi * np.asarray(frequency)
+    expected = s * body_over_road(s)  # acceleration over velocity
+    np.testing.assert_allclose(drawn, np.abs(expected), rtol=1e-9)
+    angle = np.deg2rad(phase.lines[0].get_ydata())
+    np.testing.assert_allclose(np.exp(1j * angle), expected / np.abs(expected), rtol=0, atol=1e-8)
+
+
+def test_bode_of_an_index_is_that_of_its_response() -> None:
+    road = it.Road(roughness=5e-7, speed=25.0)
+    by_index = it.plot_bode(CAR, it.RideComfort(road))[0].lines[0].get_data()
+    by_names = it.plot_bode(CAR, ("road", "sprung_acceleration"))[0].lines[0].get_data()
+    np.testing.assert_allclose(by_index, by_names, rtol=1e-12)
+
+
+def test_several_designs_have_a_legend_and_the_axes_given() -> None:
+    from matplotlib.figure import Figure  # noqa: PLC0415
+
+    axes = Figure().subplots(2)
+    found = it.plot_bode({"S1": CAR, "stiff": it.QuarterCar(MASS, WHEEL, TYRE, it.Spring(2 * K) | it.Damper(C))},
+                         ("road", "tyre_load"), frequency=[1.0, 2.0, 5.0], axes=axes)  # fmt: skip
+    assert found == tuple(axes)
+    assert [text.get_text() for text in axes[0].get_legend().get_texts()] == ["S1", "stiff"]
+    assert [line.get_xdata().tolist() for line in axes[0].lines] == [[1.0, 2.0, 5.0]] * 2
+
+
+def test_nyquist_is_the_closed_form() -> None:
+    ax = it.plot_nyquist(CAR, ("road", "sprung_velocity"), frequency=[1.0, 3.0])
+    s = 2j * np.pi * np.array([1.0, 3.0])
+    real, imaginary = ax.lines[0].get_data()
+    np.testing.assert_allclose(real + 1j * np.asarray(imaginary), body_over_road(s), rtol=1e-9)
+
+
+def test_poles_are_the_roots_of_the_closed_form() -> None:
+    ax = it.plot_poles(CAR)
+    real, imaginary = ax.lines[0].get_data()
+    strut = np.poly1d([C, K])
+    roots = ((np.poly1d([MASS, 0, 0]) + strut) * (np.poly1d([WHEEL, 0, 0]) + strut + TYRE) - strut * strut).roots
+    np.testing.assert_allclose(np.sort_complex(real + 1j * imaginary), np.sort_complex(roots), rtol=1e-8)
+
+
+def test_step_response_is_that_of_scipy() -> None:
+    time, drawn = it.plot_step_response(CAR, ("road", "sprung_displacement")).lines[0].get_data()
+    strut = np.poly1d([C, K])
+    below = (np.poly1d([MASS, 0, 0]) + strut) * (np.poly1d([WHEEL, 0, 0]) + strut + TYRE) - strut * strut
+    _, expected = scipy.signal.step(((TYRE * strut).coeffs, below.coeffs), T=time)
+    np.testing.assert_allclose(drawn, expected, atol=1e-6)
+    force = it.plot_step_response(CAR, ("sprung_force", "sprung_displacement"), duration=10.0).lines[0].get_ydata()
+    assert force[-1] == pytest.approx(1.0 / K + 1.0 / TYRE, rel=1e-6)
+
+
+def test_an_impulse_is_refused() -> None:
+    """A damper in a tyre gives its load an impulse where the road steps."""
+    mass = it.Mechanism(
+        coordinates=(it.Coordinate("mass", 10.0),),
+        struts=(),
+        tyres=(it.Tyre("tyre", it.Spring(1e3) | it.Damper(5.0), {"mass": 1.0}, "road"),),
+        roads=(it.RoadInput("road"),),
+    )
+    with pytest.raises(it.InerterError, match="impulse"):
+        it.plot_step_response(mass, ("road", "tyre_load"))
+
+
+def test_admittance_is_the_formula() -> None:
+    gain, phase = it.plot_admittance(it.Spring(K) | it.Damper(C) - it.Inerter(100.0))
+    frequency, drawn = gain.lines[0].get_data()
+    s = 2j * np.pi * np.asarray(frequency)
+    expected = K / s + 1.0 / (1.0 / C + 1.0 / (100.0 * s))
+    np.testing.assert_allclose(drawn, np.abs(expected), rtol=1e-12)
+    np.testing.assert_allclose(phase.lines[0].get_ydata(), np.angle(expected, deg=True), atol=1e-9)
+
+
+def test_motions_are_drawn_with_what_sticks() -> None:
+    device = it.Spring(K) | it.Damper(C) | (it.Inerter(50.0) | it.Friction(40.0, name="f"))
+    run = it.simulate(it.QuarterCar(MASS, WHEEL, TYRE, device), road=it.cosine(2e-3, 2.0), duration=3.0)
+    (ax,) = it.plot_trajectory(run, "sprung_displacement", window=(1.0, 2.0))
+    time, drawn = ax.lines[0].get_data()
+    inside = (run.time >= 1.0) & (run.time <= 2.0)
+    np.testing.assert_array_equal(time, run.time[inside])
+    np.testing.assert_allclose(drawn, 1000.0 * run["sprung_displacement"][inside], rtol=1e-12)
+    assert "[mm]" in ax.get_ylabel()
+    sticks = [one for one in run.intervals("f", "stick") if one[0] < 2.0 and one[1] > 1.0]
+    assert len(ax.patches) == len(sticks) > 0
+    for patch, (begin, end) in zip(ax.patches, sticks, strict=True):
+        assert (patch.get_x(), patch.get_x() + patch.get_width()) == pytest.approx((begin, end))
+    loop = it.plot_loop(run, "strut_travel", "strut_force")
+    np.testing.assert_allclose(loop.lines[0].get_ydata(), run["strut_force"], rtol=1e-12)
+
+
+def test_what_cannot_be_drawn_is_said() -> None:
+    run = it.simulate(CAR, road=it.cosine(2e-3, 2.0), duration=0.5)
+    free = it.QuarterCar(MASS, WHEEL, TYRE, it.Spring(K) | it.Damper(it.free(1e2, 1e4, name="c")))
+    for call, words in (
+        (lambda: it.plot_trajectory(run, "nothing"), "nothing"),
+        (lambda: it.plot_trajectory(run, "tyre_load", window=(5.0, 6.0)), "from 5 s to 6 s"),
+        (lambda: it.plot_trajectory(run, []), "needs outputs"),
+        (lambda: it.plot_bode({}, ("road", "tyre_load")), "at least one"),
+        (lambda: it.plot_bode(STRUT, ("road", "tyre_load")), "Expected a vehicle"),
+        (lambda: it.plot_bode(free, it.LoadCarrying()), "c is still free"),
+        (lambda: it.plot_bode(CAR, ("road", "nothing")), "nothing"),
+        (lambda: it.plot_bode(CAR, ("road", "tyre_load"), frequency=[-1.0]), "positive numbers of Hz"),
+        (lambda: it.plot_admittance({}), "Expected an element"),
+    ):
+        with pytest.raises(it.InerterError, match=words):
+            call()

@@ -1,0 +1,57 @@
+"""Results in notebooks: their numbers, their status first, and nothing that a page could take for markup."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
+
+import pytest
+
+import inerter as it
+from inerter.errors import Status, StatusKind
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+COMFORT = it.RideComfort(ROAD)
+
+
+def car(strut: it.Network) -> it.QuarterCar:
+    return it.QuarterCar(181.75, 25.0, 120e3, strut)
+
+
+FREE = it.Spring(120e3) | it.Damper(it.free(1e3, 1e4, name="c"))
+PLAIN = car(it.Spring(120e3) | it.Damper(4981.0))
+OPTIMUM = it.optimise(car(FREE), COMFORT, it.Norm(), seed=0)
+SHOWN = {
+    "estimate": (OPTIMUM.estimate, ["2.988 m/s²"]),
+    "optimum": (OPTIMUM, ["2.988 m/s²", "4.981 kN s/m", f"{OPTIMUM.n_converged} of {OPTIMUM.n_starts}"]),
+    "comparison": (it.compare(OPTIMUM.design, PLAIN, COMFORT, it.Norm()), ["first", "second"]),
+    "front": (
+        it.pareto_front(car(FREE), [COMFORT, it.LoadCarrying()], it.Norm(), points=3, seed=0),
+        ["Ride comfort J1"],
+    ),
+    "tolerance": (it.tolerance_analysis(OPTIMUM.design, COMFORT, it.Norm(), spread={"c": 0.1}, seed=0), ["nominal"]),
+    "motion": (it.simulate(PLAIN, road=it.cosine(1e-3, 1.0), duration=0.5), ["tyre load", "0 events"]),
+}
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_results_are_tables(name: str) -> None:
+    result, texts = SHOWN[name]
+    html = result._repr_html_()
+    root = ElementTree.fromstring(html.replace("<br>", "<br/>"))
+    text = "".join(root.itertext()).replace("\N{NO-BREAK SPACE}", " ")
+    assert len(root.findall(".//tr")) >= 2
+    assert [one for one in texts if one not in text] == []
+
+
+def test_a_doubt_is_said_first_and_markup_is_text() -> None:
+    doubtful = replace(OPTIMUM.estimate, status=Status(StatusKind.INACCURATE, "<b>not</b> converged"))
+    html = doubtful._repr_html_()
+    assert html.index("&lt;b&gt;not") < html.index("<table>")
+    assert "<b>" not in html
+
+
+def test_a_network_is_a_drawing() -> None:
+    root = ElementTree.fromstring(FREE._repr_svg_())
+    assert root.tag.endswith("svg")
+    assert FREE._repr_svg_() == FREE._repr_svg_()

@@ -29,7 +29,7 @@ SHOWN = """() => {
   return {
     numbers: [...document.querySelectorAll("[data-value], [data-better]")]
       .flatMap(each => [each.dataset.value, each.dataset.better]).filter(each => each && !isNaN(each)),
-    curves: document.querySelectorAll(".plot .drawn, .motion canvas").length,
+    curves: document.querySelectorAll(".plot .drawn, .vehicle canvas").length,
     texts: [...texts(".limits li"), ...texts(".budget [role=status]"), ...texts(".optimise [role=status]"),
       ...texts(".notice"), ...texts(".problem"), ...texts(".doubts"),
       ...texts(".verdict:not(.wait) > b"), ...texts(".verdict:not(.wait) .caveat")].filter(each => each),

@@ -171,7 +171,7 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     wait_until(lambda: page.locator("td[data-index]").first.get_attribute("data-value") not in (None, ""))
     assert visitor.values() == before
     assert "%" in page.locator(".answers [data-better]").first.inner_text()
-    assert page.locator(".plot canvas").count() > 0
+    assert page.locator(".plot .drawn").count() > 0
     told = page.locator(".answers .problems").inner_text()
     assert told.count("layouts.S3e") == 1
 

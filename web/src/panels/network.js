@@ -311,7 +311,8 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
     onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
-    <rect class="touch" x="-11" y="-20" width=${24 + 5.2 * shortLabel(one.name).length} height="40" rx="3" />
+    <rect class="touch" x="-11" y="-20" height="40" rx="3"
+      width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
     <text x="12" y="2">${subscripted(shortLabel(one.name))}</text>
     ${valued && html`<text class="value" x="12" y="12">${printed(brief(value))}</text>`}

@@ -27,7 +27,7 @@ export function AskedPanel({ store }) {
   /** @param {Limit} limit @param {string | undefined} value */
   const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE,
     value: limited(study.study?.subject_to, [...path, sense], value) });
-  return html`<div class="asked"><h3>Indices and constraints</h3>
+  return html`<div class="asked"><b class="legend">Indices and constraints</b>
     <div class="row" role="group" aria-label="Indices of the study">
       ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
         on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}

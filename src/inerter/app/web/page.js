@@ -147,7 +147,7 @@ var N,Ls,Al,Nt,Yn,nn,Is,Ze,qs,Zn,Qn,El,Ae=Symbol.for("pv"),on={},sn=[],jl=/^m(i|
     <button type="button" aria-label=${`Edit ${s.name}`}
       onClick=${()=>t.change({type:"designTaken",name:s.name})}>Edit it</button>
     <button type="button" aria-label=${`Delete ${s.name}`}
-      onClick=${()=>t.change({type:"designRemoved",name:s.name})}>Delete</button></li>`)}</ul>`}`}var du=["at_most","at_least","equal"],Po=["study","subject_to"],fu="static-stiffness";function fi({store:t}){let e=t.get(),{study:n}=e.history.present,o=n.study?.indices??[],s=mu(e),r=a=>t.change({type:"placed",place:["study","indices"],value:o.includes(a)?o.filter(l=>l!==a):[...o,a]}),i=({path:a,sense:l},c)=>t.change({type:"placed",place:Po,value:mi(n.study?.subject_to,[...a,l],c)});return f`<div class="asked"><h3>Indices and constraints</h3>
+      onClick=${()=>t.change({type:"designRemoved",name:s.name})}>Delete</button></li>`)}</ul>`}`}var du=["at_most","at_least","equal"],Po=["study","subject_to"],fu="static-stiffness";function fi({store:t}){let e=t.get(),{study:n}=e.history.present,o=n.study?.indices??[],s=mu(e),r=a=>t.change({type:"placed",place:["study","indices"],value:o.includes(a)?o.filter(l=>l!==a):[...o,a]}),i=({path:a,sense:l},c)=>t.change({type:"placed",place:Po,value:mi(n.study?.subject_to,[...a,l],c)});return f`<div class="asked"><b class="legend">Indices and constraints</b>
     <div class="row" role="group" aria-label="Indices of the study">
       ${hi(e).map(({symbol:a,title:l})=>f`<${U} key=${a} title=${l}
         on=${o.includes(a)} disabled=${o.length===1&&o[0]===a}

@@ -65,7 +65,10 @@ export function Start({ store, api }) {
   const { about } = store.get();
   const ready = about !== null;
   useEffect(() => {
-    if (ready) void examplesOf(api, about, setExamples);
+    let shown = true;
+    if (ready) examplesOf(api, about, (found) => shown && setExamples(found), () => shown)
+      .catch(() => {}); // that the server is lost is told elsewhere
+    return () => { shown = false; };
   }, [ready]);
   /** @param {any} study */
   const begin = (study) => openStudy(store, api, study);
@@ -117,8 +120,8 @@ function walk(event) {
 }
 
 /** The examples of the library, and then their networks, for the pictures. @param {Api} api @param {any} about
- * @param {(examples: Example[]) => void} told */
-async function examplesOf(api, about, told) {
+ * @param {(examples: Example[]) => void} told @param {() => boolean} wanted */
+async function examplesOf(api, about, told, wanted) {
   const { examples } = await api.get("examples");
   const studies = await Promise.all(examples.map((/** @type {any} */ { name }) =>
     api.get(`examples/${encodeURIComponent(name)}`)));
@@ -127,6 +130,7 @@ async function examplesOf(api, about, told) {
     free: Object.values(study.elements ?? {}).some((/** @type {any} */ entry) => entry.network !== undefined) }));
   told(found);
   for (const { name, study } of found) {
+    if (!wanted()) return;
     const { networks, elements } = await api.post("study/parts", { study });
     const [largest] = networks.filter((/** @type {any} */ { tree }) => tree)
       .toSorted((/** @type {any} */ a, /** @type {any} */ b) => b.names.length - a.names.length);

@@ -78,12 +78,15 @@ function shownOf(state, mechanism, history) {
   };
 }
 
+/** A sentence of the server without the name of a file that nobody has seen. @param {string} sentence */
+const withoutFile = (sentence) => sentence.replace(/^study\.toml: /, "");
+
 /** Why the vehicle stands still, or its motion is no good. @param {any} mechanism @param {any} history
  * @returns {{words: string, doubt: boolean} | null} */
 function whyStill(mechanism, history) {
   const { value, sentence, is } = history;
-  if (!mechanism.value) return mechanism.sentence ? { words: mechanism.sentence, doubt: false } : null;
-  if (sentence) return { words: `At rest. ${sentence}`, doubt: false };
+  if (!mechanism.value) return mechanism.sentence ? { words: withoutFile(mechanism.sentence), doubt: false } : null;
+  if (sentence) return { words: `At rest. ${withoutFile(sentence)}`, doubt: false };
   if (value && value.status !== "ok") return { words: value.message, doubt: true };
   if (!value && is === "coming") return { words: "At rest; its motion is being simulated.", doubt: false };
   return null;

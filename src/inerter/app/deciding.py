@@ -93,7 +93,7 @@ def _typeset_sentences(told: Any, key: str = "") -> Any:
         return {name: _typeset_sentences(one, name) for name, one in told.items()}
     if isinstance(told, list):
         return [_typeset_sentences(one, key) for one in told]
-    return typeset(told) if key == "sentence" else told
+    return typeset(told) if key in ("sentence", "short") else told
 
 
 def verdict_of(told: Decision) -> Answer:

@@ -16,8 +16,7 @@ import { indicesOf, signed } from "./answers.js";
 /** The first of what was computed, for the line of the decision. @param {any} value */
 export function marginTold(value) {
   const first = value?.break_even?.find((/** @type {any} */ each) => typeof each.value === "number");
-  return first ? `${first.parameter} up to ${shown(first.value, 3)} ${printed(first.unit)}`
-    : value ? "No break-even value" : "Not computed";
+  return first ? first.short : value ? "No break-even value" : "Not computed";
 }
 
 /** @param {{store: Store, api: Api}} props */
@@ -40,7 +39,7 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
   return html`${caveats.length > 0 && html`<div class="doubts problem" role="alert">
       ${caveats.map((/** @type {any} */ { sentence }) => html`<p key=${sentence}>${sentence}</p>`)}</div>`}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
-      class=${isOk(status) ? "" : "problem"}>${sentence || message}</p>`)}
+      class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
     ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed", "against the baseline"]}>
       ${speeds.map((/** @type {any} */ { factor, improvement_percent: better, status }) => html`<tr key=${factor}>
         <th scope="row">${signed(100 * (factor - 1), 0)}</th>

@@ -163,7 +163,7 @@ var N,Rs,kl,jt,Kn,tn,Ns,Ye,Ds,Gn,Vn,vl,Oe=Symbol.for("pv"),en={},nn=[],_l=/^m(i|
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
         autocomplete="off" /> <button>Add</button>
     </form>
-  </div>`}function pi(t){let{study:e}=t.history.present,n=t.about?.indices??[],o=[...Object.keys(e.indices??{}),...e.study?.indices??[]].filter(s=>!n.some(r=>r.symbol===s));return[...n,...[...new Set(o)].map(s=>({symbol:s,title:s}))]}function ru(t){let e=Object.values(D(t,"check").value?.layouts??{}),n=Object.keys(e[0]?.mounts??{});return[...pi(t).map(({symbol:o})=>o),...n.map(o=>`${su}.${o}`)]}function iu(t){let{study:e}=t.history.present;return it(t).filter(({path:o})=>Co.every((s,r)=>o[r]===s)).map(({path:o})=>({path:o.slice(Co.length,-1),sense:o.at(-1)??"",value:gt(e,o)}))}function di(t,[e,...n],o){let s=n.length===0?o:di(t?.[e],n,o),r=Object.fromEntries(Object.entries({...t,[e]:s}).filter(([,i])=>i!==void 0));return Object.keys(r).length===0?void 0:r}function fi(t){let e=t?.break_even?.find(n=>typeof n.value=="number");return e?`${e.parameter} up to ${E(e.value,3)} ${V(e.unit)}`:t?"No break-even value":"Not computed"}function hi({store:t,api:e}){let n=t.get(),{layout:o}=n.history.present,{is:s,value:r,sentence:i}=Wt(n,"margins");return o===F(n.history.present).layout?f`<p class="quiet">${o} is the baseline:
+  </div>`}function pi(t){let{study:e}=t.history.present,n=t.about?.indices??[],o=[...Object.keys(e.indices??{}),...e.study?.indices??[]].filter(s=>!n.some(r=>r.symbol===s));return[...n,...[...new Set(o)].map(s=>({symbol:s,title:s}))]}function ru(t){let e=Object.values(D(t,"check").value?.layouts??{}),n=Object.keys(e[0]?.mounts??{});return[...pi(t).map(({symbol:o})=>o),...n.map(o=>`${su}.${o}`)]}function iu(t){let{study:e}=t.history.present;return it(t).filter(({path:o})=>Co.every((s,r)=>o[r]===s)).map(({path:o})=>({path:o.slice(Co.length,-1),sense:o.at(-1)??"",value:gt(e,o)}))}function di(t,[e,...n],o){let s=n.length===0?o:di(t?.[e],n,o),r=Object.fromEntries(Object.entries({...t,[e]:s}).filter(([,i])=>i!==void 0));return Object.keys(r).length===0?void 0:r}function fi(t){let e=t?.break_even?.find(n=>typeof n.value=="number");return e?e.short:t?"No break-even value":"Not computed"}function hi({store:t,api:e}){let n=t.get(),{layout:o}=n.history.present,{is:s,value:r,sentence:i}=Wt(n,"margins");return o===F(n.history.present).layout?f`<p class="quiet">${o} is the baseline:
     select another layout.</p>`:f`<form class="row" aria-busy=${s==="coming"}
       onSubmit=${q(()=>{Le(t,e,"margins",{})})}>
       <button class="edged">What does it bear?</button>
@@ -172,7 +172,7 @@ var N,Rs,kl,jt,Kn,tn,Ns,Ye,Ds,Gn,Vn,vl,Oe=Symbol.for("pv"),en={},nn=[],_l=/^m(i|
     <${lu} store=${t} api=${e} indices=${pt(n)} />`}function au({value:{break_even:t=[],speeds:e=[],scatter:n,caveats:o=[]}}){return f`${o.length>0&&f`<div class="doubts problem" role="alert">
       ${o.map(({sentence:s})=>f`<p key=${s}>${s}</p>`)}</div>`}
     ${t.map(({parameter:s,sentence:r,message:i,status:a})=>f`<p key=${s}
-      class=${R(a)?"":"problem"}>${r||i}</p>`)}
+      class=${R(a)||a==="unbounded"?"":"problem"}>${r||i}</p>`)}
     ${e.length>0&&f`<${X} label="Other speeds" heads=${["speed","against the baseline"]}>
       ${e.map(({factor:s,improvement_percent:r,status:i})=>f`<tr key=${s}>
         <th scope="row">${Ke(100*(s-1),0)}</th>

@@ -16,6 +16,11 @@ from starlette.testclient import TestClient
 import inerter as it
 from inerter.app.answers import answer_panel
 from inerter.app.documents import study_from
+from inerter.files.study.cases import cases, run_case
+from inerter.files.study.results import dataset
+from inerter.formatting import typeset
+from inerter.report.conclusions import conclusion_sentences
+from inerter.report.verdicts import study_decision
 
 ROW = ("value", "standard_error", "decimals", "status", "message", "improvement_percent", "improvement_error_percent")
 BLIND, SEEING = "norm", "statistical-linearisation"
@@ -60,6 +65,22 @@ def test_rows_have_the_numbers_of_the_indices(client: TestClient, c1: float, c: 
     best = told["rows"][0]["layout"]
     assert (two.percent < 0.0) == (best == "S3")
     assert sentence.startswith(f"S3 is {size} % better" if best == "S3" else "No strut is better")
+
+
+@pytest.mark.parametrize("method", [BLIND, SEEING])
+def test_a_study_of_the_designs_has_the_same_verdict(client: TestClient, method: str) -> None:
+    """Sentence, severity and caveats of each index, as report, terminal and JSON have them."""
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    designs = [{"layout": name, "values": one} for name, one in values.items()]
+    document = ask(client, "study/write", study=DOCUMENT, designs=designs)["study"]
+    study = study_from({**document, "study": {**document["study"], "evaluate": [method]}})
+    data = dataset(study, {case: run_case(study, case) for case in cases(study)})
+    for index in ("J1", "J3"):
+        told = ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[method], index=index)
+        verdict = study_decision(data, index, study).verdict
+        assert sentences(told) == [typeset(verdict.sentence), *(typeset(one.sentence) for one in verdict.caveats)]
+        assert told["verdict"]["severity"] == verdict.answer
+        assert verdict.sentence in " ".join(conclusion_sentences(data, study))
 
 
 def test_a_method_that_models_friction_says_so_and_the_other_warns(client: TestClient) -> None:

@@ -171,6 +171,16 @@ BETTER = Improvement(16.0, 0.02)
             "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), with its friction.",
         ),
         (
+            [BASE, design("S3", 2.52, by=BETTER, neglected=("friction f", "friction g"))],
+            Answer.ANSWER,
+            "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), without its friction.",
+        ),
+        (
+            [design("S1", 3.0, is_baseline=True, neglected=("gap g",)), design("S3", 2.52, by=BETTER)],
+            Answer.ANSWER,
+            "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), without the gap of S1.",
+        ),
+        (
             [BASE, design("S2", 2.7, by=Improvement(10.0)), design("S3", 2.703, by=Improvement(9.9))],
             Answer.ANSWER,
             "S2 and S3 are equally good (difference 0.10 +- 0.30 %) in ride comfort (J1), 10.0 % better than S1.",

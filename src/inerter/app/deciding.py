@@ -13,7 +13,7 @@ from inerter.app.designs import Design, baseline_of, designs_of, one_design
 from inerter.app.index_values import limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
+from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult, improvement_bound
 from inerter.errors import Status
 from inerter.figures.labels import format_list
 from inerter.files.study.limits import key_in_words
@@ -93,7 +93,7 @@ def _typeset_sentences(told: Any, key: str = "") -> Any:
         return {name: _typeset_sentences(one, name) for name, one in told.items()}
     if isinstance(told, list):
         return [_typeset_sentences(one, key) for one in told]
-    return typeset(told) if key == "sentence" else told
+    return typeset(told) if key in ("sentence", "short") else told
 
 
 def verdict_of(told: Decision) -> Answer:
@@ -178,9 +178,7 @@ def improvement_of(two: Comparison | None) -> Improvement | None:
     if two is None:
         return None
     percent, error = improvement_percent(two)
-    of_base = two.second.error_bound
-    ratio = abs(two.first.value / two.second.value) if two.second.value else inf
-    bound = 100.0 * ratio * (two.first.error_bound + of_base) / (1.0 - of_base) if of_base < 1.0 else nan
+    bound = improvement_bound(two.first.value, two.second.value, two.first.error_bound, two.second.error_bound)
     return Improvement(percent, nan if error is None else error, bound, two.is_tie, two.status)
 
 

@@ -120,12 +120,17 @@ def _ties(contest: Contest) -> Iterator[Caveat]:
         if (by := contest.over(first, other)) is not None:
             text = f"{first.name} and {other.name} are equally good too (difference {by.size})."
             yield Caveat(CaveatKind.TIE, text, Severity.INFO)
-    for one in contest.designs:
-        if base is None or one.is_baseline or one in contest.winners or not one.is_ranked:
-            continue
-        if (by := one.goal.improvement) is not None and by.is_equal:
-            text = f"{one.name} is no better than {base.name} (difference {by.size})."
-            yield Caveat(CaveatKind.TIE, text, Severity.INFO)
+    equal = [
+        (one.name, by)
+        for one in contest.designs
+        if one.is_ranked and one not in contest.winners and (by := one.goal.improvement) is not None and by.is_equal
+    ]
+    if base is not None and equal:
+        largest = max((by for _, by in equal), key=lambda by: abs(by.percent))
+        be, difference = ("is", "difference") if len(equal) == 1 else ("are", "differences of at most")
+        names = format_list([name for name, _ in equal])
+        text = f"{names} {be} no better than {base.name} ({difference} {largest.size})."
+        yield Caveat(CaveatKind.TIE, text, Severity.INFO)
 
 
 def _limits(contest: Contest) -> Iterator[Caveat]:

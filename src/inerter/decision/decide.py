@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
@@ -116,13 +116,13 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
     if base.breaks_limit and (by.is_equal or by.percent < 0.0):
         compared = f"as good as {base.name}" if by.is_equal else f"{by.words} than {base.name}"
         return (
-            f"{_best(contest)} in {lead.goal.words} of the struts that keep the limits{_friction(winners)}, "
+            f"{_best(contest)} in {lead.goal.words} of the struts that keep the limits{_friction(contest)}, "
             f"{compared}, which does not keep them.",
             True,
         )
     if len(winners) == 1:
-        return f"{lead.name} is {by.words} than {base.name} in {lead.goal.words}{_friction(winners)}.", True
-    return f"{_best(contest)} in {lead.goal.words}, {by.words} than {base.name}{_friction(winners)}.", True
+        return f"{lead.name} is {by.words} than {base.name} in {lead.goal.words}{_friction(contest)}.", True
+    return f"{_best(contest)} in {lead.goal.words}, {by.words} than {base.name}{_friction(contest)}.", True
 
 
 def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
@@ -171,7 +171,7 @@ def _sentence_without_baseline(contest: Contest, rest: Sequence[DesignResult]) -
     """Sentence where there is no baseline, or where it has no finite value."""
     lead, base = contest.winners[0], contest.baseline
     goal = lead.goal
-    text = f"{_best(contest)} in {goal.words}{_friction(contest.winners)}, {goal.text}"
+    text = f"{_best(contest)} in {goal.words}{_friction(contest)}, {goal.text}"
     by = contest.over(lead, rest[0]) if rest else None
     if by is not None and isfinite(by.percent) and by.percent > 0.0:
         text += f", {by.words} than {rest[0].name}"
@@ -194,7 +194,19 @@ def _by(one: DesignResult, other: DesignResult, over: Over) -> Improvement | Non
     return one.goal.improvement if other.is_baseline else over(one, other)
 
 
-def _friction(winners: Sequence[DesignResult]) -> str:
-    """Clause on the friction and backlash that the values include; empty if there is none."""
-    kinds = list(dict.fromkeys(words.split()[0] for one in winners for words in one.modelled))
-    return f", with {'its' if len(winners) == 1 else 'their'} {format_list(kinds)}" if kinds else ""
+def _friction(contest: Contest) -> str:
+    """Clause on the friction and backlash that the values include or neglect; empty if there is none."""
+    winners, base = contest.winners, contest.baseline
+    whose = "its" if len(winners) == 1 else "their"
+    if kinds := _kinds(words for one in winners for words in one.modelled):
+        return f", with {whose} {kinds}"
+    if kinds := _kinds(words for one in winners for words in one.neglected):
+        return f", without {whose} {kinds}"
+    kinds = _kinds(() if base is None else base.neglected)
+    return f", without the {kinds} of {base.name}" if base is not None and kinds else ""
+
+
+def _kinds(elements: Iterable[str]) -> str:
+    """Kinds of elements in words, each once."""
+    kinds = list(dict.fromkeys(words.split()[0] for words in elements))
+    return format_list(kinds) if kinds else ""

@@ -11,7 +11,7 @@ import numpy as np
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import bound_clause, decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult
+from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
@@ -190,11 +190,12 @@ def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> It
 
 
 def _other_bound(row: xr.Dataset, layout: str, other: str) -> float:
-    """Largest error of an improvement in another index [%], to first order."""
+    """Largest error of an improvement in another index [%]."""
     if "other_error_bound" not in row:
         return nan
-    bounds = row["other_error_bound"].sel(layout=[layout, row.attrs["baseline"]], other=other)
-    return 100.0 * float(bounds.sum(skipna=False))
+    entries = [row.sel(layout=name, other=other) for name in (layout, row.attrs["baseline"])]
+    values, bounds = ([float(one[name]) for one in entries] for name in ("other_value", "other_error_bound"))
+    return improvement_bound(*values, *bounds)
 
 
 def _at_bounds(design: xr.Dataset) -> Iterator[str]:

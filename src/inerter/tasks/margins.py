@@ -69,6 +69,7 @@ class BreakEvenMargin:
     interval: tuple[float, float] | None
     status: str
     message: str
+    short: str  # "f up to 414 +- 18 N"; empty without a value
     sentence: str
 
 
@@ -258,13 +259,15 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             None,
             StatusKind.FAILED.value,
             message,
+            "",
             sentence,
         )
-    known = isfinite(found.value)
+    known, short = isfinite(found.value), ""
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     if known:
         ends = [crossing.value for crossing in found.crossings]
         end = range_text(found.value, found.unit, found.standard_error, ends, at_most=element.may_vanish)
+        short = f"{trial.parameter} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
         end = found.status.message.replace("the design is better", who).rstrip(".")
@@ -281,6 +284,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         found.interval if all(map(isfinite, found.interval)) else None,
         found.status.kind.value,
         found.status.message,
+        short,
         f"{sentence}{doubt}",
     )
 

@@ -21,7 +21,7 @@ export function marginTold(value) {
   const found = (value?.break_even ?? []).filter((/** @type {any} */ each) => typeof each.value === "number");
   const first = found.find((/** @type {any} */ each) => each.standard_error > 0) ?? found[0];
   if (!first) return value ? "No break-even value" : "Not computed";
-  return `${first.sentence.split(":")[0]}: ${shown(first.value, 3)} ${printed(first.unit)}`;
+  return first.short;
 }
 
 const NAME = "margins";
@@ -69,7 +69,7 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
   return html`${caveats.length > 0 && html`<div class="doubts problem" role="alert">
       ${caveats.map((/** @type {any} */ { sentence }) => html`<p key=${sentence}>${sentence}</p>`)}</div>`}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
-      class=${isOk(status) ? "" : "problem"}>${sentence || message}</p>`)}
+      class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
     ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed [m/s]", "against the baseline"]}>
       ${speeds.map((/** @type {any} */ { factor, speed, improvement_percent: better, status }) => html`<tr
         key=${factor}>

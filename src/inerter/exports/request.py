@@ -107,7 +107,7 @@ class ExportSpec:
 
     def _vehicle(self, wanted: str) -> Vehicle:
         """What is exported, as a vehicle; raises `ExportError` if it is none."""
-        if isinstance(self.of, type) or not hasattr(self.of, "mechanism"):
+        if isinstance(self.of, type) or not callable(getattr(self.of, "mechanism", None)):
             raise ExportError(f"An export to {self.to} is one of {wanted}, got {type(self.of).__name__}.")
         found: Any = self.of
         vehicle: Vehicle = found

@@ -34,7 +34,7 @@ class Vehicle(Protocol):
 
 def check_vehicle(vehicle: object) -> None:
     """Raise `DesignError` unless `vehicle` is a vehicle, not a class."""
-    if isinstance(vehicle, type) or not hasattr(vehicle, "mechanism"):
+    if isinstance(vehicle, type) or not callable(getattr(vehicle, "mechanism", None)):
         raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
 
 

@@ -118,6 +118,7 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
         page.evaluate(FRAMES)
         assert page.evaluate(SHOWN) == NOTHING
         page.get_by_role("button", name="Undo").click()
+        page.click("#tab-tolerance")
         page.wait_for_selector("table[data-scatter]")  # and again under the seat, since it is that of it
 
 
@@ -147,7 +148,9 @@ def _moves(page: Any) -> None:
     """Wait for less than two seconds until something tells how long an answer is coming, and see that it goes on."""
     page.wait_for_selector(".clock", timeout=2000)
     before = page.inner_text(".clock >> nth=0")
-    page.wait_for_function("text => document.querySelector('.clock').innerText !== text", arg=before, timeout=2000)
+    page.wait_for_function(
+        "text => (document.querySelector('.clock')?.innerText ?? text) !== text", arg=before, timeout=2000
+    )
 
 
 def _slide(page: Any) -> None:

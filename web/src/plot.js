@@ -1,6 +1,5 @@
 // A plot from its declaration: axes, curves, shading, points to take; read by pointer, by keyboard, as a table; saved.
 
-import "./plots/plots.css";
 import { Chip, DropDown, Table } from "./parts/controls.js";
 import { html, useEffect, useId, useLayoutEffect, useMemo, useRef, useState } from "./parts/html.js";
 import { indexAt, layoutOf, nearest, valueAt } from "./plots/layout.js";
@@ -46,7 +45,9 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
     log ${axis}<//>`;
   const reading = { plot: declared, laid, at, read, zoom, setZoom, cursor };
   const points = declared.points ?? [];
-  return html`<div class="plot" onKeyDown=${points.length > 0 && pointKeys(points, laid, take)}>
+  const hasPoints = points.length > 0;
+  return html`<div class="plot" data-keys=${hasPoints ? "Points" : "Plot"}
+      onKeyDown=${hasPoints && pointKeys(points, laid, take)}>
     <div class="row plot-tools">${children}<span class="grow"></span>
       ${zoom && html`<button type="button" onClick=${() => setZoom(null)}>Whole range</button>`}
       ${switches.map(chip)}
@@ -57,7 +58,7 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
       ${asTable && html`<${NumberTable} plot=${declared} table=${table} />`}
       ${!asTable && laid && html`<${Drawn} plot=${declared} laid=${laid} svg=${drawn} picked=${picked} look=${look}
           take=${take}><${Reading} ...${reading} /><//>
-        ${points.length === 0 && html`<${Reader} ...${reading} />`}`}
+        ${!hasPoints && html`<${Reader} ...${reading} />`}`}
     </div>
   </div>`;
 }
@@ -129,6 +130,7 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
     ${laid.keys.map((key) => html`<g key=${key.text}><rect class=${`swatch-of ${key.kind}`} x=${key.x}
       y=${key.y - font * 0.85} width=${font} height=${font} /><text x=${key.x + font * 1.4} y=${key.y}>
       ${key.text}</text></g>`)}
+    ${picked !== null && points[picked] && html`<${PointTip} laid=${laid} point=${points[picked]} />`}
     ${plot.note && html`<text x=${box.left} y=${laid.titles.x.y}>${plot.note(y)}</text>`}
     ${children}
   </svg>`;
@@ -244,20 +246,48 @@ const MOST = 8; // values in the tip
 
 /** @param {{plot: Declaration, laid: Layout, at: number}} props */
 function Tip({ plot, laid, at }) {
-  const { box, font, x } = laid;
+  const { font, x } = laid;
   const { head, rows } = readingAt(plot, laid, at);
   const few = rows.slice(0, MOST);
   const texts = [head, ...few.map(({ name, text }) => `${name}  ${text}`)];
   const wide = Math.max(...texts.map((text) => text.length)) * font * 0.62 + font * 1.6;
   const high = (few.length + 1) * font * 1.4 + font * 0.8;
-  const place = x.at(at);
-  const left = place + wide + font * 2 < box.right ? place + font : Math.max(0, place - wide - font);
-  const top = box.top + 2;
+  const { left, top } = freePlace(laid, x.at(at), wide, high);
   return html`<g class="tip"><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
     <text class="head" x=${left + font * 0.8} y=${top + font * 1.5}>${head}</text>
     ${few.map(({ name, text, colour }, i) => html`<text key=${i} x=${left + font * 0.8} y=${top
       + font * (2.9 + 1.4 * i)}><tspan class="of" style=${{ fill: curveColour(colour) }}>${name}</tspan>
       <tspan x=${left + wide - font * 0.8} text-anchor="end">${text}</tspan></text>`)}</g>`;
+}
+
+/** What is read at a point. @param {{laid: Layout, point: Point}} props */
+function PointTip({ laid, point: { x, y, lines = [] } }) {
+  const { font } = laid;
+  if (lines.length === 0) return null;
+  const wide = Math.max(...lines.map((line) => line.length)) * font * 0.6 + font * 1.6;
+  const high = lines.length * font * 1.4 + font * 0.8;
+  const { left, top } = freePlace(laid, laid.x.at(x), wide, high, laid.y.at(y));
+  return html`<g class="tip" data-screen=""><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
+    ${lines.map((line, i) => html`<text key=${i} class=${i === 0 ? "head" : ""} x=${left + font * 0.8}
+      y=${top + font * (1.5 + 1.4 * i)}>${line}</text>`)}</g>`;
+}
+
+/** Where the fewest points of curves are, of the corners at a place that is read, or at a point. @param {Layout} laid
+ * @param {number} place @param {number} wide @param {number} high @param {number} [up] */
+function freePlace({ box, font, dots }, place, wide, high, up) {
+  const ends = [box.top + 2, Math.max(box.top + 2, box.bottom - high - 2)];
+  const near = up === undefined ? [] : [up - high - font, up + font, up - high / 2];
+  const tops = [...near.filter((top) => top >= ends[0] && top <= ends[1]), ...ends];
+  const lefts = [place + font, place - wide - font, place - wide / 2, box.left + font, box.right - wide];
+  const corners = tops.flatMap((top) => lefts.map((left) =>
+    ({ left: Math.max(0, Math.min(left, box.right + font - wide)), top })));
+  const hidden = corners.map(({ left, top }) => {
+    const covers = place > left - font && place < left + wide + font
+      && (up === undefined || (up > top - font && up < top + high + font));
+    return (covers ? (up === undefined ? 20 : 1000) : 0) + dots.filter(([x, y]) =>
+      x > left - 3 && x < left + wide + 3 && y > top - 3 && y < top + high + 3).length;
+  });
+  return corners[hidden.indexOf(Math.min(...hidden))] ?? { left: box.left, top: tops[0] };
 }
 
 const DRAGGED = 5; // [px] from where a press is a drag
@@ -309,7 +339,7 @@ function Reader({ plot, laid, at, read, zoom, setZoom, cursor }) {
     }}
     onBlur=${() => read(null)}
     onKeyDown=${(/** @type {KeyboardEvent} */ event) => {
-      const from = place ?? x.from;
+      const from = (cursor ? cursor.get() : at) ?? x.from; // the time may run on
       const next = steppedBy(event, samples, from, laid);
       const shift = zoomedBy(event.key, laid, from);
       if (next === null && shift === undefined) return;

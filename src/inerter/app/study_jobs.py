@@ -59,11 +59,11 @@ def sweep(body: Body, folder: Path, tell: Tell) -> Any:
     document = dict(body["study"])
     if not isinstance(asked := document.get("study"), Mapping):
         raise StudyError("A sweep needs a study document with a section [study].")
-    settings = {key: value for key, value in asked.items() if key not in ("break_even", "budgets")}
+    settings = {key: value for key, value in asked.items() if key not in ("break_even", "budgets", "trade_off")}
     if body.get("sweep"):
         settings["sweep"] = body["sweep"]
-    if body.get("indices"):
-        settings["indices"] = body["indices"]
+    if indices := body.get("indices") or asked.get("indices") or asked.get("trade_off"):
+        settings["indices"] = indices
     document["study"] = settings
     study = study_from(document)
     if not study.sweeps:

@@ -23,6 +23,7 @@ import { Files } from "./files.js";
  * @typedef {{front: Front, point: Point, number: number, isKnee: boolean}} Entry */
 
 const ALL = ""; // layouts
+const WORD = /^[a-z]+(-[a-z]+)*$/; // an index that is named by words
 
 /** The indices of which a front can be: those of the study, first those of its trade-off; else all that there are.
  * @param {State} state @returns {{symbol: string, title: string}[]} */
@@ -96,7 +97,7 @@ function declared(indices, fronts, colours) {
   const [first, second] = indices;
   /** @param {Index} index */
   const axis = ({ index, title, unit }) =>
-    ({ what: [title, index].filter((each, i, all) => all.indexOf(each) === i).join(" "), unit, padded: true });
+    ({ what: WORD.test(index) ? title : `${title} ${index}`, unit, padded: true });
   const all = fronts.map((front) => entriesOf(front).filter(({ point: { values } }) =>
     [first, second].every(({ index }) => typeof values[index] === "number")));
   return {
@@ -110,7 +111,9 @@ function declared(indices, fronts, colours) {
       const { front: { layout }, point: { status, values }, isKnee } = entry;
       const [x, y] = [first, second].map(({ index }) => values[index]);
       const name = `${isOk(status) ? "" : `${status}: `}${layout}${isKnee ? ", the knee" : ""}`;
-      return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry,
+      const both = [first, second].map(({ index, unit }) => `${shown(values[index], 4)} ${printed(unit)}`.trim());
+      return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry, lines: [name, both.join(",  "),
+        Object.entries(entry.point.texts).map(([key, text]) => `${key} = ${rounded(text)}`).join(", ")],
         label: `${name}: ${first.index} ${shown(x)}, ${second.index} ${shown(y)}; take it into the editor` };
     })),
   };

@@ -18,6 +18,8 @@ import { Files } from "./files.js";
  * written?: {unit: string, factor: number}}} Swept */
 /** @typedef {any} Row  a design with its index and value, and with the swept numbers by their names */
 
+const TAKE = "take it into the editor";
+
 /** @param {FormData} form */
 export const sweepTitle = (form) => `Sweep of ${form.get("of")} from ${form.get("from")} to ${form.get("to")}`;
 
@@ -42,7 +44,6 @@ export function SweepResult({ store, api, job }) {
   const plot = useMemo(() => declared(own, { of, baseline: result.baseline, isRelative, units: result.units ?? {} }),
     [own, of, isRelative]);
   const [picked, look] = useState(/** @type {number | null} */ (null));
-  const here = plot.points[picked ?? -1];
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
     <${Plot} plot=${plot} table=${tableOf(own, of, result.units ?? {})} picked=${picked} look=${look}
       take=${(/** @type {Place} */ place) => takeSwept(store, of, place.of)} switches=${["x"]}>
@@ -55,8 +56,7 @@ export function SweepResult({ store, api, job }) {
         <${Chip} on=${!isRelative} set=${() => setRelative(false)}>value<//>
         <${Chip} on=${isRelative} set=${() => setRelative(true)}>relative to ${result.baseline}<//></div>
     <//>
-    <p class="quiet" aria-live="polite">${here ? here.label.replace("; take it into the editor", "")
-      : "Click a point to take its design and its value of what is swept into the editor."}</p>
+    <p class="quiet">Click a point to take its design, with its value of ${of.words}, into the editor.</p>
     <${Files} api=${api} job=${job} />`;
 }
 
@@ -92,9 +92,11 @@ function declared(rows, { of, baseline, isRelative, units }) {
       const reduced = typeof row.improvement_percent === "number" && row.layout !== baseline
         ? `, ${shown(row.improvement_percent, 3)} % below ${baseline}` : "";
       const doubt = isOk(row.status) ? "" : `${row.status}: `;
+      const here = `${doubt}${row.layout} at ${of.name} = ${writtenOf(row[of.name], of)}`;
       return [{ curve, x: row[of.name], y: value, doubtful: !isOk(row.status), of: row,
-        label: `${doubt}${row.layout} at ${of.name} = ${writtenOf(row[of.name], of)}: ${index} ${
-          shown(row.value, 4)} ${printed(unit)}${reduced}; ${values}; take it into the editor` }];
+        lines: [here, `${index} ${shown(row.value, 4)} ${printed(unit)}${reduced}`, values].filter(Boolean),
+        label: `${here}: ${index} ${shown(row.value, 4)} ${printed(unit)}${reduced}; ${values}; ${TAKE}`,
+      }];
     }))),
   };
 }

@@ -11,21 +11,22 @@ import { placed, printed, quantity, rounded, takenApart } from "../state/scale.j
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { answerOf } from "../questions.js";
+import { MarginsResult } from "./margins.js";
 import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js";
 
 /** @import { Store, State, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 
 /** A kind of long work: what it needs beside the study, its form, and its result.
- * `name` is that of one of its jobs.
+ * `name` is that of one of its jobs; `needs` is a field of the form that is not there as long as nothing is known.
  * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object,
- * name?: (form: FormData) => string, Form?: any, Result?: any}} Kind */
+ * name?: (form: FormData) => string, needs?: string, Form?: any, Result?: any}} Kind */
 
 /** @type {Kind[]} */
 export const KINDS = [
   { kind: "run", title: "Run the whole study", body: () => ({}), Result: RunResult,
     sentence: "As inerter run does: all layouts and indices, with report, tables and figures." },
-  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle,
+  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle, needs: "of",
     sentence: "The best designs over one number of the study." },
   { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult, name: frontTitle,
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
@@ -54,6 +55,7 @@ function Begin({ store, api, kind }) {
   const state = store.get();
   const { study } = state.history.present;
   return html`<form class="begin" onSubmit=${formHandler(async (form) => {
+    if (kind.needs && !form.has(kind.needs)) return setTold("The numbers of the study are not known yet.");
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     setTold(await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) }));
   })}>
@@ -64,7 +66,7 @@ function Begin({ store, api, kind }) {
   </form>`;
 }
 
-const RUNNING = ["waiting", "running"];
+export const RUNNING = ["waiting", "running"];
 
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */
@@ -84,7 +86,7 @@ export function JobHead({ store, api, job: { id, title, kind, state, share, begu
 /** @param {{store: Store, api: Api, job: Job}} props */
 function JobRow({ store, api, job }) {
   const Result = KINDS.find(({ kind }) => kind === job.kind)?.Result
-    ?? (job.kind === "optimise" ? OptimumResult : null);
+    ?? { optimise: OptimumResult, margins: MarginsResult }[job.kind];
   const failed = job.state === "failed";
   return html`<li class="job" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />

@@ -12,6 +12,8 @@ const KEYS = {
   Values: [["↑ ↓", "1 %"], ["Shift ↑ ↓", "10 %"], ["Alt ↑ ↓", "0.1 %"], ["X", "may vary (on a slider)"]],
   Questions: [["← → ↑ ↓", "choose"], ["Enter", "open"], ["Ctrl O", "file"]],
   Tabs: [["← →", "next tab"]],
+  Plot: [["← →", "read"], ["Shift ← →", "faster"], ["+ −", "range"], ["0", "whole range"]],
+  Points: [["← →", "next point"], ["↑ ↓", "layout"], ["K", "knee"], ["Enter", "take"]],
 };
 
 /** @param {{place: string}} props */

@@ -9,8 +9,9 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
 /** A curve: its name stands at it, unless it is `unnamed`; `colour` is a token of the style.
  * @typedef {{name: string, x: number[], y: (number | null)[], colour: string, dash?: boolean, pale?: boolean,
  * strong?: boolean, unnamed?: boolean}} Curve */
-/** A point that can be taken: of which curve, what it is called, and what it is.
- * @typedef {{curve: number, x: number, y: number, label: string, big?: boolean, doubtful?: boolean, of: any}} Point */
+/** A point that can be taken: of which curve, what it is called, what is read at it, and what it is.
+ * @typedef {{curve: number, x: number, y: number, label: string, lines?: string[], big?: boolean, doubtful?: boolean,
+ * of: any}} Point */
 /** @typedef {{from: number, to: number, kind: string}} Band */
 /** A plot as it is declared. `marks` are values of x with a text; `bars` stand between neighbours of `edges`; `keys`
  * name what is shaded; a `note` on the values stands below.
@@ -24,7 +25,8 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
 /** @typedef {{name: string, x: number, y: number, anchor: string, colour: string, spot: string}} Name */
 /** @typedef {{width: number, height: number, font: number, box: Box, x: Scale, y: Scale, paths: string[],
  * names: Name[], bands: {kind: string, path: string}[], keys: {kind: string, text: string, x: number, y: number}[],
- * bars: string, heading: string[], titles: {x: {x: number, y: number}, y: {x: number, y: number}}}} Layout */
+ * bars: string, dots: [number, number][], heading: string[],
+ * titles: {x: {x: number, y: number}, y: {x: number, y: number}}}} Layout  `dots`: points of all curves, in pixels */
 
 const WIDE = 0.6; // a letter, by the size of its type
 
@@ -51,11 +53,14 @@ export function layoutOf(plot, { width, height, font, zoom = null, before = [] }
   const wide = roundedOut(rise, plot.y, many);
   const y = scaleOf(plot.y, wide, [box.bottom, box.top], many);
   box.left = Math.ceil(font * WIDE * Math.max(2, ...y.ticks.map(({ text }) => text.length)) + font);
-  const x = scaleOf(plot.x, reach, [box.left, box.right], Math.max(2, Math.floor((box.right - box.left) / (font * 5))));
+  const along = Math.max(2, Math.floor((box.right - box.left) / (font * 4.2)));
+  const x = scaleOf(plot.x, reach, [box.left, box.right], along);
   const lines = curves.map((curve) => pixelsOf(curve, x, y));
+  const dots = lines.map((line) => denseIn(line, box));
   return {
-    width, height, font, box, x, y, paths: lines.map(pathOf), names: namesOf(curves, lines, points, box, { x, y, font,
-      before }), bands: bandsOf(plot.bands ?? [], x, box), keys: tops.keys, bars: barsOf(bars, x, y, box),
+    width, height, font, box, x, y, paths: lines.map(pathOf), dots: dots.flat(),
+    names: namesOf(curves, dots, points, box, { x, y, font, before }),
+    bands: bandsOf(plot.bands ?? [], x, box), keys: tops.keys, bars: barsOf(bars, x, y, box),
     titles: { x: { x: box.right, y: height - font * 0.4 }, y: { x: font * 0.5, y: font * 1.2 } },
     heading: linesOf(y.title, Math.floor((width - font) / (font * WIDE))),
   };
@@ -178,16 +183,15 @@ function keysAt(keys, title, width, font) {
   return { keys: placed, rows: row };
 }
 
-const CANDIDATES = 24; // places of a name along its curve
-const SAMPLES = 160; // of a curve, where names look for room
+const CANDIDATES = 16; // places of a name along its curve
+const SAMPLES = 110; // of a curve, where names look for room
 const STAYS = 6; // by how much a better place must be better
 
 /** Names at their curves: at the end where there is room, else above or below where nothing else is near.
- * @param {Curve[]} curves @param {([number, number] | null)[][]} lines @param {Point[]} points @param {Box} box
+ * @param {Curve[]} curves @param {[number, number][][]} dots @param {Point[]} points @param {Box} box
  * @param {{x: Scale, y: Scale, font: number, before: Name[]}} how @returns {Name[]} */
-function namesOf(curves, lines, points, box, { x, y, font, before }) {
+function namesOf(curves, dots, points, box, { x, y, font, before }) {
   const rings = points.map((point) => /** @type {[number, number]} */ ([x.at(point.x), y.at(point.y)]));
-  const dots = lines.map((line) => denseIn(line, box));
   /** @type {(Name & {box: Box})[]} */
   const placed = [];
   curves.forEach(({ name, colour, unnamed, pale }, number) => {
@@ -199,7 +203,7 @@ function namesOf(curves, lines, points, box, { x, y, font, before }) {
       let cost = spot.spot === last?.spot ? -STAYS : 0;
       for (const other of placed) if (overlap(own, other.box)) cost += 60;
       dots.forEach((others, i) => {
-        const near = others.reduce((least, dot) => Math.min(least, distance(dot, own)), Infinity);
+        const near = nearestIn(others, own);
         cost += i === number ? (near < 1 ? 25 : 0) : near < 1 ? 30 : Math.max(0, 14 - near);
       });
       for (const ring of rings) if (distance(ring, own) < 4) cost += 15;
@@ -265,6 +269,18 @@ function spotsOf(dots, wide, font, box) {
 /** @param {Box} one @param {Box} other */
 const overlap = (one, other) => one.left < other.right + 4 && other.left < one.right + 4 && one.top < other.bottom
   && other.top < one.bottom;
+
+/** How far the nearest of some points is from a box. @param {[number, number][]} dots @param {Box} box */
+function nearestIn(dots, { left, right, top, bottom }) {
+  let least = Infinity;
+  for (const [x, y] of dots) {
+    const across = x < left ? left - x : x > right ? x - right : 0;
+    const up = y < top ? top - y : y > bottom ? y - bottom : 0;
+    const square = across * across + up * up;
+    if (square < least) least = square;
+  }
+  return Math.sqrt(least);
+}
 
 /** How far a point is from a box. @param {[number, number]} point @param {Box} box */
 const distance = ([x, y], { left, right, top, bottom }) =>

@@ -17,8 +17,8 @@ export function svgOf(drawn, ground) {
   for (const extra of copy.querySelectorAll("[data-screen]")) extra.remove();
   copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
   const behind = document.createElementNS(copy.namespaceURI, "rect");
-  const shape = { width: "100%", height: "100%", fill: ground };
-  for (const [name, value] of Object.entries(shape)) behind.setAttribute(name, value);
+  for (const name of ["width", "height"]) behind.setAttribute(name, "100%");
+  behind.setAttribute("fill", ground);
   copy.prepend(behind);
   for (const name of ["class", "style", "role", "aria-label"]) copy.removeAttribute(name);
   return `<?xml version="1.0" encoding="UTF-8"?>\n${new XMLSerializer().serializeToString(copy)}\n`;

@@ -12,7 +12,7 @@ from starlette.testclient import TestClient
 
 from inerter.app.routes import application
 from inerter.app.server import Server
-from inerter.app.start import Start
+from inerter.app.start import InitialStudy
 
 TOKEN, PORT, LIMIT, RECORD_LIMIT = "a-token-of-the-tests", 8000, 100_000, 1_000_000
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -42,7 +42,7 @@ def threads() -> ThreadPoolExecutor:
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Server:
-    return Server(tmp_path_factory.mktemp("server"), Start(), process=threads)
+    return Server(tmp_path_factory.mktemp("server"), InitialStudy(), process=threads)
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from starlette.testclient import TestClient
 
 import inerter as it
 from inerter.app import fit_advice
-from inerter.app.start import Start
+from inerter.app.start import InitialStudy
 from inerter.files.common.toml import as_toml
 from inerter.files.identification.loading import identification_of
 from inerter.files.rig.loading import load_rig
@@ -90,7 +90,7 @@ def test_the_study_of_the_command_line_is_that_of_its_file(tmp_path: Path) -> No
     """What another program writes is what the next page opens; what cannot be read says why."""
     file = tmp_path / "mine.toml"
     file.write_text(as_toml(DOCUMENT))
-    start = Start.of(file.name, file.read_text(), file)
+    start = InitialStudy.of(file.name, file.read_text(), file)
     first, stamp = start.to_dict(), start.stamp()
     assert first["study"] == DOCUMENT
     assert first["stamp"] == stamp["stamp"] == start.stamp()["stamp"]
@@ -103,7 +103,7 @@ def test_the_study_of_the_command_line_is_that_of_its_file(tmp_path: Path) -> No
     file.unlink()
     assert start.stamp() == {"name": "mine.toml", "stamp": ""}
     assert start.to_dict()["problems"]
-    assert Start().to_dict() == {"name": "", "text": "", "study": {}, "problems": [], "stamp": ""}
+    assert InitialStudy().to_dict() == {"name": "", "text": "", "study": {}, "problems": [], "stamp": ""}
 
 
 def test_work_has_a_title_of_its_own_and_no_step_once_it_is_done(client: TestClient) -> None:

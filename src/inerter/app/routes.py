@@ -20,7 +20,7 @@ from inerter.app.guard import AccessGuard, App
 from inerter.app.requests import ENDPOINTS
 from inerter.app.responses import as_json, media_type
 from inerter.app.server import Server
-from inerter.app.start import Start
+from inerter.app.start import InitialStudy
 from inerter.app.wire import Refusal, decode_json, encode_json, refusal_of
 from inerter.errors import InerterError
 
@@ -36,7 +36,9 @@ def of_file(
     limits: tuple[int, int],
 ) -> App:
     """The application that begins with a study (name, text, file), if any; `root` is where it keeps its things."""
-    return application(Server(root, Start.of(*file) if file else Start(), quick=quick), token, port, *limits)
+    return application(
+        Server(root, InitialStudy.of(*file) if file else InitialStudy(), quick=quick), token, port, *limits
+    )
 
 
 def application(server: Server, token: str, port: int, limit: int, record_limit: int) -> App:

@@ -14,7 +14,7 @@ from inerter.app.calls import call
 from inerter.app.jobs import Jobs
 from inerter.app.lanes import Lane, Newest, Waiting
 from inerter.app.records import Records
-from inerter.app.start import Start
+from inerter.app.start import InitialStudy
 from inerter.app.warming import Warming
 from inerter.work.processes import Processes
 
@@ -30,7 +30,7 @@ class Server:
     """State of a server: the initial study, its processes, jobs and uploaded records."""
 
     root: Path  # the folder of long work and records
-    start: Start  # the study of the command line
+    start: InitialStudy  # the study of the command line
     process: Callable[[], Executor] = lambda: Processes(1)  # what lanes and long work are done by
     quick: Executor | None = None  # one that has begun already, for the first lane
     newest: Newest = field(default_factory=Newest)

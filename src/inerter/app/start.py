@@ -19,7 +19,7 @@ def to_document(name: str, text: str) -> dict[str, Any]:
 
 
 @dataclass
-class Start:
+class InitialStudy:
     """Study of the command line: as a document, and the file that it is from, if any."""
 
     document: dict[str, Any] = field(default_factory=lambda: _NOTHING)
@@ -27,7 +27,7 @@ class Start:
     _read: str = ""  # stamp of the file whose document is kept
 
     @classmethod
-    def of(cls, name: str, text: str, path: Path | None) -> Start:
+    def of(cls, name: str, text: str, path: Path | None) -> InitialStudy:
         """The study of a text; of the file at `path`, if it is from one."""
         return cls(to_document(name, text), path, "" if path is None else _stamp(path))
 

@@ -73,15 +73,19 @@ def norms() -> None:
     reference = float(np.mean(theirs))
     print(f"J1 and J3, 100 000 designs of S3: {ours[0] * 1e6:.2f} us a norm; python-control {reference * 1e6:.0f} us")
     print(f"  ratio {reference / ours[0]:.0f}; largest relative difference of 400 norms {difference:.1e}")
+    for count in (1000, 1_000_000):
+        points = designs(count)
+        here = seconds(lambda p=points: it.evaluate_many(car(STRUTS["S3"]), both, p, it.Norm())) / (2 * count)
+        print(f"  the same, {count} designs: {here * 1e6:.2f} us a norm")
     systems = control_systems(few, "sprung_force", "sprung_displacement", 1e5)
     reference = seconds(lambda: [control.norm(x, "inf", print_warning=False) for x in systems[:50]], 3) / 50
-    points = designs(10_000)
-    here = seconds(lambda: it.evaluate_many(car(STRUTS["S3"]), INDICES["J5"], points, it.Norm()), 3) / 10_000
+    points = designs(100_000)
+    here = seconds(lambda: it.evaluate_many(car(STRUTS["S3"]), INDICES["J5"], points, it.Norm()), 3) / 100_000
     values = it.evaluate_many(car(STRUTS["S3"]), INDICES["J5"], few, it.Norm())[:50, 0] * 1e5
     ratios = np.array([control.norm(x, "inf", print_warning=False) for x in systems[:50]]) / values
     peaks = [it.hinf_norm(it.LinearSystem(x.A, x.B, x.C, x.D)).peaks[0].omega for x in systems[:50]]
     confirmed = [abs(x(1j * omega)) for x, omega in zip(systems, peaks, strict=False)] / values
-    print(f"J5, 10 000 designs of S3: {here * 1e6:.1f} us a norm; python-control {reference * 1e6:.0f} us")
+    print(f"J5, 100 000 designs of S3: {here * 1e6:.2f} us a norm; python-control {reference * 1e6:.0f} us")
     print(
         f"  ratio {reference / here:.0f}; of 50 norms python-control's (to 1e-6) is never more than "
         f"{ratios.max() - 1.0:.0e} above, but {np.sum(ratios < 1.0 - 1e-5)} times more than 1e-5 below "

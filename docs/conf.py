@@ -23,11 +23,12 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
     "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
     "sphinx.ext.mathjax",
     "reference_pages",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_extensions", "README.md"]
+exclude_patterns = ["_build", "_extensions", "gallery", "examples/*.ipynb", "examples/*.py", "examples/*.json"]
 suppress_warnings = ["myst.header"]  # sections of records begin at the second level
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
@@ -48,3 +49,15 @@ mathjax_path = "mathjax/tex-svg.js"
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sphinx = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery",
+    "gallery_dirs": "examples",
+    "image_scrapers": ("gallery_figures.scrape",),
+    "download_all_examples": False,
+    "show_memory": False,
+    "min_reported_time": 10,
+    "abort_on_example_error": True,
+    "nested_sections": False,
+    "show_signature": False,
+}

@@ -46,8 +46,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands draw no figures, which takes longer than the work of a small study."""
-    for name in ("commands.draw_study", "commands.draw_layouts", "simulation.draw_simulation"):
-        monkeypatch.setattr(f"inerter.cli.{name}", lambda *given, **more: [])
+    for name in ("report.writing.draw_study", "report.writing.draw_layouts", "cli.simulation.draw_simulation"):
+        monkeypatch.setattr(f"inerter.{name}", lambda *given, **more: [])
 
 
 @pytest.hookimpl(wrapper=True)

@@ -51,6 +51,15 @@ class CompiledMember:
         (value,) = indices(points, program.program, port, gradients, errors)
         return float(value), float(errors[0]), gradients.ravel()
 
+    def designs(self, count: int, number: int) -> np.ndarray:
+        """Values of many designs in columns, the member's own first, the others up to twenty decades from it."""
+        rng = np.random.default_rng([61, number])
+        spread = rng.choice([0.3, 3.0, 10.0], count)
+        spread[0] = 0.0
+        return np.ascontiguousarray(
+            (self.values * np.exp(rng.normal(0.0, spread[:, None], (count, self.values.size)))).T
+        )
+
     def exact(self) -> float | None:
         """The index in rational arithmetic; None where that gives none."""
         rational = importlib.import_module("rational_norms")  # needs python-flint
@@ -61,10 +70,11 @@ class CompiledMember:
         return math.inf if found is rational.INFINITE else found
 
 
-def random_member(number: int, extreme: float = 0.25) -> CompiledMember | None:
+def random_member(number: int, extreme: float = 0.25, peaks: bool = False) -> CompiledMember | None:
     """A network beside, in series with or instead of one that is mounted in a vehicle, also instead of its tyre.
 
-    Some networks, a share `extreme`, have values between 1e-9 and 1e12. None where the index is not compiled.
+    Some networks, a share `extreme`, have values between 1e-9 and 1e12. The index is one of r.m.s. values, or a peak
+    gain if `peaks`. None where it is not compiled.
     """
     question, rng = linear_member(number), np.random.default_rng([59, number])
     vehicle, network = question.vehicle.mechanism(), _random_network(rng, extreme)
@@ -82,7 +92,7 @@ def random_member(number: int, extreme: float = 0.25) -> CompiledMember | None:
         found = network_index(probe, question.index.definition(mechanism), PLACE)
     except InerterError:  # a question that this vehicle does not answer
         return None
-    if found is None or found.is_peak:
+    if found is None or found.is_peak is not peaks:
         return None
     name = f"{question.name}, {mounts[at].name} {'|-='[way]} {network!r}"
     return CompiledMember(name, network, mechanism, question.index, found)

@@ -89,6 +89,7 @@ from inerter.network_search.front_results import FrontNetwork as FrontNetwork
 from inerter.network_search.front_results import NetworkFront as NetworkFront
 from inerter.network_search.real_inerters import RealInerter as RealInerter
 from inerter.network_search.real_inerters import RealNetwork as RealNetwork
+from inerter.network_search.real_inerters import optimise_with_real_inerters as optimise_with_real_inerters
 from inerter.network_search.real_inerters import with_friction_and_elasticity as with_friction_and_elasticity
 from inerter.network_search.results import FoundNetwork as FoundNetwork
 from inerter.network_search.results import SearchResult as SearchResult

@@ -54,6 +54,7 @@ def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str,
         assert (one["value"] is None) <= (one["status"] != "ok")
 
 
+@pytest.mark.campaign
 def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> None:
     by, study = {one["parameter"]: one for one in told["break_even"]}, study_from(FEW)
     method = study.method(by["f"]["method"])
@@ -162,7 +163,7 @@ def test_a_tolerance_of_friction_by_a_norm_is_not_nought(client: TestClient) -> 
 
 
 def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
-    """Byte for byte: of designs in the page, whose study is written and run, and of a whole study."""
+    """Byte for byte: the study of these designs is written and run."""
     designs = [{"layout": name, "values": values} for name, values in VALUES.items()]
     text = ask(client, "study/write", study=DOCUMENT, designs=designs)["text"]
     job = ask(client, "work", kind="report", study=DOCUMENT, designs=designs, wait=30)
@@ -171,6 +172,10 @@ def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClien
     assert page == _report_of(text, tmp_path / "fixed")
     assert len(page) == job["result"]["size"]
     assert page.startswith(b"<!DOCTYPE html>")
+
+
+@pytest.mark.campaign
+def test_a_report_of_a_study_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     limits = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
     whole = ask(client, "work", kind="report", study=limits, wait=30)
     page = client.get(f"/api/work/{whole['id']}/files/{whole['result']['file']}").content

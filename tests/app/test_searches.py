@@ -16,7 +16,7 @@ import inerter as it
 from inerter.app import searches
 from inerter.app.documents import study_from
 from inerter.app.jobs import ENDED
-from inerter.files.study import searching
+from inerter.files.study import search_parts
 from inerter.network_search import plan as network_search
 
 FREE = {
@@ -74,7 +74,7 @@ def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
         tried.extend(topologies)
         return network_search.search_group(plan, topologies)
 
-    monkeypatch.setattr(searching, "search_group", search_group)
+    monkeypatch.setattr(search_parts, "search_group", search_group)
     monkeypatch.setattr(searches._Ranking, "add", lambda self, found: (ranked.extend(found), rank(self, found)))
     number = begin(client, kind="search", study=SEARCHED, layouts=["S9"], indices=["J1"])
     while not (before := client.get(f"/api/work/{number}").json()).get("found", {}).get("ranking"):

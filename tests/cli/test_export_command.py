@@ -48,9 +48,9 @@ def test_a_study_and_its_results_give_the_same_design(folder: Path, capsys: pyte
     assert np.array_equal(one["A"], it.named_system(best.design, form="descriptor").A)
 
 
-@pytest.mark.parametrize("kind", ["matlab", "csv", "netcdf", "modelica", "spice", "svg", "pdf", "latex"])
+@pytest.mark.parametrize("kind", ["matlab", "csv", "netcdf", "modelica", "fmu", "fmu3", "spice", "svg", "pdf", "latex"])
 def test_every_kind(kind: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    linear = [] if kind in ("svg", "pdf", "latex") else ["--linear"]
+    linear = [] if kind in ("svg", "pdf", "latex", "fmu", "fmu3") else ["--linear"]
     assert call(["export", "real.toml", "--to", kind, *linear]) == 0
     path = folder / f"real-S3{it.EXPORTS[kind].suffixes[0]}"
     assert path.stat().st_size > 100

@@ -43,7 +43,7 @@ def refuse(process, command=(), *args, **options):
 subprocess.Popen.__init__ = multiprocessing.Process.start = refuse
 names = [found.name for found in pkgutil.walk_packages(inerter.__path__, "inerter.")]
 for name in names:
-    if name not in ("inerter.kernels.compiler", "inerter.kernels.numba_compiler"):
+    if name not in ("inerter.kernels.compiler", "inerter.kernels.numba_compiler", "inerter.kernels.numba_lanes"):
         import_module(name)
 print(json.dumps([names, "numba" in sys.modules, threading.active_count(), started]))
 """

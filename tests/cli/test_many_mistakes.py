@@ -92,5 +92,5 @@ def test_many_values_beyond_reason_are_numbers_or_say_why_not(
 @pytest.fixture
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures take most of the time; the campaign draws them."""
-    monkeypatch.setattr("inerter.cli.commands.draw_study", lambda data, folder: folder.mkdir())
-    monkeypatch.setattr("inerter.cli.commands.write_report", lambda data, study, figures, path, *found: path.touch())
+    monkeypatch.setattr("inerter.report.writing.draw_study", lambda data, folder: folder.mkdir())
+    monkeypatch.setattr("inerter.report.writing.write_report", lambda data, study, figures, path, *found: path.touch())

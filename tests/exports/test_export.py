@@ -15,7 +15,7 @@ K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
 REAL = it.QuarterCar(181.75, 25.0, 120e3, K | C - (B | it.Friction(20.0)) | it.Spring(1e4, "stop") - it.Gap(0.01))
 FILES = [kind.key for kind in EXPORTS.values() if kind.is_file]
-LINEAR = [key for key in EXPORTS if key not in ("svg", "pdf", "latex")]
+LINEAR = [key for key in EXPORTS if key not in ("svg", "pdf", "latex", "fmu", "fmu3")]
 
 
 @pytest.mark.parametrize("key", LINEAR)

@@ -69,6 +69,13 @@ def test_names_that_modelica_keeps_for_itself() -> None:
     assert {"end_2.f", "time_2.f", "Inerter_2.f", "sprung_2.f"} <= {*model.variables}
 
 
+def test_a_title_becomes_the_name_of_the_package() -> None:
+    title = 'A "car": 100 % of it, ' + 90 * "x"
+    text = it.export(it.QuarterCar(250.0, 35.0, 1.5e5, K | C), "modelica", title=title)
+    assert text.startswith(f"package A_car_100_of_it_{44 * 'x'} ")
+    assert FlatModel(text, f"A_car_100_of_it_{44 * 'x'}.Vehicle").outputs
+
+
 def test_values_have_every_bit() -> None:
     value = 120e3 / 7.0
     text = it.export(it.QuarterCar(181.75, 25.0, value, K | C - B), "modelica")

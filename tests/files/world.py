@@ -108,10 +108,10 @@ def cheap(identified: IdentificationResult | None = None) -> Iterator[None]:
             stack.enter_context(patch(place, by))
 
         change("inerter.files.study.cases.Case.compute", outcome)
-        change("inerter.cli.commands.draw_study", drawn("improvement.svg", "improvement.png"))
-        change("inerter.cli.commands.draw_layouts", drawn("networks.svg", "networks.png"))
+        change("inerter.report.writing.draw_study", drawn("improvement.svg", "improvement.png"))
+        change("inerter.report.writing.draw_layouts", drawn("networks.svg", "networks.png"))
         change(
-            "inerter.cli.commands.write_report",
+            "inerter.report.writing.write_report",
             lambda results, study, figures, path, *found: write_text(path, "page\n"),
         )
         change("inerter.cli.simulation.draw_simulation", drawn("simulation.svg", "simulation.png"))

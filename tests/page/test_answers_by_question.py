@@ -29,7 +29,7 @@ SHOWN = """() => {
   return {
     numbers: [...document.querySelectorAll("[data-value], [data-better]")]
       .flatMap(each => [each.dataset.value, each.dataset.better]).filter(each => each && !isNaN(each)),
-    curves: document.querySelectorAll(".plot .drawn, .motion canvas").length,
+    curves: document.querySelectorAll(".plot .drawn, .vehicle canvas").length,
     texts: [...texts(".limits li"), ...texts(".budget [role=status]"), ...texts(".optimise [role=status]"),
       ...texts(".notice"), ...texts(".problem"), ...texts(".doubts"),
       ...texts(".verdict:not(.wait) > b"), ...texts(".verdict:not(.wait) .caveat")].filter(each => each),
@@ -137,7 +137,8 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
         waiting[0].continue_()
     page.evaluate(FRAMES)
     page.wait_for_timeout(500)
-    assert page.locator(".answers .unchosen").count() == 1
+    page.wait_for_selector("#verdict[data-severity=none]")
+    assert "chosen yet" in page.inner_text("#verdict > b")
     assert page.inner_text(".optimise [role=status]") == ""
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
 
@@ -226,9 +227,10 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
     visitor.settled()
     assert page.inner_text(".notice").startswith("train.toml is open.")
-    said = page.inner_text(".answers .unchosen")
-    assert "in the middle of their bounds" in said
-    assert "press Optimise" in said
+    page.wait_for_selector("#verdict[data-severity=none]")
+    said = page.inner_text("#verdict > b")
+    assert "chosen yet" in said
+    assert "find the best" in said
     better = page.locator(".answers [data-better], .answers td:has-text('not chosen yet')")
     assert all("not chosen yet" in text for text in better.all_inner_texts())
     assert "%" not in page.inner_text(".answers table")
@@ -240,7 +242,7 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     assert page.locator("td.best").count() == 0
     for layout in ("S1", "S3"):
         page.locator("[aria-label=Layouts] .pick", has_text=layout).click()
-        for name in re.findall(r"(\w+)(?:,| of)", page.inner_text(".answers .unchosen").split("Not chosen yet: ")[1]):
+        for name in re.findall(r"(\w+)(?:,| of)", page.inner_text("#tab-panel .unchosen").split("Not chosen yet: ")[1]):
             entry = page.locator(f"[id='entry elements.{name}']")
             if entry.count() and entry.is_visible():
                 text = entry.get_attribute("title")
@@ -306,8 +308,9 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
     page.wait_for_selector("text=sticking.toml is open")
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
     visitor.settled()
-    answers = page.inner_text(".answers")
-    assert answers.index("Unreliable") < answers.index("better by")
+    page.wait_for_selector("#verdict[data-severity=doubt]")
+    page.keyboard.press("v")
+    assert "inaccurate" in page.inner_text("#verdict")
     cell = page.locator(".answers td:has(.doubt)").last.inner_text()
     assert cell.startswith("inaccurate")
     assert page.locator(".answers td.good, .answers td.bad").count() == 0

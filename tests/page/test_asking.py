@@ -182,6 +182,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         "suspension-travel": {"at_most": "8 mm"},
         "static-stiffness": {"strut": {"at_least": "60 kN/m"}},
     }
+    page.click("#step-2")
     for name in ("suspension-travel at most", "static-stiffness strut at least"):
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")

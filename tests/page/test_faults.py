@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -9,10 +10,13 @@ from typing import Any
 
 import pytest
 from browser import EXAMPLES, Served, Visitor, wait_until
+from campaigns import sampled
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
+from inerter.app.about import examples
 from inerter.files.rig.loading import load_rig
+from inerter.files.study.loading import load_study
 
 
 def _open(visitor: Visitor, folder: Path, name: str, text: str) -> None:
@@ -30,7 +34,7 @@ def _fill(visitor: Visitor, place: str, text: str) -> None:
 
 
 def _layout(visitor: Visitor, name: str) -> None:
-    visitor.page.locator(f"[aria-label=Layouts] button[title^='{name}']").first.click()
+    visitor.page.locator(f"[aria-label=Layouts] .pick[title='{name}']").click()
 
 
 @pytest.mark.parametrize(
@@ -102,7 +106,7 @@ def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Pa
     page = visitor.page
     assert visitor.text == "constructor | toString - valueOf"
     assert visitor.values()["J1"] > 0.0
-    assert page.locator(".answers [data-better]").inner_text().endswith("%")
+    assert "%" in page.inner_text(".answers tr.on")
     _fill(visitor, "elements.toString", "3 kN s/m")
     visitor.settled()
     _layout(visitor, "S1")
@@ -112,8 +116,11 @@ def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Pa
 
 def _rename(visitor: Visitor, old: str, new: str) -> None:
     page = visitor.page
+    page.evaluate("() => document.querySelectorAll('details[open].menu').forEach(menu => { menu.open = false; })")
     page.locator(f".drawing [aria-label^='{old},']").first.click()
     page.wait_for_function("old => document.getElementById('element-name').value === old", arg=old)
+    if not page.is_visible("#element-name"):
+        page.get_by_text("Part", exact=True).click()
     page.fill("#element-name", new)
     page.keyboard.press("Enter")
 
@@ -155,7 +162,7 @@ def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None
     page.locator("form:has-text('New name') input").fill("S1")
     page.keyboard.press("Enter")
     page.wait_for_selector(".notice:has-text('another layout')")
-    assert page.locator("[aria-label=Layouts] button[title^='S1']").count() == 1
+    assert page.locator("[aria-label=Layouts] .pick[title='S1']").count() == 1
 
 
 def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Visitor) -> None:
@@ -171,7 +178,7 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     wait_until(lambda: page.locator("td[data-index]").first.get_attribute("data-value") not in (None, ""))
     assert visitor.values() == before
     assert "%" in page.locator(".answers [data-better]").first.inner_text()
-    assert page.locator(".plot canvas").count() > 0
+    assert page.locator(".plot .drawn").count() > 0
     told = page.locator(".answers .problems").inner_text()
     assert told.count("layouts.S3e") == 1
 
@@ -257,7 +264,137 @@ def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_pat
     fit = _fits(visitor, 2)
     fit.get_by_role("button", name="Take the device").click()
     page.wait_for_selector(".notice:has-text('The device is in the new layout')")
-    assert "shaft" in visitor.text
+    assert "(ks2 | cs2) - (b2 | f)" in visitor.text
     for _ in range(2):
         page.locator(".fit").first.get_by_role("button", name="Forget").click()
     page.wait_for_selector(".fit", state="detached")
+
+
+MARKUP = "<img src=//evil.example/x onerror=window.struck=1>"
+NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "\u202etxt.exe", "${window.struck=1}", "javascript:struck=1"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, name: str) -> None:
+    """Titles, layouts, elements, units, designs, files: what is written in them is shown, never run or asked for."""
+    page = visitor.page
+    quoted = json.dumps(name, ensure_ascii=False)
+    text = study_text('indices = ["J1"]', title=f"title = {quoted}")
+    _open(visitor, tmp_path, "marked", text)
+    assert page.input_value(".title") == name
+    _fill(visitor, "elements.k", f"5 {name}")
+    page.wait_for_selector("[data-place='elements.k'] .problem")
+    _rename(visitor, "k", name)
+    page.wait_for_selector("form:has(#element-name) .problem")
+    page.fill("#network-text", f"k | {name}")
+    page.wait_for_selector("#network-problem")
+    page.keyboard.press("Control+z")
+    for spoilt in (
+        text.replace("[layouts]", f'[layouts]\n{quoted} = "k | c"'),
+        text.replace("[elements]", f"[elements]\n{quoted} = {quoted}"),
+        text.replace('speed = "25 m/s"', f"speed = {quoted}"),
+        f"[{quoted}]\n{quoted} = {quoted}\n" + text,
+        f"= {quoted}",
+    ):
+        path = tmp_path / f"{name.replace('/', '_')[:40]}.toml"
+        path.write_text(spoilt)
+        visitor.open(path)
+        page.wait_for_timeout(400)
+    (tmp_path / "record.csv").write_text(
+        f"time [s],{quoted},force [{name}]\n" + "".join(f"{0.001 * i},{i % 7},{i % 5}\n" for i in range(300))
+    )
+    visitor.open(tmp_path / "record.csv")
+    page.wait_for_timeout(800)
+    assert page.evaluate("() => [window.struck, document.querySelectorAll('body img, body svg[onload]').length]") == [
+        None,
+        0,
+    ]
+    assert visitor.elsewhere == []
+
+
+def _shown(visitor: Visitor) -> Any:
+    """Numbers, curves and messages on the page."""
+    visitor.settled()
+    visitor.drawn()
+    return visitor.page.evaluate(
+        """() => {
+          const texts = (selector) => [...document.querySelectorAll(selector)].map(each => each.textContent.trim());
+          return {
+            numbers: [...document.querySelectorAll(".answers [data-value], .answers [data-better]")]
+              .map(each => [each.dataset.index, each.dataset.value, each.dataset.better]),
+            names: texts(".answers th"),
+            verdict: texts("#verdict"),
+            doubts: texts(".problem, .doubts, .unchosen"),
+          };
+        }"""
+    )
+
+
+DESIGNS = [name for name, path in examples().items() if not load_study(path).free_networks]
+PAIRS = [(first, other) for first in DESIGNS for other in DESIGNS if first != other]
+
+
+Windows = Callable[..., Visitor]
+ALONE: dict[str, Any] = {}  # what the page shows of an example that is the first to be opened in a window
+
+
+def _alone(visitors: Windows, served: Served, name: str) -> Any:
+    if name not in ALONE:
+        visitor = visitors(served).visit()
+        _example(visitor, name)
+        ALONE[name] = _shown(visitor)
+        visitor.page.close()
+    return ALONE[name]
+
+
+def _example(visitor: Visitor, name: str) -> None:
+    visitor.open(EXAMPLES / f"{name}.toml")
+    visitor.page.wait_for_selector(f".notice:has-text('{name}.toml is open')")
+    visitor.page.wait_for_selector(".answers[data-being=current], .answers[data-being=none]", timeout=120_000)
+
+
+@pytest.mark.parametrize(("first", "other"), sampled(PAIRS, always=[("train", "half-car"), ("seat", "absorber")],
+                         kept=12))  # fmt: skip
+def test_an_example_shows_the_same_after_any_other(
+    visitor: Visitor, visitors: Windows, served: Served, first: str, other: str
+) -> None:
+    """What is asked of a study is answered of it: opened alone, and after another one, the page shows the same."""
+    expected = _alone(visitors, served, other)
+    _example(visitor, first)
+    _shown(visitor)
+    _example(visitor, other)
+    assert _shown(visitor) == expected
+    notices = visitor.page.locator(".notice").all_inner_texts()
+    assert not [text for text in notices if f"{first}.toml" in text]
+
+
+def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visitor: Visitor) -> None:
+    """Values in the middle of their bounds: the warning stands until they are chosen, and no per cent before."""
+    page = visitor.page
+    _example(visitor, "train")
+    visitor.settled()
+    for tab in ("history", "response"):
+        page.click(f"#tab-{tab}")
+        visitor.drawn()
+        assert "in the middle of their" in page.inner_text("#tab-panel .unchosen")
+        assert "chosen yet" in page.inner_text("#verdict")
+    assert "%" not in page.inner_text(".answers table")
+    with page.expect_request("**/api/panel/optimise"):
+        visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector(".notice:has-text('half-car.toml is open')")
+    visitor.settled()
+    assert page.locator(".unchosen").count() == 0
+    assert "%" in page.inner_text(".answers table")
+
+
+def test_a_tolerance_that_the_method_neglects_has_no_number(visitor: Visitor) -> None:
+    page = visitor.page
+    _example(visitor, "ball_screw")
+    visitor.settled()
+    page.click("#tab-tolerance")
+    page.locator("#tab-panel").get_by_role("button", name="Compute").click()
+    row = page.locator("[aria-label='Which value matters'] tr:has(th:text-is('f'))")
+    row.wait_for()
+    assert "%" not in row.inner_text()
+    told = page.inner_text("#tab-panel")
+    assert told.index("ignores the tolerance of f") < told.index("nominal")

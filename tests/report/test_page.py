@@ -38,11 +38,11 @@ def test_the_answer_is_on_the_page(study, tmp_path):
     results = designs()
     page = Page(report(results, study, tmp_path))
     best = results["value"].sel(index="J1").min().item()
-    assert f"Best ride comfort: S3, {best:.4g} m/s², 12.0 % better than S1." in page.text
+    assert "S3 is 12.0 % better than S1 in ride comfort (J1)." in page.text
     assert f"{best:.4g} m/s²+12.0 %" in page.text
     assert "14 of 16" in page.text
     assert "at its upper bound" in page.text
-    assert page.text.count("at its upper bound") == 1
+    assert page.text.count("at its upper bound") == 2  # in the verdict, and in the table
 
 
 def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
@@ -100,7 +100,7 @@ def test_what_is_filled_in_is_only_text(study, tmp_path, hostile):
     source = report(results, study, tmp_path)
     page = Page(source)
     assert hostile not in source
-    assert page.text.count(hostile) == 4  # in the title of the page, its heading, the status and the notes
+    assert page.text.count(hostile) == 5  # in the title of the page, its heading, the verdict, the status and the notes
     assert not {"script", "img"} & set(page.tags)
 
 
@@ -205,7 +205,9 @@ def test_a_long_sweep_is_shown_at_some_values_and_at_both_ends(sweep_study, tmp_
 def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
     text = Page(report(designs(["S1"], baseline=""), study, tmp_path)).text
     assert "Improvement" not in text
-    assert "Best ride comfort: S1, 2.525 m/s²." in text.replace(SPACE, " ")
+    assert "Ride comfort (J1) of S1 is 2.525 m/s²; there is no other strut to compare it with." in text.replace(
+        SPACE, " "
+    )
 
 
 def test_a_page_has_contents_that_lead_to_its_parts(study, figures):

@@ -172,17 +172,18 @@ def test_one_design_that_is_not_sure_makes_the_headline_doubtful_though_it_is_no
     worsen(monkeypatch, has_inerter)
     text = study_text('indices = ["J1"]\nbaseline = "S1"', elements='k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"')
     first = judged_study(tmp_path, text)["headline"]
-    assert first.startswith("Not certain (inaccurate: S2, it is so so; expected-value simulates it")
-    assert "Best ride comfort: S1" in first
+    assert first.startswith("Not certain: No strut is better than S1 in ride comfort (J1)")
+    assert "Ride comfort (J1) of S2 is unreliable (inaccurate: it is so so; expected-value simulates it" in first
 
 
 def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path, monkeypatch):
-    assert judged_study(tmp_path, LIMITED)["headline"].startswith("Best ride comfort")
+    assert judged_study(tmp_path, LIMITED)["headline"].startswith("S2 is ")
     worsen(monkeypatch, is_about_tyres)
     doubtful = judged_study(tmp_path, LIMITED)
-    assert doubtful["headline"].startswith(
-        "Not certain (inaccurate: S1 and S2, the constraint dynamic tyre load at most 900 N"
-    )
+    assert doubtful["headline"].startswith("Not certain: S2 is ")
+    for name in ("S1", "S2"):
+        said = f"of {name} is unreliable (inaccurate: the constraint dynamic tyre load at most 900 N"
+        assert said in doubtful["headline"]
     assert all(one["status"].startswith("inaccurate") for one in doubtful["json"]["designs"])
 
 

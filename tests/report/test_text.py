@@ -9,8 +9,9 @@ from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_t
 
 from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
-from inerter.report.index_summary import best_layout, crossings, headlines
+from inerter.report.index_summary import best_layout, crossings, sweep_headlines
 from inerter.report.text import WIDTH, table_lines
+from inerter.report.verdicts import verdict_sentences
 from inerter.table import Row, Table, cells, columns
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
@@ -139,21 +140,27 @@ def test_ten_layouts_in_one_block_each():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({}, "Best ride comfort: S3, 2.266 m/s^2, 12.0 % better than S1."),
+        ({}, "S3 is 12.0 % better than S1 in ride comfort (J1)."),
         (
             {"layout": "S1", "value": 2.0},
-            "Best ride comfort: S1, 2 m/s^2; no other layout is better than this baseline.",
+            "No strut is better than S1 in ride comfort (J1); S3, the next, is 13.3 % worse.",
         ),
-        ({"layout": "S1", "value": 2.2661}, "Best ride comfort: S3, 2.266 m/s^2, no better than S1."),
-        ({"layout": "S1", "value": math.inf}, "Best ride comfort: S3, 2.266 m/s^2; S1 has no finite value."),
-        ({"layout": ["S1", "S2", "S3"], "value": math.inf}, "Best ride comfort: no layout has a finite value."),
+        (
+            {"layout": "S1", "value": 2.2661},
+            "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.0 %).",
+        ),
+        (
+            {"layout": "S1", "value": math.inf},
+            "S3 is best in ride comfort (J1), 2.266 m/s^2, 6.4 % better than S2; S1 has no finite value.",
+        ),
+        ({"layout": ["S1", "S2", "S3"], "value": math.inf}, "No strut has a finite value of ride comfort (J1)."),
     ],
 )
-def test_headlines_of_designs(change, sentence):
+def test_verdicts_of_designs(change, sentence):
     results = designs()
     if change:
         results = with_value(results, change["value"], layout=change["layout"], index="J1")
-    assert headlines(results)[0] == sentence
+    assert verdict_sentences(results)[0].startswith(sentence)
 
 
 @pytest.mark.parametrize(
@@ -171,7 +178,7 @@ def test_headlines_of_designs(change, sentence):
 def test_headlines_of_sweeps(improvement, sentence):
     results = sweep(["S1", "S2"], stiffness=[10e3, 100e3, 300e3])
     results["improvement"].loc[{"layout": "S2", "index": "J1"}] = improvement
-    assert headlines(results)[0] == sentence
+    assert sweep_headlines(results)[0] == sentence
 
 
 def test_the_best_layout_has_the_least_finite_value():
@@ -190,8 +197,11 @@ def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(c
         results = with_value(results, value * (1.0 + i * rounding), layout=name, index="J5")
     order = sorted(names, key=lambda name: counts[names.index(name)])
     assert best_layout(results, "J5") == order[0]
-    sentence = next(line for line in headlines(results) if "load carrying" in line)
-    assert f": {order[0]}, {order[1]}, {order[2]} and {order[3]}, equally good, " in sentence
+    sentence = next(line for line in verdict_sentences(results) if "load carrying (J5)" in line.split(". ")[0])
+    others = [name for name in order if name != "D"]
+    assert sentence.startswith(
+        f"{others[0]}, {others[1]} and {others[2]} are as good as D in dynamic load carrying (J5)"
+    )
     worse = with_value(results, value * (1.0 + 1e-8), layout=order[0], index="J5")
     assert best_layout(worse, "J5") == order[1]
 
@@ -221,6 +231,6 @@ def test_a_sweep_whose_baseline_has_no_value_shows_those_of_the_others():
     results["improvement"].loc[{"index": "J1"}] = math.nan
     least = results["value"].sel(layout="S2", index="J1").min().item()
     shown = f"{format_quantity(least, 'm/s^2')} at "
-    assert headlines(results)[0].startswith(f"Best ride comfort: S2, {shown}")
-    assert headlines(results)[0].endswith("; no feasible S1.")
+    assert sweep_headlines(results)[0].startswith(f"Best ride comfort: S2, {shown}")
+    assert sweep_headlines(results)[0].endswith("; no feasible S1.")
     assert shown in terminal_text(results)

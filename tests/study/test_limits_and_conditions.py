@@ -26,11 +26,11 @@ from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.networks.elements.values import NAME
 from inerter.report.conclusions import conclusion_sentences
-from inerter.report.index_summary import headlines
 from inerter.report.page import report
 from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH
+from inerter.report.verdicts import verdict_sentences
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -109,7 +109,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
     assert not result.failed
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
-    assert headlines(result.data) == ["Best ride comfort: no layout satisfies the constraints."]
+    assert verdict_sentences(result.data) == ["No strut keeps the limits, so that none is best in ride comfort (J1)."]
     assert "the nearest design" in report(result.data, study, tmp_path)
 
 
@@ -151,7 +151,7 @@ def test_conditions_are_those_of_python(load: Callable[..., Study], tmp_path: Pa
         assert value == pytest.approx(0.3 * each[0] + 0.7 * each[1] if over == "mean" else max(each), rel=1e-9)
     page = report(found, study, tmp_path)
     assert "Operating conditions" in page
-    assert "over conditions" in headlines(found)[0]
+    assert "over conditions" in verdict_sentences(found)[0]
 
 
 def test_conditions_of_a_car_with_a_seat(load: Callable[..., Study], tmp_path: Path) -> None:

@@ -97,7 +97,7 @@ def row_of(study: Study, outcome: Outcome, base: Outcome) -> dict[str, str]:
 def swift(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[..., Outcome]], None]:
     """Cases are what a function says, and so few at a time that boundaries lie everywhere."""
     monkeypatch.setattr(summary, "_AT_ONCE", 7)
-    monkeypatch.setattr("inerter.cli.commands.draw_study", lambda *arguments: None)
+    monkeypatch.setattr("inerter.report.writing.draw_study", lambda *arguments: None)
 
     def use(work: Callable[..., Outcome]) -> None:
         monkeypatch.setattr(Case, "compute", lambda case, study, designs, threads: work(study, case, threads))

@@ -20,7 +20,7 @@ from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
-from inerter.report.index_summary import headlines
+from inerter.report.index_summary import sweep_headlines
 from inerter.report.page import report
 from inerter.report.tables import map_tables
 from inerter.report.text import WIDTH
@@ -108,7 +108,7 @@ def test_a_map_is_told_in_words_that_fit(data: xr.Dataset) -> None:
     better = data["improvement"].sel(layout="S2", index="J1").squeeze("method")
     most = better.where(better == better.max(), drop=True)
     place = f"sprung mass = {float(most['vehicle.sprung_mass'][0]):g} kg, k = {float(most['k'][0]) / 1e3:g} kN/m"
-    assert place in headlines(data)[0]
+    assert place in sweep_headlines(data)[0]
     count = int((better >= 0.05).sum())
     assert f"S2 is better than S1 at {count}" in text
 
@@ -142,7 +142,7 @@ def test_a_map_with_values_that_are_none_is_drawn(data: xr.Dataset, *, bad: floa
     with style_context():
         study_figures(holes)[0].draw().draw_without_rendering()
     assert terminal_text(holes)
-    assert headlines(holes)
+    assert sweep_headlines(holes)
 
 
 def test_a_map_without_a_baseline_shows_values(study: Study, tmp_path: Path) -> None:
@@ -150,7 +150,7 @@ def test_a_map_without_a_baseline_shows_values(study: Study, tmp_path: Path) -> 
     found = run_study(one, tmp_path / "one").data
     (figure, *_) = study_figures(found)
     assert "improvement" not in figure.caption
-    assert "sprung mass = 400 kg" in headlines(found)[0]
+    assert "sprung mass = 400 kg" in sweep_headlines(found)[0]
     assert "improvement" not in map_tables(found)[0].caption
     with style_context():
         figure.draw().draw_without_rendering()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,9 +15,11 @@ import inerter as it
 from inerter.cli.main import call
 from inerter.errors import StudyError
 from inerter.files.study.checking import check_lines, search_plans
-from inerter.files.study.searching import GroupResult, NetworkGroup, StudySearch, search_study
+from inerter.files.study.search_parts import GroupResult, NetworkGroup, RealPart, RealResult
+from inerter.files.study.searching import StudySearch, search_study
 from inerter.files.study.study import Study
 from inerter.networks.enumeration import enumerate_networks
+from inerter.report.search import search_sections, search_sentences
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = (
@@ -120,11 +123,117 @@ def test_an_index_without_compiled_search(tmp_path: Path) -> None:
     assert [each.layout for each in one.result.frontier][-1] == one.result.ranking[0].layout
 
 
+TRADE = 'trade_off = ["J1", "J3"]\npoints = 5\noptimise = "norm"'
+
+
+@pytest.fixture(scope="module")
+def traded(tmp_path_factory: pytest.TempPathFactory) -> StudySearch:
+    folder = tmp_path_factory.mktemp("traded")
+    return search_study(load_text(folder, text(TRADE)), folder / "out")
+
+
+def csv_of(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_the_front_is_that_of_the_library(traded: StudySearch) -> None:
+    study = traded.study
+    indices = [study.index(name) for name in ("J1", "J3")]
+    direct = it.search(study.design("S"), indices, it.Norm(), points=5, seed=study.seed)
+    (one,) = traded.fronts
+    assert [each.values for each in direct.front] == [each.values for each in one.result.front]
+    rows = csv_of(traded.folder / "search_front.csv")
+    assert {row["up_to_elements"] for row in rows} == {"1", "2"}
+    last = [row for row in rows if row["up_to_elements"] == "2"]
+    assert [(float(row["J1 [m/s^2]"]), float(row["J3 [N]"])) for row in last] == [one.values for one in direct.front]
+    assert all(row["status"] == "ok" for row in rows)
+
+
+def test_a_front_cut_short_resumes_to_the_same_bytes(traded: StudySearch, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    whole = search_study(traded.study, folder)
+    names, journal = ("search.csv", "search_front.csv"), folder / "journal.jsonl"
+    before = [(folder / name).read_bytes() for name in names]
+    assert before == [(traded.folder / name).read_bytes() for name in names]
+    journal.write_bytes(journal.read_bytes()[:-50])
+    again = search_study(traded.study, folder, resume=True)
+    assert 0 < again.computed < whole.computed
+    assert [(folder / name).read_bytes() for name in names] == before
+    assert search_study(traded.study, folder, resume=True).computed == 0
+
+
+def test_the_command_draws_the_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    load_text(tmp_path, text(TRADE))
+    command = ["search", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "-j", "1"]
+    assert call(command) == 0
+    told = capsys.readouterr().out
+    assert max(map(len, told.splitlines())) <= 80
+    assert "networks on the Pareto" in told
+    assert "1 of 9 networks is on the Pareto front: c1 - b1." in " ".join(told.split())
+    assert (tmp_path / "out" / "figures" / "front-S.svg").exists()
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert page.count("<svg") == 4
+    assert "the Pareto front over all networks" in page
+    assert call([*command, "--resume", "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["search_front"]) == len(
+        csv_of(tmp_path / "out" / "search_front.csv")
+    )
+
+
+REAL = 'real_inerters = { friction = "100 N", methods = ["norm", "statistical-linearisation"], best = 1 }'
+
+
+@pytest.fixture(scope="module")
+def real(tmp_path_factory: pytest.TempPathFactory) -> StudySearch:
+    folder = tmp_path_factory.mktemp("real")
+    elements = ELEMENTS.replace("network = 2", "network = 2, springs_at_most = 0")
+    settings = f'indices = ["J1"]\noptimise = "norm"\n{REAL}'
+    return search_study(load_text(folder, text(settings, elements)), folder / "out")
+
+
+def test_real_inerters_in_the_best_networks(real: StudySearch) -> None:
+    """The values are at least as good as those of the ideal network in the real one, and those of the design."""
+    rows = csv_of(real.folder / "search_real_inerters.csv")
+    assert [(row["network"], row["method"]) for row in rows] == [
+        ("c1 - b1", "norm"),
+        ("c1 - b1", "statistical-linearisation"),
+    ]
+    shaft = it.Spring(1e6) | it.Damper(3200.0)
+    for row, moved in zip(rows, (it.Inerter, lambda b: it.Inerter(b) | it.Friction(100.0)), strict=True):
+        assert float(row["ideal"]) < float(row["value"]) < float(row["same_values"])
+        assert 0.0 < float(row["improvement_percent"]) < float(row["ideal_improvement_percent"])
+        damper, inerter = it.Damper(float(row["c1 [N s/m]"])), moved(float(row["b1 [kg]"]))
+        car = replace(real.study.design("S1"), strut=it.Spring(120e3) | damper - shaft - inerter)
+        method = it.Norm() if row["method"] == "norm" else it.StatisticalLinearisation()
+        value = it.evaluate(car, real.study.index("J1"), method).value
+        assert value == pytest.approx(float(row["value"]), rel=1e-9)
+    (one,) = real.searches
+    assert one.real_baseline("norm") == pytest.approx(one.baseline, rel=1e-12)
+
+
+def test_real_inerters_are_in_report_and_journal(real: StudySearch) -> None:
+    (section, *_) = list(search_sections(real))
+    assert "real inerters" in section.tables[-1].caption
+    told = " ".join(search_sentences(real))
+    assert "with real inerters (linearisation): c1 - b1 is the best of 1 network" in told
+    before = (real.folder / "search_real_inerters.csv").read_bytes()
+    assert search_study(real.study, real.folder, resume=True).computed == 0
+    assert (real.folder / "search_real_inerters.csv").read_bytes() == before
+
+
+def test_a_network_that_fails_with_real_inerters_says_why(real: StudySearch) -> None:
+    part = RealPart("S", "J1", "norm", "c1 - b1", real.searches[0].result.ranking[0])
+    result = RealResult(**json.loads(json.dumps(part.failed_result(real.study, "out of memory").to_json())))
+    assert not result.ok
+    assert result.part == part
+    assert result.message == "out of memory"
+
+
 @pytest.mark.parametrize(
     ("settings", "layouts", "place", "words"),
     [
         (ASK, 'S1 = "k | c"', "layouts", ["no layout has a free network", "network = 4"]),
-        (f'{ASK}\ntrade_off = ["J1", "J3"]', LAYOUTS, "study.trade_off", ["does not use it"]),
         (f'{ASK}\nsweep = {{ k = ["100 kN/m", "120 kN/m"] }}', LAYOUTS, "study.sweep", ["does not use it"]),
     ],
 )

@@ -29,20 +29,18 @@ export function keepAsking(store, api, client, found = async () => {}) {
     }
   }
 
-  /** When the newest question of a panel that waits came up, or its slider was last held. @type {Map<string,
-   * {key: string, at: number}>} */
+  /** When the newest question of a panel that waits came up. @type {Map<string, {key: string, at: number}>} */
   const raised = new Map();
 
   /** Whether a question has been the same for as long as it must; the first of a panel need not.
    * @param {import("./questions.js").Question} question @param {State} state */
-  function rests({ panel, key, rest = 0 }, { answers, history }) {
+  function rests({ panel, key, rest = 0 }, { answers }) {
     if (rest === 0 || answers[panel] === undefined) return true;
-    const slides = history.gesture?.startsWith("slide ") ?? false;
     const now = Date.now();
-    if (slides || raised.get(panel)?.key !== key) raised.set(panel, { key, at: now });
+    if (raised.get(panel)?.key !== key) raised.set(panel, { key, at: now });
     const left = rest - (now - (raised.get(panel)?.at ?? now));
-    if (!slides && left > 0) setTimeout(schedule, left);
-    return !slides && left <= 0;
+    if (left > 0) setTimeout(schedule, left);
+    return left <= 0;
   }
 
   /** @param {import("./questions.js").Question} asked */

@@ -3,6 +3,7 @@
 import { render } from "preact";
 import "./page.css";
 import "./vehicles/vehicles.css";
+import "./plots/plots.css";
 import { Lost, createApi } from "./api.js";
 import { isUnauthorised, keepAsking } from "./asking.js";
 import { Page } from "./page.js";

@@ -61,7 +61,7 @@ export function Page({ store, api, enter }) {
     </header>
     <${DecisionLine} store=${store} />
     <${Bar} store=${store} enter=${enter} />
-    ${blank ? html`<${Start} store=${store} api=${api} />`
+    ${blank ? state.connection === "connecting" ? html`<main></main>` : html`<${Start} store=${store} api=${api} />`
       : html`<main>
           <div class="col left"><${AnswersPanel} store=${store} /><${NetworkPanel} store=${store} api=${api} /></div>
           <div class=${`col middle ${state.view.tall ? "tall" : ""}`}>
@@ -238,7 +238,7 @@ function listen(store, api, showKeys) {
   }, { signal });
   addEventListener("click", (event) => {
     for (const menu of document.querySelectorAll(MENUS)) {
-      if (!menu.contains(/** @type {Node} */ (event.target))) menu.removeAttribute("open");
+      if (!event.composedPath().includes(menu)) menu.removeAttribute("open"); // what was clicked may be gone
     }
   }, { signal });
   return () => off.abort();

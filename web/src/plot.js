@@ -1,6 +1,5 @@
 // A plot from its declaration: axes, curves, shading, points to take; read by pointer, by keyboard, as a table; saved.
 
-import "./plots/plots.css";
 import { Chip, DropDown, Table } from "./parts/controls.js";
 import { html, useEffect, useId, useLayoutEffect, useMemo, useRef, useState } from "./parts/html.js";
 import { indexAt, layoutOf, nearest, valueAt } from "./plots/layout.js";

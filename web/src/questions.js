@@ -138,7 +138,8 @@ export function soughtOf(state, panel) {
 /** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
 const SOUGHT = {
   margins: (state, document, asked) =>
-    ({ ...presentDesign(document), baseline: baselineOf(document), index: goalOf(state), ...asked }),
+    ({ ...presentDesign(document), baseline: baselineOf(document), index: goalOf(state),
+      methods: methodNames(state), ...asked }),
   budget: (state, document, asked) =>
     ({ ...presentDesign(document), baseline: baselineOf(document), ...asked, ...seeing(state) }),
   tolerance: (state, document, asked) =>

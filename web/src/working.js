@@ -266,3 +266,14 @@ export async function stop(store, api, id) {
   await api.remove(`work/${id}`);
   if (ended) store.dispatch({ type: "dropped", id });
 }
+
+/** A job once it has ended, undefined if it was dropped. @param {Store} store @param {string} id
+ * @returns {Promise<import("./state/store.js").Job | undefined>} */
+export const ended = (store, id) => new Promise((resolve) => {
+  const leave = store.subscribe(() => {
+    const job = store.get().work[id];
+    if (job && !job.result && !["failed", "stopped"].includes(job.state)) return;
+    leave();
+    resolve(job);
+  });
+});

@@ -69,6 +69,8 @@ def answer_panel(key: str, body: Body) -> Answer:
     with one_blas_thread(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         answer: Callable[[Study, Body], Answer] = resolve_name(PANELS[key].home)
         study, asked = study_for(body)
+        for index in asked.get("indices") or ():
+            study.symbol(index)  # raises if it is unknown
         left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
         return {**answer(study, asked), **left_out}
 

@@ -50,11 +50,11 @@ def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[
     asked = simulation_request(study, design, body)
     run, mechanism = asked.run(), design.mechanism
     names = body.get("outputs") or main_outputs(mechanism)
-    shaded = _state_intervals(run)
+    shaded = state_intervals(run)
     return {
         **design.describe_values(),
         "signals": [_signal_curve(run, name) for name in names],
-        "motion": _motion(run, mechanism),
+        "motion": motion_of(run, mechanism),
         "shaded": shaded,
         "events": len(run.events),
         "rms": {name: run.rms(name) for name in names},
@@ -104,7 +104,7 @@ def _signal_curve(run: Trajectory, name: str) -> dict[str, Any]:
     }
 
 
-def _motion(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
+def motion_of(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
     """Coordinates, roads and elongations of elements at even times, as many a second as a screen shows."""
     time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
     inside = elongations(run, mechanism)
@@ -126,7 +126,7 @@ def _coordinate_outputs(mechanism: Mechanism) -> dict[str, str]:
     return {**coordinates, **{r.name: r.name for r in mechanism.roads}}
 
 
-def _state_intervals(run: Trajectory) -> list[dict[str, Any]]:
+def state_intervals(run: Trajectory) -> list[dict[str, Any]]:
     """Time intervals of each element that switches in each of its states."""
     states: dict[str, set[str]] = {element: {state} for element, state in run.states.items()}
     for event in run.events[:_MOST_EVENTS]:

@@ -18,8 +18,9 @@ from inerter.figures.search import draw_search
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
+from inerter.files.study.search_parts import GroupResult
 from inerter.files.study.search_tables import RANKED, improvement
-from inerter.files.study.searching import GroupResult, StudySearch, search_study
+from inerter.files.study.searching import StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan
@@ -81,7 +82,7 @@ def _one_search(study: Study, body: Body) -> Study:
     study.index(index)
     baseline = study.baseline if study.baseline not in searched else None
     layouts = {name: one for name, one in study.layouts.items() if name in (layout, baseline)}
-    return replace(study, layouts=layouts, indices=(index,), baseline=baseline)
+    return replace(study, layouts=layouts, indices=(index,), baseline=baseline, trade_off=(), real_inerters=None)
 
 
 @dataclass

@@ -308,9 +308,7 @@ def export(
     source: Path,
     /,
     *,
-    to: Annotated[
-        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, spice, svg, pdf, latex; control and scipy in Python.")
-    ],
+    to: Annotated[str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex.")],
     layout: Annotated[str | None, Parameter(help="Layout; may be left out if there is one.")] = None,
     index: Annotated[str | None, Parameter(help="Index whose best design is exported, if values are free.")] = None,
     point: Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")] = None,

@@ -114,12 +114,12 @@ def _statuses(contest: Contest) -> Iterator[Caveat]:
 
 
 def _ties(contest: Contest) -> Iterator[Caveat]:
-    for other in contest.winners[2:]:
+    base = contest.baseline
+    for other in contest.winners[2:] if base not in contest.winners else ():
         first = contest.winners[0]
         if (by := contest.over(first, other)) is not None:
             text = f"{first.name} and {other.name} are equally good too (difference {by.size})."
             yield Caveat(CaveatKind.TIE, text, Severity.INFO)
-    base = contest.baseline
     for one in contest.designs:
         if base is None or one.is_baseline or one in contest.winners or not one.is_ranked:
             continue

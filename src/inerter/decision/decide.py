@@ -62,7 +62,7 @@ def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", rem
     method in words, `remedy` the name of one that models what it neglects.
     """
     ranked = sorted((one for one in designs if one.is_ranked), key=lambda one: one.goal.value)
-    winners = _winners(ranked, over)
+    winners = _winners(designs, ranked, over)
     rest = [one for one in ranked if one not in winners]
     others = sorted((one for one in designs if one not in ranked), key=_order)
     contest = Contest(designs, winners, over, method, remedy)
@@ -70,13 +70,14 @@ def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", rem
     return Decision((*winners, *rest, *others), tuple(ranks), tuple(winners), _verdict(contest, rest))
 
 
-def _winners(ranked: Sequence[DesignResult], over: Over) -> list[DesignResult]:
-    """Designs that may have the lowest value, the simplest first."""
+def _winners(designs: Sequence[DesignResult], ranked: Sequence[DesignResult], over: Over) -> list[DesignResult]:
+    """Ranked designs that may have the lowest value: the simplest first, else in the given order."""
+    order = {id(one): place for place, one in enumerate(designs)}
     if not ranked:
         return []
     best, least = ranked[0], equally_least([one.goal.value for one in ranked])
     found = [one for i, one in enumerate(ranked) if i in least or ((by := over(best, one)) is not None and by.is_equal)]
-    return sorted(found, key=lambda one: one.n_elements)
+    return sorted(found, key=lambda one: (one.n_elements, order[id(one)]))
 
 
 def _order(design: DesignResult) -> tuple[bool, bool, float]:
@@ -131,7 +132,7 @@ def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
         closest = min(broken, key=lambda one: one.excess)
         worst = max((one for one in closest.limits if one.kept is False), key=lambda one: one.excess, default=None)
         if worst is None:
-            return f"No strut keeps the limits: {format_list([one.name for one in broken])} cannot."
+            return f"No strut keeps the limits, so that none is best in {closest.goal.words}."
         return (
             f"No strut keeps the limits: {closest.name} is the closest, with {worst.of} {worst.value} (limit: "
             f"{worst.side})."

@@ -22,6 +22,7 @@ from inerter.systems.outputs import input_unit, of_mount, velocity_of
 from inerter.vehicle.mechanism import Coordinate, Force, Mechanism, Port, Strut
 
 _T, _R = "Modelica.Mechanics.Translational", "Modelica.Mechanics.Rotational"
+_LONGEST = 60  # characters of the name of a package
 _PARTS = {
     LinearRole.STIFFNESS: (f"{_T}.Components.Spring", "c"),
     LinearRole.DAMPING: (f"{_T}.Components.Damper", "d"),
@@ -97,7 +98,7 @@ class _Source:
 
     def _joined(self, title: str) -> str:
         quoted = title.replace("\\", "\\\\").replace('"', '\\"')
-        package = f"{_identifier(title)}_" if _identifier(title) in _KEYWORDS else _identifier(title)
+        package = package_name(title)
         lines = [f'package {package} "{quoted}, written by inerter"', _INERTER.rstrip(), *self.models]
         body = [*self.inputs, *self.parts, *self.outputs]
         lines += ["  model Vehicle", *(f"    {line}" for line in body), "  equation"]
@@ -105,7 +106,7 @@ class _Source:
         return "\n".join([*lines, '  annotation (uses(Modelica(version="4.0.0")));', f"end {package};", ""])
 
     def _name(self, wanted: str) -> str:
-        stem = _identifier(wanted)
+        stem = identifier(wanted)
         name, number = stem, 1
         while name in self.names:
             number += 1
@@ -243,8 +244,15 @@ def _motions_of(coordinate: Coordinate) -> dict[str, tuple[str, int]]:
     return found
 
 
-def _identifier(text: str) -> str:
-    name = re.sub(r"\W", "_", text, flags=re.ASCII)
+def package_name(title: str) -> str:
+    """A short name of a package or file after a title."""
+    name = identifier(title)[:_LONGEST].rstrip("_")
+    return f"{name}_" if name in _KEYWORDS else name
+
+
+def identifier(text: str) -> str:
+    """A name in the syntax of Modelica and C."""
+    name = re.sub(r"\W+", "_", text, flags=re.ASCII)
     return name if name[:1].isalpha() else f"v_{name}"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from inerter.exports.drawings import LATEX, PDF, SVG
+from inerter.exports.fmu.archive import FMU, FMU3
 from inerter.exports.kind import ExportKind
 from inerter.exports.matlab import MATLAB
 from inerter.exports.modelica import MODELICA
@@ -15,5 +16,5 @@ EXPORTS: Registry[ExportKind] = Registry(
     "kind of export",
     "key",
     ("description", "suffixes", "make"),
-    (CONTROL, SCIPY, MATLAB, CSV, NETCDF, MODELICA, SPICE, SVG, PDF, LATEX),
+    (CONTROL, SCIPY, MATLAB, CSV, NETCDF, MODELICA, FMU, FMU3, SPICE, SVG, PDF, LATEX),
 )

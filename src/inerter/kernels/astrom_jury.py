@@ -13,10 +13,12 @@ from typing import Any, NamedTuple
 from inerter.kernels.arrays import Floats, Matrix
 from inerter.kernels.decorators import part
 from inerter.kernels.double_double import add_product
+from inerter.kernels.lanes import is_between
 
 Array = Any
 _EPS = 1.2e-16  # relative error of one operation
 _FINE_EPS = 1e-30  # the same in twice the precision, with room to spare
+_FIRST_ORDER = 0.1  # relative error of a quotient alpha up to which that of the result is one of first order
 
 
 class Recursion(NamedTuple):
@@ -32,34 +34,45 @@ class Recursion(NamedTuple):
     beta: Floats
     a_adjoint: Floats
     b_adjoint: Floats
+    a_error: Floats  # bounds of the error of a, overwritten
 
 
 @part(borrowing=True)
-def forward(n: int, space: Recursion) -> float:
-    """Squared norm; -1 where a is not stable, which rounding may have made it seem."""
+def _spread_errors(j: int, n: int, alpha: Any, space: Recursion, eps: float) -> Any:
+    """Bounds of the error of a after step j, whose a is still there; 1 if that of alpha is small, else 0."""
+    a, errors = space.a, space.a_error
+    relative = (errors[j] + alpha * errors[j + 1]) / a[j] + eps
+    for i in range(j + 2, n, 2):
+        product = abs(alpha * a[i + 1])
+        errors[i] += relative * product + alpha * errors[i + 1] + eps * (abs(a[i]) + 2.0 * product)
+    return is_between(relative, -1.0, _FIRST_ORDER)
+
+
+@part(borrowing=True)
+def forward(n: int, space: Recursion) -> Any:
+    """Squared norm; infinite or nan where a is not stable, which rounding may have made it seem, or may hide."""
     a, b, steps, before = space.a, space.b, space.steps, space.before
-    total = 0.0
+    total, stable = 0.0, 1.0
     for j in range(n):
         for i in range(j, n + 1):
             steps[j, i] = a[i]
         for i in range(j, n):
             before[j, i] = b[i]
         alpha, beta = a[j] / a[j + 1], b[j] / a[j + 1]
-        if not (alpha > 0.0 and alpha < 1e300):
-            return -1.0
+        stable = stable * is_between(alpha, 0.0, 1e300) * _spread_errors(j, n, alpha, space, _EPS)
         space.alpha[j], space.beta[j] = alpha, beta
         total += 0.5 * beta * beta / alpha
         for i in range(j + 2, n, 2):
             a[i] -= alpha * a[i + 1]
             b[i] -= beta * a[i + 1]
-    return total
+    return total / stable
 
 
 @part(borrowing=True)
-def fine_forward(n: int, space: Recursion) -> float:
+def fine_forward(n: int, space: Recursion) -> Any:
     """Squared norm in twice the precision; see `forward`."""
     a, b, a_low, b_low, steps, before = space.a, space.b, space.a_low, space.b_low, space.steps, space.before
-    total, rest = 0.0, 0.0
+    total, rest, stable = 0.0, 0.0, 1.0
     for j in range(n):
         for i in range(j, n + 1):
             steps[j, i] = a[i]
@@ -68,8 +81,7 @@ def fine_forward(n: int, space: Recursion) -> float:
         pivot, pivot_low = a[j + 1], a_low[j + 1]
         alpha, alpha_low = _divide(a[j], a_low[j], pivot, pivot_low)
         beta, beta_low = _divide(b[j], b_low[j], pivot, pivot_low)
-        if not (alpha > 0.0 and alpha < 1e300):
-            return -1.0
+        stable = stable * is_between(alpha, 0.0, 1e300) * _spread_errors(j, n, alpha, space, _FINE_EPS)
         space.alpha[j], space.beta[j] = alpha, beta
         square, square_low = add_product(0.0, 0.0, beta, beta)
         term, term_low = _divide(square, square_low + 2.0 * beta * beta_low, alpha, alpha_low)
@@ -84,11 +96,11 @@ def fine_forward(n: int, space: Recursion) -> float:
             a_low[i] = low - (a[i] - high)
             b[i] = fine + fine_low
             b_low[i] = fine_low - (b[i] - fine)
-    return total + rest
+    return (total + rest) / stable
 
 
 @part(borrowing=True)
-def _divide(p: float, p_low: float, q: float, q_low: float) -> Any:
+def _divide(p: Any, p_low: Any, q: Any, q_low: Any) -> Any:
     """(p + p_low) / (q + q_low) as two numbers."""
     high = p / q
     rest, low = add_product(p, p_low, -high, q)
@@ -98,7 +110,7 @@ def _divide(p: float, p_low: float, q: float, q_low: float) -> Any:
 
 
 @part(borrowing=True)
-def backward(n: int, space: Recursion, fine: bool) -> float:
+def backward(n: int, space: Recursion, fine: bool) -> Any:
     """Fill the adjoints of a and b, and give the rounding error of the squared norm by the recursion itself."""
     a_, b_, steps, before = space.a_adjoint, space.b_adjoint, space.steps, space.before
     eps = _FINE_EPS if fine else _EPS

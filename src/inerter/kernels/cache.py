@@ -28,7 +28,7 @@ _IMPORTED = re.compile(r"^from inerter\.kernels\.(\w+) import", re.MULTILINE)
 def source_hash(module: Path) -> str:
     """A short hash of a kernel module, of all that it rests on, of the compiler's version and of how it is used."""
     found: set[Path] = set()
-    waiting = [module, module.with_name("compiler.py"), module.with_name("numba_compiler.py")]
+    waiting = [module, *(module.with_name(f"{name}.py") for name in ("compiler", "numba_compiler", "numba_lanes"))]
     while waiting:
         path = waiting.pop()
         if path not in found and path.exists():

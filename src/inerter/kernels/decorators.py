@@ -39,6 +39,13 @@ def numba_internals() -> Any:
     return numba_compiler
 
 
+def numba_lanes() -> Any:
+    """The module with the compiler's type of several numbers side by side."""
+    from inerter.kernels import numba_lanes  # noqa: PLC0415 - heavy
+
+    return numba_lanes
+
+
 class Kernel:
     """A compiled function that Python calls, or other compiled code by its address; `title` names the result."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.decorators import instruction, part
+from inerter.kernels.decorators import instruction, numba_lanes, part
 
 Array = Any
 
@@ -24,12 +24,7 @@ def multiply_add_by_halves(a: float, b: float, product: float) -> float:
 @instruction(multiply_add_by_halves)
 def fused_multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Any:
     """Compile a b + c with one rounding."""
-    from numba import types  # noqa: PLC0415 - heavy
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fma(*arguments)
-
-    return types.float64(types.float64, types.float64, types.float64), code
+    return numba_lanes().fused_multiply_add(a, b, c)
 
 
 @part(borrowing=True, inside=True)

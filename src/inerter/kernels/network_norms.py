@@ -15,6 +15,7 @@ from inerter.kernels.arrays import Floats, Ints, IntTable, Matrices, Matrix
 from inerter.kernels.astrom_jury import Recursion, backward, fine_forward, forward
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.double_double import add_product
+from inerter.kernels.lanes import is_between, larger, root
 from inerter.kernels.network_polynomials import (
     BOTTOM,
     TOP,
@@ -26,8 +27,9 @@ from inerter.kernels.network_polynomials import (
 )
 
 Array = Any
-_ACCURATE = 1e-9  # relative error of a squared norm up to which it counts as known
+ACCURATE = 1e-9  # relative error of a squared norm up to which it counts as known
 _EPS, _FINE_EPS = 1.2e-16, 1e-30
+_NOTHING = 1e-300  # squared norm of a group without functions
 _DIFFERENCE = 1e-5  # relative step of differences
 SHARP = 40.0  # of the smooth maximum over criteria, which is at most log(criteria) / SHARP too large
 POWER_D, POWER_N, DROPPED, DEGREE, TOP_DEGREE = range(5)  # columns of `Port.forms`
@@ -59,7 +61,6 @@ class NormSpace(NamedTuple):
 
     network: Polynomials
     fraction: Recursion
-    squares: Floats  # (functions,)
     sums: Floats  # (groups,)
     errors: Floats  # (groups,)
     slopes: Floats  # (groups,) derivative of the objective over the root of each
@@ -68,13 +69,22 @@ class NormSpace(NamedTuple):
 
 
 @part()
+def space_sizes(program: Program, port: Port) -> Any:
+    """Coefficients that polynomials of the network and of fractions have room for, and groups."""
+    size, n, groups = 2, 2, 1
+    for k in range(program.parts.shape[0]):
+        size = max(size, program.parts[k, TOP] + 1, program.parts[k, BOTTOM] + 1)
+    for k in range(port.weights.size):
+        n = max(n, port.forms[k, DEGREE] + 1, port.forms[k, TOP_DEGREE] + 2)
+        groups = max(groups, int(port.groups[k]) + 1)
+    return size + 1, n + 1, groups
+
+
+@part()
 def norm_space(program: Program, port: Port) -> NormSpace:
     """Room for `index_in`."""
-    parts = program.parts.shape[0]
-    size = 2
-    for k in range(parts):
-        size = max(size, program.parts[k, TOP] + 1, program.parts[k, BOTTOM] + 1)
-    size += 1
+    parts, functions = program.parts.shape[0], port.weights.size
+    size, full, groups = space_sizes(program, port)
     network = Polynomials(
         np.zeros((parts, size)),
         np.zeros((parts, size)),
@@ -84,11 +94,6 @@ def norm_space(program: Program, port: Port) -> NormSpace:
         np.zeros((parts, size)),
         np.zeros((4, size)),
     )
-    functions = port.weights.size
-    n = 2
-    for k in range(functions):
-        n = max(n, port.forms[k, DEGREE] + 1, port.forms[k, TOP_DEGREE] + 2)
-    full = n + 1
     fraction = Recursion(
         np.zeros(full),
         np.zeros(full),
@@ -100,14 +105,11 @@ def norm_space(program: Program, port: Port) -> NormSpace:
         np.zeros(full),
         np.zeros(full),
         np.zeros(full),
+        np.zeros(full),
     )
-    groups = 1
-    for k in range(functions):
-        groups = max(groups, int(port.groups[k]) + 1)
     return NormSpace(
         network,
         fraction,
-        np.zeros(functions),
         np.zeros(groups),
         np.zeros(groups),
         np.ones(groups),
@@ -155,7 +157,7 @@ def fill_fraction(k: int, program: Program, port: Port, space: NormSpace, fine: 
     for i in range(n + 2):
         if i < fraction.a.size:
             fraction.a[i], fraction.b[i], fraction.a_low[i], fraction.b_low[i] = 0.0, 0.0, 0.0, 0.0
-    own, own_low = port.coefficients[k], port.low[k]
+    own, own_low, eps = port.coefficients[k], port.low[k], _rounding(program, fine)
     for which in range(4):
         degree = port.degrees[k, which]
         if degree >= 0:
@@ -168,10 +170,20 @@ def fill_fraction(k: int, program: Program, port: Port, space: NormSpace, fine: 
             else:
                 first -= power_N
                 _add_products(result, low, fine, first, own[which], own_low[which], degree, N, N_low, top)
+    for i in range(n + 1):
+        fraction.a_error[i] = eps * fraction.a[i]
 
 
 @part(borrowing=True)
-def fill_shares(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> float:
+def _rounding(program: Program, fine: bool) -> float:
+    """Relative error of the coefficients, which are sums of positive products."""
+    last = program.parts.shape[0] - 1
+    roundings = 2.0 * last + program.parts[last, TOP] + program.parts[last, BOTTOM] + 6.0
+    return float(roundings * (_FINE_EPS if fine else _EPS))
+
+
+@part(borrowing=True)
+def fill_shares(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> Any:
     """Fill the adjoints of N and D for function k, and give the error of its squared norm by roundings of a and b."""
     network, fraction = space.network, space.fraction
     last = program.parts.shape[0] - 1
@@ -184,9 +196,7 @@ def fill_shares(k: int, program: Program, port: Port, space: NormSpace, fine: bo
         D_[i] = 0.0
     n = port.forms[k, DEGREE]
     power_D, power_N, dropped = port.forms[k, POWER_D], port.forms[k, POWER_N], port.forms[k, DROPPED]
-    roundings = 2.0 * program.parts.shape[0] + bottom + top + 4.0
-    eps = roundings * (_FINE_EPS if fine else _EPS)
-    error = 0.0
+    eps, error = _rounding(program, fine), 0.0
     for which in range(4):
         degree = port.degrees[k, which]
         poles = which < 2
@@ -210,30 +220,29 @@ def fill_shares(k: int, program: Program, port: Port, space: NormSpace, fine: bo
 
 
 @part(borrowing=True)
-def _squares(program: Program, port: Port, space: NormSpace, fine: bool) -> float:
+def fill_squares(program: Program, port: Port, space: NormSpace, fine: bool) -> Any:
     """Fill the squared norms, the shares of their gradients and the groups' sums; the largest relative error.
 
-    Infinite where a function is not stable, or seems so by rounding.
+    Infinite or nan where a function is not stable, or seems so by rounding.
     """
-    functions = port.weights.size
+    functions, known = port.weights.size, 1.0
     for g in range(space.sums.size):
         space.sums[g], space.errors[g] = 0.0, 0.0
     for k in range(functions):
         fill_fraction(k, program, port, space, fine)
         n = port.forms[k, DEGREE]
         square = fine_forward(n, space.fraction) if fine else forward(n, space.fraction)
-        if not square >= 0.0:
-            return np.inf
         error = backward(n, space.fraction, fine) + fill_shares(k, program, port, space, fine)
-        space.squares[k] = square
+        known = known * is_between(square, -1.0, np.inf)
         g = int(port.groups[k])
         space.sums[g] += port.weights[k] * square
         space.errors[g] += port.weights[k] * error
     worst = 0.0
     for g in range(space.sums.size):
-        if space.sums[g] > 0.0:
-            worst = max(worst, space.errors[g] / space.sums[g])
-    return worst if worst >= 0.0 else np.inf
+        error = space.errors[g] / larger(space.sums[g], _NOTHING)
+        known = known * is_between(error, -1.0, np.inf)
+        worst = larger(worst, error)
+    return worst / known
 
 
 @part(borrowing=True)
@@ -244,7 +253,7 @@ def _fill_differences(values: Array, program: Program, port: Port, space: NormSp
         for sign in (1.0, -1.0):
             values[i] = at * (1.0 + sign * _DIFFERENCE)
             fine_admittance(values, program, space.network)
-            known = known and _squares(program, port, space, True) <= _ACCURATE
+            known = known and fill_squares(program, port, space, True) <= ACCURATE
             for g in range(space.sums.size):
                 difference += sign * space.slopes[g] * np.sqrt(space.sums[g])
         values[i] = at
@@ -253,10 +262,11 @@ def _fill_differences(values: Array, program: Program, port: Port, space: NormSp
 
 
 @part(borrowing=True)
-def _index(space: NormSpace) -> float:
+def index_of(space: NormSpace) -> Any:
+    """The index by the groups' sums."""
     value = 0.0
     for g in range(space.sums.size):
-        value += np.sqrt(space.sums[g])
+        value += root(space.sums[g])
     return value
 
 
@@ -288,9 +298,9 @@ def index_in(values: Array, program: Program, port: Port, space: NormSpace, grad
     the precision does not suffice).
     """
     error, fine = _known_squares(values, program, port, space)
-    if not error <= _ACCURATE:
+    if not error <= ACCURATE:
         return np.inf, np.inf
-    value = _index(space)
+    value = index_of(space)
     if gradient.size > 0:
         _fill_gradient(values, program, port, space, fine, gradient)
     return value, 0.5 * error
@@ -306,7 +316,7 @@ def excess_in(
     is not known.
     """
     error, fine = _known_squares(values, program, port, space)
-    if not error <= _ACCURATE:
+    if not error <= ACCURATE:
         return np.inf
     worst, total = -np.inf, 0.0
     for i in range(trade_off.aims.size):
@@ -335,11 +345,11 @@ def _excess(i: int, trade_off: TradeOff, space: NormSpace) -> float:
 def _known_squares(values: Array, program: Program, port: Port, space: NormSpace) -> Any:
     """Fill the squared norms; their relative error, and whether they took twice the precision."""
     admittance(values, program, space.network)
-    error, fine = _squares(program, port, space, False), False
-    if not error <= _ACCURATE:
+    error, fine = fill_squares(program, port, space, False), False
+    if not error <= ACCURATE:
         fine = True
         fine_admittance(values, program, space.network)
-        error = _squares(program, port, space, True)
+        error = fill_squares(program, port, space, True)
     return error, fine
 
 
@@ -386,10 +396,10 @@ def admittance_indices(
             N[i] = tops[row, i]
         for i in range(bottoms.shape[1]):
             D[i] = bottoms[row, i]
-        error = _squares(program, port, space, False)
-        if not error <= _ACCURATE:
-            error = _squares(program, port, space, True)
-        result[row] = _index(space) if error <= _ACCURATE else np.inf
+        error = fill_squares(program, port, space, False)
+        if not error <= ACCURATE:
+            error = fill_squares(program, port, space, True)
+        result[row] = index_of(space) if error <= ACCURATE else np.inf
         if row < top_gradients.shape[0] and result[row] < np.inf:
             _fill_adjoints(program, port, space)
             for i in range(tops.shape[1]):

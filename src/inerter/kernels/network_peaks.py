@@ -165,7 +165,7 @@ def _peaks_at(
                     low = min(low, ratio)
                 if i == 0:
                     high = max(high, ratio)
-    if forward(n, fraction) < 0.0 or not (low > -700.0 and high < 700.0):
+    if not forward(n, fraction) < np.inf or not (low > -700.0 and high < 700.0):
         return 0
     low -= _BEYOND * 2.302585092994046
     high += _BEYOND * 2.302585092994046

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,9 @@ from numpy.typing import NDArray
 
 from inerter.errors import InerterError
 from inerter.indices.definition import Combination, Index, IndexDefinition
+from inerter.kernels.decorators import TUNED, compiler_mode
+from inerter.kernels.network_gains import peaks_in_lanes, peaks_in_turn
+from inerter.kernels.network_lanes import indices_in_lanes
 from inerter.kernels.network_norms import Port, TradeOff, indices
 from inerter.kernels.network_peaks import search_network_peak
 from inerter.kernels.network_polynomials import (
@@ -309,21 +313,62 @@ def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] |
     return None if found is None else (found, network)
 
 
-def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array | None:
-    """The index at many values of the free values, by name, which are all in one strut; nan where it is not known.
+@dataclass(frozen=True, eq=False)
+class _CompiledStrut:
+    """An index over the values of a strut that has all free values, as data of compiled code."""
 
-    None where compiled code of networks cannot give it, and for a peak gain.
-    """
+    elements: tuple[Element, ...]
+    program: Program
+    port: Port
+    is_peak: bool
+
+    def values(self, points: Mapping[str, Array], count: int) -> Array:
+        """The index at many values of the free values, infinite where unknown.
+
+        A design has the same digits side by side with others and, where that is not compiled, in turn.
+        """
+        rows = np.empty((len(self.elements), count))
+        for row, element in zip(rows, self.elements, strict=True):
+            value: Any = element.value
+            row[:] = points[str(value.name)] if isinstance(value, Free) else value
+        own, errors, in_lanes = (self.program, self.port), np.empty(count), compiler_mode() == TUNED
+        if self.is_peak:
+            peaks = (peaks_in_lanes if in_lanes else peaks_in_turn)(rows, *own, errors)
+            return np.asarray(peaks * np.sqrt(self.port.weights[0]))
+        if in_lanes:
+            return np.asarray(indices_in_lanes(rows, *own, errors))
+        return np.asarray(indices(np.ascontiguousarray(rows.T), *own, np.zeros((0, len(rows))), errors))
+
+
+def _compile_strut(vehicle: Vehicle, index: Index) -> _CompiledStrut | None:
     strut = free_strut(vehicle, index)
-    if strut is None or strut[0].is_peak:
+    if strut is None:
         return None
     over, network = strut
     program = network_program(network)
-    port, elements = over.port(program), list(network.elements())
+    port, elements = over.port(program), tuple(network.elements())
     if port is None or any(isinstance(e.value, Tied) or e.gain != 1.0 for e in elements):
         return None
-    count = next(iter(points.values())).size
-    columns = [points[str(e.value.name)] if isinstance(e.value, Free) else np.full(count, e.value) for e in elements]
-    rows = np.ascontiguousarray(np.column_stack(columns))
-    values = np.asarray(indices(rows, program.program, port, np.zeros((0, len(columns))), np.zeros(count)))
-    return np.where(np.isfinite(values), values, np.nan)
+    if over.is_peak and port.weights.size != 1:
+        return None
+    return _CompiledStrut(elements, program.program, port, over.is_peak)
+
+
+_remembered: Any = lru_cache(64)(_compile_strut)  # designs of one layout may come in parts
+
+
+def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array | None:
+    """The index at many values of the free values, by name, which are all in one strut; nan where it is not known.
+
+    None where compiled code of networks cannot give it.
+    """
+    try:
+        hash((vehicle, index))
+        strut = _remembered(vehicle, index)
+    except TypeError:  # a mechanism, or an index with matrices
+        strut = _compile_strut(vehicle, index)
+    if strut is None:
+        return None
+    values: Array = strut.values(points, next(iter(points.values())).size)
+    values[np.isinf(values)] = np.nan
+    return values

@@ -55,19 +55,19 @@ class Norm(FormerMethodNames):
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
         count = next(iter(points.values())).size if points else 1
-        result: Array = np.full((count, len(indices)), np.nan)
+        result: Array = np.full((len(indices), count), np.nan)
         if is_exact_norm(self):  # for one design as for many: shared work gives the same digits
-            for column, index in enumerate(indices):
+            for row, index in enumerate(indices):
                 known = norms_over_strut(vehicle, index, points)
                 if known is not None:
-                    result[:, column] = known
-        rest = np.flatnonzero(np.isnan(result).any(axis=1))
+                    result[row] = known
+        rest = np.flatnonzero(np.isnan(result).any(axis=0))
         if rest.size:
             left = {name: values[rest] for name, values in points.items()}
             definitions = [index.definition(mechanism) for index in indices]
             found = evaluate_problems(mechanism, definitions, conventions, left)
-            result[rest] = np.where(np.isnan(result[rest]), found, result[rest])
-        return result
+            result[:, rest] = np.where(np.isnan(result[:, rest]), found.T, result[:, rest])
+        return result.T
 
     def share_unsure(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> float:
         """The part of many designs for which double precision does not suffice, each of which takes some 10 ms.

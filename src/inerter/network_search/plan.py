@@ -200,7 +200,7 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
         estimate = estimate_of(plan.design(topology).with_values(middle), plan.index, plan.method)
         if np.isfinite(estimate.value):
             return _search_by_optimise(plan, topology)
-        return SearchedNetwork(topology, starts, reason=_infinite_reason(topology, starts, estimate.status))
+        return SearchedNetwork(topology, starts, reason=_infinite_reason(topology, estimate.status))
     best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
     if best is None:
         return _search_by_optimise(plan, topology)
@@ -208,11 +208,11 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     return SearchedNetwork(topology, starts, agree, float(values[best]), tuple(points[best].tolist()))
 
 
-def _infinite_reason(topology: Topology, starts: int, status: Status) -> str:
+def _infinite_reason(topology: Topology, status: Status) -> str:
     """Why the index of a network is infinite: the status at the middle of its bounds."""
     undamped = "" if topology.counts["c"] else ", which has no damper"
     detail = f"{status.message} at the middle of the bounds" if status.message else "at the middle of the bounds too"
-    return f"infinite at all {starts} starts of this network{undamped}: {detail}"
+    return f"infinite at all starts of this network{undamped}: {detail}"
 
 
 def _count_equal(values: Array) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 
 from inerter.methods.composite_index import estimate_of
@@ -10,6 +11,7 @@ from inerter.methods.method import Estimate, Method
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
 from inerter.networks.transform import map_elements
+from inerter.optimisation.optimise import Optimum, optimise
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
 
@@ -48,13 +50,40 @@ class RealNetwork:
 
 def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float = 0.0) -> Vehicle:
     """The design of a network with real inerters in it; inerters elsewhere in the vehicle stay as they are."""
+    return _with_real_inerters(found.design, found, real, friction)
+
+
+def _with_real_inerters(vehicle: Vehicle, found: FoundNetwork, real: RealInerter, friction: float) -> Vehicle:
     names = set(found.parameters)
 
     def change(element: Element) -> Network:
         own = isinstance(element, Inerter) and element.label in names
         return real.network(element, friction) if own else element  # type: ignore[arg-type]
 
-    return with_networks(found.design, lambda network: map_elements(network, change))
+    return with_networks(vehicle, lambda network: map_elements(network, change))
+
+
+def optimise_with_real_inerters(
+    found: FoundNetwork,
+    method: Method,
+    *,
+    friction: float = 10.0,
+    real: RealInerter | None = None,
+    starts: int = 8,
+    executor: Executor | None = None,
+) -> Optimum:
+    """The best values of a network of a search with a real inerter, of friction [N], in place of each inerter.
+
+    The index, the constraints and the seed are those of the search. A method that models friction, such as
+    `StatisticalLinearisation`, finds the values; their bounds are those of the search.
+
+    Raises what `optimise` raises, such as `DesignError` for a negative friction.
+    """
+    plan = found.plan
+    design = _with_real_inerters(plan.design(found.topology), found, real or RealInerter(), friction)
+    return optimise(
+        design, plan.index, method, subject_to=plan.limits, seed=plan.seed, starts=starts, executor=executor
+    )
 
 
 def with_friction_and_elasticity(

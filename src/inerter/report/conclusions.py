@@ -13,10 +13,11 @@ from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
 from inerter.formatting import format_quantity
-from inerter.report.index_summary import headlines
+from inerter.report.index_summary import sweep_headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.problem_statement import limit_words, of_each
 from inerter.report.speeds import speed_sentences
+from inerter.report.verdicts import verdict_sentences
 
 _SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
@@ -26,7 +27,7 @@ def conclusion_sentences(
     study: Study,
     found: Sequence[Answer] = (),
 ) -> list[str]:
-    """Warnings, a sentence for each index, the conclusions of the tasks, and the limits, in this order."""
+    """Warnings, the verdict with its caveats for each index, the conclusions of the tasks, and the limits."""
     static = frozenset() if study.sweeps else at_static_limit(study, results)
     at_speeds = speed_sentences(results)
     return [
@@ -34,7 +35,7 @@ def conclusion_sentences(
         *result_warnings(one_method(results), study),
         *input_warnings(study),
         *(() if study.line is None else study.line.warnings),
-        *headlines(results, static),
+        *(sweep_headlines(results) if study.sweeps else verdict_sentences(results, study, static)),
         *at_speeds.others,
         *(
             sentence

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -15,9 +14,7 @@ from inerter.figures.labels import (
     by_method,
     by_which,
     compared_layouts,
-    design_quantity,
     format_list,
-    improvement_text,
     index_title,
     index_unit,
     indices,
@@ -46,17 +43,12 @@ _STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 
-def headlines(results: xr.Dataset, static: Collection[tuple[str, str]] = ()) -> list[str]:
-    """Sentences, one per index: best layout, its value, and its improvement over the baseline.
-
-    `static` are indices and layouts whose largest gain is that under a steady force.
-    """
-    if swept_places(results):
-        return [f"{doubt_of(results, index)}{_sweep_headline(results, index)}" for index in indices(results)]
-    return [f"{doubt_of(results, index)}{_design_headline(results, index, static)}" for index in indices(results)]
+def sweep_headlines(results: xr.Dataset) -> list[str]:
+    """Sentences on a sweep, one per index: best layout, its value, and its improvement over the baseline."""
+    return [f"{_doubt(results, index)}{_sweep_headline(results, index)}" for index in indices(results)]
 
 
-def doubt_of(results: xr.Dataset, index: str) -> str:
+def _doubt(results: xr.Dataset, index: str) -> str:
     """Sentence on uncertain values that the answer compares, with cause and deciding method; empty if all are certain.
 
     A value that is not there is compared with nothing.
@@ -89,13 +81,13 @@ def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     least = equally_least(values)
     if not least:
         return []
-    margins = _margins(row, least[0])
+    margins = margins_of(row, least[0])
     names = results["layout"].values.tolist()
     best = [i for i, value in enumerate(values) if i in least or value - values[least[0]] <= margins[i]]
     return _simplest_first(results, [names[i] for i in best])
 
 
-def _margins(row: xr.Dataset, best: int) -> list[float]:
+def margins_of(row: xr.Dataset, best: int) -> list[float]:
     """Margin of each value over the `best` within the 95 % confidence interval; zero without uncertainties.
 
     Where there is a baseline, errors are those of differences from it on the same roads.
@@ -230,62 +222,10 @@ def _format_places(results: xr.Dataset, found: list[tuple[float, float]]) -> str
     return format_list([*texts, *([f"{more} other values"] if more > 0 else [])])
 
 
-def _design_headline(results: xr.Dataset, index: str, static: Collection[tuple[str, str]]) -> str:
-    title = f"Best {_index_label(results, index)}"
-    names = best_layouts(results, index)
-    if not names:
-        return f"{title}: {_no_best_clause(results, index)}."
-    method_labels = {method: method_label(results, method) for method in methods(results)} or {"": ""}
-    parts: list[str] = []
-    for method, words in method_labels.items():
-        one = by_method(results, method) if method else results
-        if not parts:
-            pause = "," if words and "," in title else ""
-            parts.append(
-                f"{' '.join(filter(None, (f'{title}{pause}', words)))}: {_best_layouts_clause(one, index, static)}"
-            )
-        elif best_layouts(one, index)[:1] == names[:1]:
-            parts.append(f"{words} still {_layout_with_improvement(one, index, names[0])}")
-        else:
-            parts.append(f"{words} {_best_layouts_clause(one, index, static)}")
-    return f"{'; '.join(parts)}."
-
-
 def _index_label(results: xr.Dataset, index: str) -> str:
     """Title of an index, with its name if it is user-defined."""
     title = index_title(results, index)
     return title if index in INDICES else title_with_name(title, index)
-
-
-def _best_layouts_clause(results: xr.Dataset, index: str, static: Collection[tuple[str, str]]) -> str:
-    """Clause on the best layouts by one method: their value, and its comparison with the baseline."""
-    names, baseline = best_layouts(results, index), results.attrs["baseline"]
-    if not names:
-        return _no_best_clause(results, index)
-    design = results.sel(layout=names[0], index=index)
-    value = design_quantity(design, index_unit(results, index))
-    limit = f", {_STATIC}" if (index, names[0]) in static else ""
-    answer = f"{_format_equal_layouts(names)}, {value}{limit}"
-    if names[0] == baseline:
-        return f"{answer}; no other layout is better than this baseline"
-    improvement = float(design["improvement"])
-    if not np.isfinite(improvement):
-        return f"{answer}; {_missing_value_clause(results, index, baseline)}" if baseline else answer
-    if improvement < NOTICEABLE:
-        return f"{answer}, no better than {baseline}"
-    return f"{answer}, {_format_improvement(design)} better than {baseline}"
-
-
-def _layout_with_improvement(results: xr.Dataset, index: str, name: str) -> str:
-    """Layout by another method, with its improvement over the baseline."""
-    design = results.sel(layout=name, index=index)
-    if name == results.attrs["baseline"] or not np.isfinite(float(design["improvement"])):
-        return name
-    return f"{name}, {_format_improvement(design)} better"
-
-
-def _format_improvement(design: xr.Dataset) -> str:
-    return improvement_text(design).removeprefix("+")
 
 
 def _sweep_headline(every: xr.Dataset, index: str) -> str:

@@ -10,23 +10,27 @@ from typing import Any
 import inerter
 from inerter.atomic_io import write_text
 from inerter.figures.labels import capital, format_list
-from inerter.figures.search import FRONTIER, best_networks_figure
+from inerter.figures.search import FRONTIER, best_networks_figure, front_figure
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
     agreement_remark,
     at_bound_notes,
     fixed_table,
+    front_networks_table,
+    front_points_table,
+    front_sizes_table,
     frontier_table,
     improvement,
     inerters_table,
     networks_table,
     ranking_table,
+    real_networks_table,
 )
-from inerter.files.study.searching import StudySearch
+from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
 from inerter.formatting import format_percent, format_quantity
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import words_of
+from inerter.methods.registry import brief_words_of, words_of
 from inerter.report.json_data import json_data
 from inerter.report.page import PageFigure, environment, inline, with_contents
 from inerter.report.problem_statement import condition_rows, element_rows, further_rows, layout_rows, vehicle_rows
@@ -44,8 +48,17 @@ def search_sections(found: StudySearch) -> Iterator[Section]:
         if one.result.ranking:
             tables = [make(found.study, one) for make in (frontier_table, inerters_table, ranking_table)]
             brief = [tables[0], tables[-1]]
+            if one.real:
+                tables.append(real_networks_table(found.study, one))
+                brief.append(tables[-1])
             remarks = [agreement_remark(one), *(f"{note}." for note in at_bound_notes(one))]
             yield Section(capital(one.heading), tables, remarks=[remark for remark in remarks if remark], brief=brief)
+    for front in found.fronts:
+        if front.result.front:
+            tables = [
+                make(found.study, front) for make in (front_networks_table, front_sizes_table, front_points_table)
+            ]
+            yield Section(capital(front.heading), tables, remarks=[_front_remark(front)], brief=tables[:2])
     if (fixed := fixed_table(found)) is not None:
         yield Section("Layouts without a free network", [fixed])
 
@@ -67,6 +80,47 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."
         )
+        yield from _real_sentences(found, one)
+    for front in found.fronts:
+        networks, points = front.result.networks, len(front.result.front)
+        if not points:
+            yield f"{capital(front.heading)}: no network has values of all indices."
+        elif points == 1:
+            yield f"{capital(front.heading)}: {networks[0]} is the best in all of them; there is no trade-off."
+        else:
+            verb = "is" if len(networks) == 1 else "are"
+            yield (
+                f"{capital(front.heading)}: {len(networks)} of {front.result.n_networks} networks {verb} on the Pareto "
+                f"front: {format_list(networks)}."
+            )
+
+
+def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
+    """The best network with real inerters by each method, and those without a reliable value."""
+    asked = found.study.real_inerters
+    for method in asked.methods if asked is not None else ():
+        own = [each for each in one.real if each.method == method and each.network]
+        known = [each for each in own if isfinite(each.value)]
+        if not known:
+            continue
+        best = min(known, key=lambda each: each.value)
+        gain = improvement(best.value, one.real_baseline(method))
+        against = f", {format_percent(gain)} on {found.study.baseline}" if isfinite(gain) else ""
+        doubt = "" if best.ok else f" ({best.status_text.rstrip('.')})"
+        yield (
+            f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network} is the best of "
+            f"{len(own)} network{'' if len(own) == 1 else 's'}, {format_quantity(best.value, one.result.unit)}{against}"
+            f"{doubt}."
+        )
+
+
+def _front_remark(front: LayoutFront) -> str:
+    """Sentence on the networks that were and were not searched between their single optima."""
+    result = front.result
+    return (
+        f"{result.n_searched} networks were searched between their single optima; {result.n_bounded} were not, since "
+        f"even their best values in each index, taken together, are no better than the front."
+    )
 
 
 def _elements(count: int) -> str:
@@ -108,6 +162,7 @@ def search_data(found: StudySearch) -> dict[str, Any]:
                 for one in found.searches
             ],
             "networks": records(networks_table(found)),
+            **{Path(name).stem: records(table) for name, table in tables_of(found).items() if name != TABLE},
         }
     )
     return data
@@ -155,11 +210,19 @@ def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
         captions[best_networks_figure(one)] = (
             f"{capital(one.heading)}: the best network for each number of elements, with its values."
         )
+    for front in found.fronts:
+        what = "Pareto fronts of all networks of up to each number of elements; the networks of the outermost are named"
+        if len(front.result.symbols) > 2:
+            what = "the Pareto front over all networks, two indices at a time"
+        captions[front_figure(front)] = (
+            f"{capital(front.heading)}: {what}. A cross marks a layout without a free network. Designs far from the "
+            "front over all networks are not in the picture."
+        )
     for name, caption in captions.items():
         file = folder / f"{name}.svg"
         if file.exists():
             svg = file.read_text(encoding="utf-8")
-            yield PageFigure(inline(svg, name, caption, natural=name != FRONTIER), caption)
+            yield PageFigure(inline(svg, name, caption, natural=name.startswith("networks-")), caption)
 
 
 def _computation(found: StudySearch) -> Iterator[str]:
@@ -172,6 +235,19 @@ def _computation(found: StudySearch) -> Iterator[str]:
         "The values of each network were optimised by local searches from many starting points (sampled with seed "
         f"{study.seed}), within bounds. Agreement is the number of searches that converged to the best value."
     )
+    if found.fronts:
+        yield (
+            "Points of the Pareto fronts minimise the largest excess over aims that all networks share, normalised by "
+            "the single optima."
+        )
+    if study.real_inerters is not None:
+        real = study.real_inerters
+        yield (
+            f"Real inerters have friction of {format_quantity(real.friction, 'N')} and a shaft of "
+            f"{format_quantity(real.stiffness, 'N/m')} with {format_quantity(real.damping, 'N s/m')}; the values were "
+            f"optimised once more by {format_list([brief_words_of(name) for name in real.methods])}. Gain and retained "
+            "gain compare with the baseline by the same method."
+        )
     if study.road is not None:
         yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {inerter.__version__}."

@@ -16,6 +16,7 @@ from inerter.files.study.tasks import by_task
 from inerter.formatting import shown_decimals
 from inerter.report.json_data import json_data
 from inerter.report.speeds import at_speeds
+from inerter.report.verdicts import study_decision
 
 _DIGITS = 5  # of a value, at most, without a standard error
 _JSON = {"improvement_error": "improvement_error_percent"}
@@ -28,7 +29,8 @@ def as_text(result: StudyResult) -> Iterator[str]:
         {"name": place, "words": result.data[place].attrs["long_name"], "unit": result.data[place].attrs["units"]}
         for place in swept_places(result.data)
     ]
-    whole = json.dumps({**result.data.attrs, "swept": swept, "designs": [None], **further}, indent=2)
+    verdicts = {} if swept else {"verdicts": list(_verdicts(result))}
+    whole = json.dumps({**result.data.attrs, "swept": swept, **verdicts, "designs": [None], **further}, indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"
     yield before
@@ -36,6 +38,14 @@ def as_text(result: StudyResult) -> Iterator[str]:
         yield separator + indent(json.dumps(design, indent=2), "    ")
         separator = ",\n"
     yield f"{after}\n"
+
+
+def _verdicts(result: StudyResult) -> Iterator[dict[str, Any]]:
+    """Verdict on each index with its caveats, for JSON."""
+    for index in result.data["index"].values.tolist():
+        verdict = study_decision(result.data, index, result.study).verdict
+        caveats = [{"sentence": one.sentence, "severity": one.severity.value} for one in verdict.caveats]
+        yield {"index": index, "sentence": verdict.sentence, "severity": verdict.answer.value, "caveats": caveats}
 
 
 def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:

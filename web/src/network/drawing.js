@@ -21,18 +21,19 @@ const LONGEST_LABEL = 12;
 /** A name as short as a drawing shows it. @param {string} name */
 export const shortLabel = (name) => (name.length > LONGEST_LABEL ? `${name.slice(0, LONGEST_LABEL - 1)}…` : name);
 
-/** The drawing of a tree with its upper end at (0, 0). @param {Tree} tree @param {Path} path @returns {Drawing} */
-export function drawing(tree, path = []) {
-  if (tree.kind === "element") return symbol(tree.name, path);
-  const parts = tree.parts.map((part, i) => drawing(part, [...path, i]));
+/** The drawing of a tree with its upper end at (0, 0), with so much room beside each symbol at the least.
+ * @param {Tree} tree @param {Path} path @param {number} least @returns {Drawing} */
+export function drawing(tree, path = [], least = 0) {
+  if (tree.kind === "element") return symbol(tree.name, path, least);
+  const parts = tree.parts.map((part, i) => drawing(part, [...path, i], least));
   const whole = { parallel: sideBySide, series: inAColumn, bridge: inABridge }[tree.kind](parts);
   const box = { path, left: -whole.left, right: whole.right, top: 0, bottom: whole.height };
   return { ...whole, boxes: [box, ...whole.boxes] };
 }
 
-/** @param {string} name @param {Path} path @returns {Drawing} */
-function symbol(name, path) {
-  const right = HALF_WIDTH + TO_LABEL + LETTER * shortLabel(name).length;
+/** @param {string} name @param {Path} path @param {number} least @returns {Drawing} */
+function symbol(name, path, least) {
+  const right = HALF_WIDTH + TO_LABEL + Math.max(least, LETTER * shortLabel(name).length);
   const box = { path, left: -HALF_WIDTH, right, top: 0, bottom: 2 * HALF_HEIGHT };
   const placed = [{ name, path, x: 0, y: HALF_HEIGHT }];
   return { left: HALF_WIDTH, right, height: 2 * HALF_HEIGHT, placed, boxes: [box], lines: [] };

@@ -85,12 +85,12 @@ function Row({ store, row, missing }) {
   const select = () => on || store.change({ type: "selected", layout });
   const text = textOf({ ...document, layout, strut: Object.keys(Object(document.study.layouts?.[layout]))[0] });
   const goal = goalOf(state);
-  return html`<tr class=${on ? "on" : ""} onClick=${select}>
+  return html`<tr class=${`${on ? "on" : ""} ${unchosen.length > 0 ? "quiet" : ""}`} onClick=${select}>
     <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
       <${Sketch} state=${state} tree=${treeOf(state, text)} />
       <span style=${{ color: layoutColour(document, layout) }}>${layout}
         ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
-    <td class="number" title=${row.message} data-index=${on && row.value !== undefined ? goal : undefined}
+    <td class="number" title=${row.message} data-index=${on ? goal : undefined}
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
       <${Against} row=${row} unchosen=${unchosen.length > 0} /></td>
@@ -103,16 +103,18 @@ function Row({ store, row, missing }) {
   </tr>`;
 }
 
+const LEAST = 0.05; // [%] a standard error that changes what is written
+
 /** By how much the goal is better than of the baseline; first what makes that doubtful.
  * @param {{row: any, unchosen: boolean}} props */
 function Against({ row: { is_baseline: isBaseline, improvement_percent: value, improvement_error_percent: error,
   improvement_status: status, tie }, unchosen }) {
   if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
   if (isBaseline || typeof value !== "number") return null;
-  const [number, scatter] = error ? estimated(value, error) : [signed(value), ""];
+  const told = error >= LEAST ? estimated(value, error, 1) : null;
   return html`${isOk(status) ? "" : html`<div class="doubt">${status}</div>`}
-    ${error && value > 0 ? "+" : ""}${number}${error ? " %" : ""}
-    ${error && html`<div class="scatter">± ${scatter} %</div>`}${tie && html`<div class="scatter">as good</div>`}`;
+    ${told === null ? signed(value) : html`${value > 0 ? "+" : ""}${told[0]} %
+      <div class="scatter">± ${told[1]} %</div>`}${tie && html`<div class="scatter">as good</div>`}`;
 }
 
 /** A change in per cent, with its sign. @param {number | null | undefined} value @param {number} [places] */

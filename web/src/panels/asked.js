@@ -27,7 +27,7 @@ export function AskedPanel({ store }) {
   /** @param {Limit} limit @param {string | undefined} value */
   const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE,
     value: limited(study.study?.subject_to, [...path, sense], value) });
-  return html`<div class="asked"><h3>Indices and limits</h3>
+  return html`<div class="asked"><b class="legend">Indices and constraints</b>
     <div class="row" role="group" aria-label="Indices of the study">
       ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
         on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
@@ -46,7 +46,7 @@ export function AskedPanel({ store }) {
       place({ path: of.split("."), sense, value }, value);
       /** @type {HTMLFormElement} */ (currentTarget).reset();
     })}>
-      <${Select} label="Limit" name="of" choices=${limitable(state)} />
+      <${Select} label="Constraint on" name="of" choices=${limitable(state)} />
       <${Select} name="sense" aria-label="Which side"
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"

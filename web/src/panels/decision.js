@@ -58,7 +58,7 @@ function vehicleOf({ history }) {
 function strutOf(state) {
   const document = state.history.present;
   if (document.layout === "") return "None";
-  if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, values not chosen`;
+  if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, not chosen`;
   const { is, value } = answerOf(state, "decision");
   /** @type {any[]} */
   const rows = value?.rows ?? [];
@@ -116,30 +116,28 @@ function Caveats({ caveats }) {
     return () => sized.disconnect();
   }, [JSON.stringify(caveats)]);
   if (caveats.length === 0) return null;
-  const left = caveats.length - fit;
+  const left = fit === 0 ? 0 : caveats.length - fit;
   return html`<div class="caveats" ref=${line}>
     ${caveats.map(({ sentence, severity }, i) => html`<span class="caveat" key=${sentence} title=${sentence}
       data-severity=${severity} hidden=${i >= fit && i > 0}>${sentence}</span>`)}
-    <details class="menu more"><summary id="caveats-all">${left > 0 ? `${left} more` : "All"}</summary>
+    ${fit < caveats.length && html`<details class="menu more">
+      <summary id="caveats-all">${left > 0 ? `${left} more` : "All"}</summary>
       <ul class="menu-body">${caveats.map(({ sentence, severity }) => html`<li key=${sentence}
-        data-severity=${severity}>${sentence}</li>`)}</ul></details></div>`;
+        data-severity=${severity}>${sentence}</li>`)}</ul></details>`}</div>`;
 }
 
+const GAP = 6; // [px]
 const OTHERS = 64; // [px] of the button that counts those for which there is no room
 
-/** How many caveats fit into the line, at least one. @param {HTMLElement} line */
+/** How many caveats fit into the line as a whole. @param {HTMLElement} line */
 function fitting(line) {
-  const room = line.clientWidth - OTHERS;
-  let used = 0;
-  let fit = 0;
-  for (const each of line.querySelectorAll(":scope > .caveat")) {
-    const chip = /** @type {HTMLElement} */ (each);
-    const hidden = chip.hidden;
-    chip.hidden = false;
-    used += chip.scrollWidth + 6;
-    chip.hidden = hidden;
-    if (used > room && fit > 0) break;
-    fit += 1;
-  }
-  return Math.max(1, fit);
+  const chips = /** @type {HTMLElement[]} */ ([...line.querySelectorAll(":scope > .caveat")]);
+  const hidden = chips.map((chip) => chip.hidden);
+  for (const chip of chips) chip.hidden = false;
+  const widths = chips.map((chip) => chip.scrollWidth + GAP);
+  chips.forEach((chip, i) => { chip.hidden = hidden[i]; });
+  const whole = widths.reduce((sum, width) => sum + width, 0) <= line.clientWidth;
+  let room = line.clientWidth - OTHERS;
+  const first = widths.findIndex((width) => (room -= width) < 0);
+  return whole || first < 0 ? chips.length : first;
 }

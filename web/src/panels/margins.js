@@ -1,39 +1,68 @@
-// What the design bears: break-even values against the baseline, other speeds, scatter; asked by a button.
+// What the design bears: break-even values against the baseline, other speeds, scatter; asked by a button, and a job,
+// since it simulates.
 
 import { seek } from "../asking.js";
 import { elementsIn, kindOf } from "../library.js";
-import { baselineOf, soughtAnswer } from "../questions.js";
+import { baselineOf, soughtAnswer, soughtOf } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { doubted, isOk } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
 import { printed, shown } from "../state/scale.js";
+import { begin, ended } from "../working.js";
 import { indicesOf, signed } from "./answers.js";
+import { JobHead, RUNNING } from "./work.js";
 
-/** @import { Store, State } from "../state/store.js" */
+/** @import { Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 
-/** The first of what was computed, for the line of the decision. @param {any} value */
+/** A value of what was computed, simulated if there is one, for the line of the decision. @param {any} value */
 export function marginTold(value) {
-  const first = value?.break_even?.find((/** @type {any} */ each) => typeof each.value === "number");
-  return first ? `${first.parameter} up to ${shown(first.value, 3)} ${printed(first.unit)}`
-    : value ? "No break-even value" : "Not computed";
+  const found = (value?.break_even ?? []).filter((/** @type {any} */ each) => typeof each.value === "number");
+  const first = found.find((/** @type {any} */ each) => each.standard_error > 0) ?? found[0];
+  if (!first) return value ? "No break-even value" : "Not computed";
+  return `${first.sentence.split(":")[0]}: ${shown(first.value, 3)} ${printed(first.unit)}`;
+}
+
+const NAME = "margins";
+
+/** Begins the job; its result is the answer to what is asked now. @param {Store} store @param {Api} api */
+async function compute(store, api) {
+  store.dispatch({ type: "sought", panel: NAME, parameters: {} });
+  const question = soughtOf(store.get(), NAME);
+  if (question === null) return;
+  const { key, body } = question;
+  store.dispatch({ type: "asked", panel: NAME, question: key });
+  try {
+    const title = `Break-even values of ${body.design.layout}: ${body.study.title ?? "study"}`;
+    const job = await ended(store, await begin(store, api, { kind: NAME, title, ...body }));
+    store.dispatch(job?.result ? { type: "answered", panel: NAME, question: key, value: job.result }
+      : { type: "refused", panel: NAME, question: key, sentence: job?.sentence || "Stopped." });
+  } catch (error) {
+    store.dispatch({ type: "refused", panel: NAME, question: key, sentence: /** @type {Error} */ (error).message });
+  }
 }
 
 /** @param {{store: Store, api: Api}} props */
 export function MarginsPanel({ store, api }) {
   const state = store.get();
   const { layout } = state.history.present;
-  const { is, value, sentence } = soughtAnswer(state, "margins");
+  const { is, value, sentence } = soughtAnswer(state, NAME);
+  const job = Object.values(state.work).find(({ kind, state: how }) => kind === NAME && RUNNING.includes(how));
   if (layout === baselineOf(state.history.present).layout) return html`<p class="quiet">${layout} is the baseline:
     select another layout.</p>`;
   return html`<form class="row" aria-busy=${is === "coming"}
-      onSubmit=${formHandler(() => void seek(store, api, "margins", {}))}>
-      <button class="edged">What does it bear?</button>
-      <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : sentence}</p></form>
+      onSubmit=${formHandler(() => void compute(store, api))}>
+      <button class="edged" disabled=${is === "coming"}>What does it bear?</button>
+      <p role="status">${is !== "coming" && sentence}</p></form>
+    ${is === "coming" && job && html`<${JobHead} store=${store} api=${api} job=${job} /><p class="quiet">
+      ${job.sentence}</p>`}
     ${value && html`<${Margins} value=${value} />`}
     <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />`;
 }
+
+/** The result of a job. @param {{job: Job}} props */
+export const MarginsResult = ({ job }) => html`<${Margins} value=${job.result} />`;
 
 /** @param {{value: any}} props */
 function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats = [] } }) {
@@ -41,9 +70,10 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
       ${caveats.map((/** @type {any} */ { sentence }) => html`<p key=${sentence}>${sentence}</p>`)}</div>`}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) ? "" : "problem"}>${sentence || message}</p>`)}
-    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed", "against the baseline"]}>
-      ${speeds.map((/** @type {any} */ { factor, improvement_percent: better, status }) => html`<tr key=${factor}>
-        <th scope="row">${signed(100 * (factor - 1), 0)}</th>
+    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed [m/s]", "against the baseline"]}>
+      ${speeds.map((/** @type {any} */ { factor, speed, improvement_percent: better, status }) => html`<tr
+        key=${factor}>
+        <th scope="row">${shown(speed)} (${signed(100 * (factor - 1), 0)})</th>
         <td class="number">${isOk(status) ? "" : `${status}: `}${signed(better)}</td></tr>`)}<//>`}
     ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}`;
 }

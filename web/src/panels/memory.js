@@ -5,7 +5,7 @@ import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
 import { DropDown, Select, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { download, linkTo, open } from "../remembering.js";
-import { begin, openStudy } from "../working.js";
+import { begin, ended, openStudy } from "../working.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -35,10 +35,8 @@ export function Menu({ store, api }) {
   const figures = (title, kind, designs, more) => ["svg", "png"].map((format) => html`<button type="button"
     onClick=${save(`${name}-${kind}.${format}`, () => api.blob("figure", { kind, format, study, designs, ...more }))}>
     ${title} (${format.toUpperCase()})</button>`);
-  const report = attempt(async () => {
-    await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
-    store.look({ tab: "work" });
-  });
+  const whole = attempt(() => runStudy(store, api));
+  const page = attempt(() => saveReport(store, api, `${name}-report.html`));
   return html`<div class="row" role="group" aria-label="Memory">
     <button type="button" title="Undo (Ctrl+Z)" disabled=${history.past.length === 0}
       onClick=${() => store.dispatch({ type: "undone" })}>Undo</button>
@@ -58,10 +56,31 @@ export function Menu({ store, api }) {
       ${index && html`<${Select} label="Response of" value=${index} choices=${indices} set=${setIndex} />
         ${figures("Response", `response-${index}`, shownDesigns(history.present))}`}
       ${figures("On the road", "history", [design], { duration: state.view.seconds, seed: state.view.seed })}
-      <button type="button" onClick=${report}>Report: run the study</button>
+      <button type="button" onClick=${page}>Report of these designs (HTML)</button>
+      <button type="button" onClick=${whole}>Report: run the study</button>
     <//>
     <${Share} store=${store} />`}
   </div>`;
+}
+
+/** Begins the run of the whole study, a job. @param {Store} store @param {Api} api */
+async function runStudy(store, api) {
+  const { study } = store.get().history.present;
+  await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
+  store.look({ tab: "work" });
+}
+
+/** Saves the report of the design that is edited and of the baseline, once its job has ended.
+ * @param {Store} store @param {Api} api @param {string} called */
+async function saveReport(store, api, called) {
+  const document = store.get().history.present;
+  const { study, layout } = document;
+  store.say("The report is being made: see Jobs.", "report");
+  const job = await ended(store, await begin(store, api, { kind: "report", study, designs: shownDesigns(document),
+    title: `Report of ${layout}: ${study.title ?? "study"}` }));
+  store.dispatch({ type: "closed", about: "report" });
+  if (!job?.result) throw new Error(job?.sentence || "The report was stopped.");
+  download(await api.blob(`work/${job.id}/files/${job.result.file}`), called);
 }
 
 /** @param {string | undefined} title */

@@ -1,11 +1,13 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
-import { numbersOf } from "../library.js";
+import { numbersOf, treeOf } from "../library.js";
+import { partAt } from "../network/algebra.js";
 import { layoutColour } from "../parts/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
+import { textOf } from "../state/document.js";
 import { layout, rangeOf } from "../vehicles/layout.js";
 import { paint, stylesOf } from "../vehicles/paint.js";
 import { REST, momentOf, passing, pastOf, posed, trail } from "../vehicles/posed.js";
@@ -31,7 +33,12 @@ export function MotionPanel({ store }) {
   const state = store.get();
   const mechanism = answerOf(state, "mechanism");
   const history = answerOf(state, "history");
-  const shown = useMemo(() => shownOf(state, mechanism.value, history.value), [mechanism.value, history.value]);
+  const found = useMemo(() => shownOf(state, mechanism.value, history.value), [mechanism.value, history.value]);
+  const last = useRef(found);
+  // of the same study the picture stands until the next mechanism comes
+  const isKept = found === null && mechanism.is === "coming" && (state.answers.mechanism?.recent ?? false);
+  const shown = isKept ? last.current : found;
+  last.current = shown;
   const { playing, speed } = state.view;
   const reduced = useReduced(store);
   const why = whyStill(mechanism, history);
@@ -45,7 +52,7 @@ export function MotionPanel({ store }) {
       <button type="button" aria-pressed=${!playing} onClick=${() => store.look({ playing: !playing })}>
         ${playing ? "Hold" : "Run"} <kbd>space</kbd></button>
     </div>
-    <div class=${`picture ${history.before ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
+    <div class=${`picture ${history.before || isKept ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
     ${why && html`<p class=${`why ${why.doubt ? "doubt" : ""}`}>${why.words}</p>`}
@@ -114,6 +121,13 @@ function Picture({ store, shown, reduced }) {
       /** @type {PointerEvent} */ event) => scrub(event, end)}></canvas>`;
 }
 
+/** The element that is selected in the drawing of the strut. @param {State} state */
+function chosenIn(state) {
+  const tree = treeOf(state, textOf(state.history.present));
+  const part = tree && partAt(tree, state.view.path);
+  return part?.kind === "element" ? part.name : null;
+}
+
 /** @param {Shown} shown */
 const endOf = ({ motion }) => (motion ? motion.time[motion.time.length - 1] : 0);
 
@@ -151,7 +165,9 @@ function filmOn(canvas, store) {
   let range = /** @type {any} */ (null);
   let [frame, frames, last, due] = [0, 0, performance.now(), true];
   let styles = stylesOf(canvas);
-  let seen = true;
+  let [seen, ran] = [true, false];
+  let chosen = /** @type {string | null} */ (null);
+  let seenState = /** @type {State | null} */ (null);
 
   function fit() {
     const { clientWidth: width, clientHeight: height } = canvas;
@@ -168,14 +184,22 @@ function filmOn(canvas, store) {
   function tick(now) {
     frame = requestAnimationFrame(tick);
     const { view: { playing, speed } } = store.get();
+    const state = store.get();
+    if (state !== seenState) {
+      const next = chosenIn(state);
+      due ||= next !== chosen;
+      [chosen, seenState] = [next, state];
+    }
+    due ||= playing !== ran;
+    ran = playing;
     const end = shown ? endOf(shown) : 0;
     if (playing && !dragging && end > 0 && seen) clock.set(within(clock.get() + (Math.min(now - last, LONGEST) / 1000)
       * speed, end));
     last = now;
     if (frames % OFTEN === 0) {
       const next = stylesOf(canvas, shown?.own);
-      due ||= JSON.stringify(next) !== JSON.stringify(styles);
-      styles = next;
+      const others = ["wire", "own"].some((kind) => next[kind].stroke !== styles[kind].stroke);
+      if (others) [styles, due] = [next, true];
     }
     frames += 1;
     if (!due || !shown || !made || !seen) return;
@@ -183,7 +207,7 @@ function filmOn(canvas, store) {
     const ratio = canvas.width / made.width;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, made.width, made.height);
-    paint(pen, shapesOf(shown, made, Math.min(clock.get(), end)), styles);
+    paint(pen, shapesOf(shown, made, Math.min(clock.get(), end), chosen), styles);
     canvas.dataset.frames = String(frames);
     if (!playing || dragging) canvas.setAttribute("aria-valuenow", clock.get().toFixed(3));
   }
@@ -215,10 +239,10 @@ function filmOn(canvas, store) {
 }
 
 /** Everything in the picture at one time. @param {Shown} shown @param {Layout} made @param {number} at [s]
- * @returns {Shape[]} */
-function shapesOf({ motion, other, shaded, speed, names, scene: { column } }, made, at) {
-  if (!motion) return [...posed(made, REST), ...captions(made, null, null)];
-  const moment = momentOf(made, motion, at, { speed, shaded });
+ * @param {string | null} chosen @returns {Shape[]} */
+function shapesOf({ motion, other, shaded, speed, names, scene: { column } }, made, at, chosen) {
+  if (!motion) return posed(made, { ...REST, chosen });
+  const moment = { ...momentOf(made, motion, at, { speed, shaded }), chosen };
   const beside = other ? momentOf(made, other, at, { speed }) : null;
   const trails = column ? [...(other ? trail(made, pastOf(made, other, at, speed), "other trail") : []),
     ...trail(made, pastOf(made, motion, at, speed), "own")] : [];

@@ -4,6 +4,7 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } fro
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
+import { brief, printed } from "../state/scale.js";
 import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
@@ -18,7 +19,8 @@ import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 const MARGIN = 14;
 const TERMINAL = 1.6;
 const [SMALLEST, LARGEST] = [0.7, 1.7]; // [px] a point of the drawing
-const MANY = 8; // elements from where a drawing may be laid across the page
+const MANY = 8; // elements from where a drawing may be laid across the page, and has no values in it
+const VALUE = 40; // room of a value in the drawing
 const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */
@@ -253,7 +255,8 @@ async function renameElement(store, api, old, name) {
 function Schematic({ editing, tree, path, stale }) {
   const { store } = editing;
   const state = store.get();
-  const plan = useMemo(() => drawing(tree), [tree]);
+  const valued = leaves(tree).length <= MANY;
+  const plan = useMemo(() => drawing(tree, [], valued ? VALUE : 0), [tree, valued]);
   const figure = useRef(/** @type {SVGSVGElement | null} */ (null));
   const [over, setOver] = useState(/** @type {{path: Path, kind: Joint, before: boolean} | null} */ (null));
   const drag = (/** @type {PointerEvent} */ event, /** @type {Path} */ from) => beginDrag(store, event, from, setOver);
@@ -285,15 +288,16 @@ function Schematic({ editing, tree, path, stale }) {
       <circle class="terminal" cx="0" cy=${-TERMINAL} r=${TERMINAL} />
         <circle class="terminal" cx="0" cy=${plan.height + TERMINAL} r=${TERMINAL} />
       ${plan.placed.map((one) => html`<${Symbol} key=${one.path.join()} one=${one} state=${state}
-        chosen=${same(one.path, path)} entrance=${isEntrance(one.path, path)} store=${store} drag=${drag} />`)}
+        chosen=${same(one.path, path)} entrance=${isEntrance(one.path, path)} store=${store} drag=${drag}
+        valued=${valued} />`)}
       ${target && over && html`<path class="landing" d=${landing(target, over)} />`}
     </svg>
   </div>`;
 }
 
-/** @param {{one: Placed, state: State, chosen: boolean, entrance: boolean, store:
- * Store, drag: (event: PointerEvent, path: Path) => void}} props */
-function Symbol({ one, state, chosen, entrance, store, drag }) {
+/** @param {{one: Placed, state: State, chosen: boolean, entrance: boolean, store: Store, valued: boolean,
+ * drag: (event: PointerEvent, path: Path) => void}} props */
+function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
   const { elements = {} } = state.history.present.study;
@@ -307,11 +311,17 @@ function Symbol({ one, state, chosen, entrance, store, drag }) {
     onClick=${select} onFocus=${select}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
-    <rect class="touch" x="-11" y="-20" width=${24 + 5.2 * shortLabel(one.name).length} height="40" rx="3" />
+    <rect class="touch" x="-11" y="-20" height="40" rx="3"
+      width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
-    <text x="12" y="3">${shortLabel(one.name)}</text>
+    <text x="12" y="2">${subscripted(shortLabel(one.name))}</text>
+    ${valued && html`<text class="value" x="12" y="12">${printed(brief(value))}</text>`}
   </g>`;
 }
+
+/** A name of which what follows the first letter is a subscript. @param {string} name */
+const subscripted = (name) =>
+  html`${name[0]}<tspan dy="2" font-size="7.5">${name.slice(1).replace(/^_/, "")}</tspan>`;
 
 /** Whether the keyboard enters the drawing at this element: what is selected, or the first of it.
  * @param {Path} leafPath @param {Path} path */

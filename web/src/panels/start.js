@@ -65,7 +65,10 @@ export function Start({ store, api }) {
   const { about } = store.get();
   const ready = about !== null;
   useEffect(() => {
-    if (ready) void examplesOf(api, about, setExamples);
+    let shown = true;
+    if (ready) examplesOf(api, about, (found) => shown && setExamples(found), () => shown)
+      .catch(() => {}); // that the server is lost is told elsewhere
+    return () => { shown = false; };
   }, [ready]);
   /** @param {any} study */
   const begin = (study) => openStudy(store, api, study);
@@ -116,22 +119,26 @@ function walk(event) {
   /** @type {HTMLElement} */ (next).focus();
 }
 
-/** The examples of the library, each as soon as it is read. @param {Api} api @param {any} about
- * @param {(examples: Example[]) => void} told */
-async function examplesOf(api, about, told) {
+/** The examples of the library, and then their networks, for the pictures. @param {Api} api @param {any} about
+ * @param {(examples: Example[]) => void} told @param {() => boolean} wanted */
+async function examplesOf(api, about, told, wanted) {
   const { examples } = await api.get("examples");
+  const studies = await Promise.all(examples.map((/** @type {any} */ { name }) =>
+    api.get(`examples/${encodeURIComponent(name)}`)));
   /** @type {Example[]} */
-  const found = [];
-  for (const { name } of examples) {
-    const { study } = await api.get(`examples/${encodeURIComponent(name)}`);
-    const { networks, elements, layouts } = await api.post("study/parts", { study });
+  let found = studies.map(({ study }, i) => ({ name: examples[i].name, study, tree: null, kinds: {},
+    free: Object.values(study.elements ?? {}).some((/** @type {any} */ entry) => entry.network !== undefined) }));
+  told(found);
+  for (const { name, study } of found) {
+    if (!wanted()) return;
+    const { networks, elements } = await api.post("study/parts", { study });
     const [largest] = networks.filter((/** @type {any} */ { tree }) => tree)
       .toSorted((/** @type {any} */ a, /** @type {any} */ b) => b.names.length - a.names.length);
     const kinds = Object.fromEntries(Object.entries(elements).map(([element, { kind }]) =>
       [element, about.elements.find((/** @type {any} */ { key }) => key === kind)]));
-    const free = Object.values(layouts).some((/** @type {any} */ { free_networks: some }) => some.length > 0);
-    found.push({ name, study, tree: largest && canonical(largest.tree), kinds, free });
-    told([...found]);
+    const tree = largest && canonical(largest.tree);
+    found = found.map((each) => (each.name === name ? { ...each, tree, kinds } : each));
+    told(found);
   }
 }
 

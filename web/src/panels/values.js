@@ -2,14 +2,15 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { layoutsWith, numbersOf } from "../library.js";
+import { layoutsWith, numbersOf, treeOf } from "../library.js";
+import { partAt } from "../network/algebra.js";
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, goalOf, unitKey } from "../questions.js";
-import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, positionOf, quantity, takenApart, valueAt } from "../state/scale.js";
+import { entryAt, isRange, own, textOf } from "../state/document.js";
+import { STEPS, brief, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -34,6 +35,7 @@ export function ValuesPanel({ store, api }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const rows = numbersOf(state);
+  const chosen = selectedElement(state);
   const elements = rows.filter(({ path }) => path[0] === ELEMENTS);
   const used = elements.filter(({ path }) => layoutsWith(state, path[1])?.includes(layout));
   const other = elements.filter((row) => !used.includes(row));
@@ -41,7 +43,8 @@ export function ValuesPanel({ store, api }) {
   const sections = [...new Set(rows.map(({ path }) => path[0]))].filter((section) => section !== ELEMENTS);
   /** @param {NumberRow[]} several */
   const amounts = (several) => several.map((row) => html`<${AmountRow} key=${idOf(row)} store=${store}
-    amount=${amountOf(state, row)} wide=${several.some((each) => labelOf(each).length > SHORT)} />`);
+    amount=${amountOf(state, row)} chosen=${chosen !== null && row.name === chosen}
+    wide=${several.some((each) => labelOf(each).length > SHORT)} />`);
   return html`<section class="panel values" aria-labelledby="values-title" data-keys="Values">
     <${FindBest} store=${store} api=${api} />
     <div class="inside">
@@ -60,6 +63,13 @@ export function ValuesPanel({ store, api }) {
         })}</section>`;
     })}</div>
   </section>`;
+}
+
+/** The element that is selected in the drawing. @param {State} state */
+function selectedElement(state) {
+  const tree = treeOf(state, textOf(state.history.present));
+  const part = tree && partAt(tree, state.view.path);
+  return part?.kind === "element" ? part.name : null;
 }
 
 /** The best values of what may vary. @param {{store: Store, api: Api}} props */
@@ -178,8 +188,8 @@ function decade(text) {
   return { from: quantity(apart.number / DECADE, apart.unit), to: quantity(apart.number * DECADE, apart.unit) };
 }
 
-/** @param {{store: Store, amount: Amount, wide: boolean}} props */
-function AmountRow({ store, amount, wide }) {
+/** @param {{store: Store, amount: Amount, wide: boolean, chosen: boolean}} props */
+function AmountRow({ store, amount, wide, chosen }) {
   const state = store.get();
   const { row, label, text, range, free, set } = amount;
   const { unit, path: place, name } = row;
@@ -208,8 +218,8 @@ function AmountRow({ store, amount, wide }) {
     else return;
     event.preventDefault();
   };
-  return html`<div class=${`amount ${wide ? "wide" : ""} ${free ? "free" : ""}`} data-place=${id}
-    aria-busy=${isBeingRead(state, id)}>
+  const classes = ["amount", wide && "wide", free && "free", chosen && "chosen"].filter(Boolean);
+  return html`<div class=${classes.join(" ")} data-place=${id} aria-busy=${isBeingRead(state, id)}>
     <${Bounds} store=${store} amount=${amount} />
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label} title=${`${range.from} to ${
       range.to}`} value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
@@ -224,11 +234,11 @@ function AmountRow({ store, amount, wide }) {
   </div>`;
 }
 
-/** A name; of an element what follows the first underscore is a subscript.
+/** A name; of an element what follows its first letter is a subscript, as in the picture of the vehicle.
  * @param {{label: string, element: boolean}} props */
 function Name({ label, element }) {
-  const [stem, ...rest] = element ? label.split("_") : [label];
-  return html`${stem}${rest.length > 0 && html`<sub>${rest.join("_")}</sub>`}`;
+  if (!element || label.length < 2) return label;
+  return html`${label[0]}<sub>${label.slice(1).replace(/^_/, "")}</sub>`;
 }
 
 /** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */
@@ -277,7 +287,8 @@ export function Entry({ id, label, text, wrong = false, done }) {
     setInside(true);
   };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text}
-    value=${typed ?? (inside ? text : brief(text))} aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
+    value=${typed ?? (inside ? text : printed(brief(text)))}
+    aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
     onInput=${textHandler(setTyped)} onFocus=${enter}
     onBlur=${() => {
       finish();

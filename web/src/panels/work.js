@@ -11,6 +11,7 @@ import { placed, printed, quantity, rounded, takenApart } from "../state/scale.j
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { answerOf } from "../questions.js";
+import { MarginsResult } from "./margins.js";
 import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js";
 
 /** @import { Store, State, Job } from "../state/store.js" */
@@ -65,7 +66,7 @@ function Begin({ store, api, kind }) {
   </form>`;
 }
 
-const RUNNING = ["waiting", "running"];
+export const RUNNING = ["waiting", "running"];
 
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */
@@ -85,7 +86,7 @@ export function JobHead({ store, api, job: { id, title, kind, state, share, begu
 /** @param {{store: Store, api: Api, job: Job}} props */
 function JobRow({ store, api, job }) {
   const Result = KINDS.find(({ kind }) => kind === job.kind)?.Result
-    ?? (job.kind === "optimise" ? OptimumResult : null);
+    ?? { optimise: OptimumResult, margins: MarginsResult }[job.kind];
   const failed = job.state === "failed";
   return html`<li class="job" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />

@@ -1,5 +1,6 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
+import { inWords } from "./posed.js";
 import { liftOf } from "./scene.js";
 import { line } from "./symbols.js";
 
@@ -11,39 +12,39 @@ const BARS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 40, 50, 100, 200, 500, 1000]; // [
 const [SHORTEST, NARROW] = [22, 500]; // [px]
 const STILL = 1e-9; // [rad]
 
-/** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number} | null} moved
+/** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number}} moved
  * @param {{own: string, other: string} | null} names of the design and of the one that is dashed @returns {Shape[]} */
 export function captions(made, moved, names) {
   const { width, height, scene } = made;
-  if (moved === null) return [];
   const narrow = width < NARROW;
   /** @type {Shape[]} */
   const into = [...scaleBar(made, narrow)];
-  const large = `heights drawn ${made.times} times as large`;
-  const road = scene.tracks.length === 0 ? "" : scene.column ? `, the road at ${moved.passing} px a second` : "";
-  into.push(quiet(12, height - 10, `${large}${road}`));
-  const stands = standing(made, moved);
-  if (stands) into.push(quiet(12, narrow ? 60 : 18, stands));
-  if (names) into.push(...legend(made, names, narrow));
+  const large = `drawn ${made.times} times as large`;
+  const road = scene.tracks.length > 0 && scene.column ? `, the road at ${moved.passing} px a second` : "";
+  const above = standing(made, moved, large);
+  if (above.length === 0) into.push(quiet(12, height - 10, `heights ${large}${road}`));
+  above.forEach((words, i) => into.push(quiet(12, (narrow ? 60 : 18) + 16 * i, words)));
+  if (names) into.push(...legend(made, names, narrow, above.length));
   return into;
 }
 
 /** @param {number} x @param {number} y @param {string} text @returns {Shape} */
 const quiet = (x, y, text) => ({ kind: "text", x, y, text, class: "quiet" });
 
-/** Heave, pitch and roll of the body. @param {Layout} made @param {{moment: Moment, motion: Motion}} moved */
-function standing({ scene: { main, column } }, { moment: { pose }, motion }) {
-  if (!main || column || (main.pitch === null && main.roll === null)) return "";
+/** Heave, pitch and roll of the body, a line each. @param {Layout} made
+ * @param {{moment: Moment, motion: Motion}} moved @param {string} large @returns {string[]} */
+function standing({ scene: { main, column } }, { moment: { pose }, motion }, large) {
+  if (!main || column || (main.pitch === null && main.roll === null)) return [];
   const signed = (/** @type {number} */ value, /** @type {number} */ digits) =>
     value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
   const degrees = (/** @type {string} */ name) => signed(((pose[name] ?? 0) * 180) / Math.PI, 2);
   const parts = [`heave ${signed(liftOf(main, 0, 0, pose) * 1000, 1)} mm`];
-  if (main.pitch !== null) parts.push(`pitch ${degrees(main.pitch)}°`);
-  if (main.roll !== null) {
-    const rolls = (motion.coordinates[main.roll] ?? []).some((value) => Math.abs(value) > STILL);
-    parts.push(rolls ? `roll ${degrees(main.roll)}°` : "roll 0: both sides meet the same road");
-  }
-  return parts.join(", ");
+  if (main.pitch !== null) parts.push(`${inWords(main.pitch)} ${degrees(main.pitch)}°`);
+  const rolls = main.roll !== null && (motion.coordinates[main.roll] ?? []).some((value) => Math.abs(value) > STILL);
+  if (main.roll !== null && rolls) parts.push(`roll ${degrees(main.roll)}°`);
+  const how = parts.join(", ");
+  const lines = main.roll === null ? [`${how}, ${large}`] : [how, large];
+  return main.roll !== null && !rolls ? [...lines, "roll 0: same road on both sides"] : lines;
 }
 
 /** A length upwards. @param {Layout} made @param {boolean} narrow @returns {Shape[]} */
@@ -58,10 +59,10 @@ function scaleBar({ lift, width }, narrow) {
 }
 
 /** Whose body is which. @param {Layout} made @param {{own: string, other: string}} names @param {boolean} narrow
- * @returns {Shape[]} */
-function legend({ height, scene }, { own, other }, narrow) {
+ * @param {number} below so many lines @returns {Shape[]} */
+function legend({ height, scene }, { own, other }, narrow, below) {
   const body = scene.column && scene.tracks.length > 0 ? "body on " : "";
-  const y = scene.column ? Math.max(narrow ? 150 : 112, 0.31 * height) : narrow ? 80 : 38;
+  const y = scene.column ? Math.max(narrow ? 150 : 112, 0.31 * height) : (narrow ? 62 : 20) + 16 * below;
   const text = (/** @type {number} */ at, /** @type {string} */ words) =>
     /** @type {Shape} */ ({ kind: "text", x: 36, y: at, text: words, class: "text" });
   const otherWords = body ? `on ${other}, same road` : `dashed: ${other}, same road`;

@@ -1,15 +1,15 @@
 // Where everything of a scene is in a picture of some size, at rest: along it to scale as far as there is room, upwards
 // one level above the other; and how large motions are drawn.
 
-import { pointOf, heightOf, spread } from "./scene.js";
+import { pointOf, spread } from "./scene.js";
 import { planOf, reachOf } from "./symbols.js";
 
-/** @import { Scene, Body, Strut, Tyre, Pose } from "./scene.js" */
+/** @import { Scene, Body, Strut, Tyre } from "./scene.js" */
 /** @import { Plan, Point } from "./symbols.js" */
 /** The answer `history.motion` of the server. @typedef {{time: number[], coordinates: {[name: string]: number[]},
  * roads: {[name: string]: number[]}, elements?: {[mount: string]: {[element: string]: number[]}}}} Motion */
-/** How far things move at most [m]: the highest bodies up, anything, each strut and each of its elements.
- * @typedef {{up: number, any: number, slope: number, travel: {[strut: string]: number},
+/** How far things move at most [m]: bodies up, roads down, anything, each strut and each of its elements.
+ * @typedef {{up: number, down: number, any: number, slope: number, travel: {[strut: string]: number},
  * reach: {[mount: string]: {[element: string]: number}}}} Range */
 /** `z`: of its middle, above the ground [px]; `from` and `to`: its ends, from its middle [px].
  * @typedef {{body: Body, z: number, thick: number, from: number, to: number}} PlacedBody */
@@ -28,36 +28,39 @@ const USUAL = 6; // times, where nothing moves
 const HEADER = 40; // [px] above, for what is written there, and ...
 const CLEAR = 14; // ... above a column beside it
 const BELOW = 0.13; // of the height, below the ground
+const DIP = 0.11; // of the height, of a road at most
 const SIDE = 0.44; // [px] nearer of a metre to the right, of a metre along
 const WHEEL = 0.31; // [m] its radius
 const SMALL = 0.6; // scale of a strut, from which on motions are drawn less large
+const SHORT = 0.4; // of what is allowed to beams, which are short
 const STEEPEST = 0.16; // of a body, as it is drawn
 
 /** How far things move in one or several motions. @param {Scene} scene @param {Motion[]} motions @returns {Range} */
 export function rangeOf(scene, motions) {
   /** @type {Range} */
-  const range = { up: 0, any: 0, slope: 0, travel: {}, reach: {} };
+  const range = { up: 0, down: 0, any: 0, slope: 0, travel: {}, reach: {} };
   const turning = scene.bodies.filter(({ heave }) => heave !== null);
   const angles = turning.flatMap(({ pitch, roll }) => [pitch ?? [], roll ?? []]).flat();
+  const beams = turning.filter(({ kind }) => kind === "beam").flatMap(({ pitch }) => pitch ?? []);
   const free = scene.bodies.flatMap(({ heave, pitch }) => (heave === null && pitch !== null ? [pitch] : []));
   for (const motion of motions) {
     const all = { ...motion.coordinates, ...motion.roads };
     for (const [name, values] of Object.entries(all)) {
       const most = farthest(values);
       if (free.includes(name)) continue;
-      if (angles.includes(name)) range.slope = Math.max(range.slope, most);
+      if (angles.includes(name)) range.slope = Math.max(range.slope, most * (beams.includes(name) ? SHORT : 1));
       else range.any = Math.max(range.any, most);
     }
+    for (const value of Object.values(motion.roads).flat()) range.down = Math.max(range.down, -value);
     for (const { heave, kind } of scene.bodies) {
       if (kind === "wheel" || heave === null) continue;
       for (const value of all[heave] ?? []) if (value > range.up) range.up = value;
     }
     for (const { name, upper, lower } of scene.struts) {
-      const most = motion.time.reduce((so, _, i) => {
-        const pose = poseAt(all, i);
-        return Math.max(so, Math.abs(heightOf(upper.port, pose) - heightOf(lower.port, pose)));
-      }, 0);
-      range.travel[name] = Math.max(range.travel[name] ?? 0, most);
+      const ends = [...Object.entries(upper.port), ...Object.entries(lower.port).map(([of, lever]) =>
+        /** @type {[string, number]} */ ([of, -lever]))];
+      const travel = motion.time.map((_, i) => ends.reduce((sum, [of, lever]) => sum + lever * (all[of]?.[i] ?? 0), 0));
+      range.travel[name] = Math.max(range.travel[name] ?? 0, farthest(travel));
     }
     for (const [mount, elements] of Object.entries(motion.elements ?? {})) {
       const reach = range.reach[mount] ??= {};
@@ -69,9 +72,6 @@ export function rangeOf(scene, motions) {
 
 /** @param {number[]} values */
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
-
-/** @param {{[name: string]: number[]}} all @param {number} i @returns {Pose} */
-const poseAt = (all, i) => Object.fromEntries(Object.entries(all).map(([name, values]) => [name, values[i]]));
 
 /** Everything at its place. @param {Scene} scene @param {{width: number, height: number}} size @param {Range} range
  * @param {number} [before] how many times as large motions were drawn before @returns {Layout} */
@@ -129,7 +129,7 @@ function frameOf(scene, { width, height }) {
 function fits(scene, frame, range, times) {
   const lift = times * frame.metre;
   const most = (scene.silhouette ? 0.12 : 0.15) * frame.height;
-  if (range.any * lift > most || range.slope * times > STEEPEST) return false;
+  if (range.any * lift > most || range.down * lift > DIP * frame.height || range.slope * times > STEEPEST) return false;
   const { struts } = placed(scene, frame, range, times);
   return struts.every(({ strut, top, bottom, scale }) => (range.travel[strut.name] ?? 0) * lift < 0.26 * (top - bottom)
     && (!scene.column || scale >= SMALL || times <= 3));
@@ -188,7 +188,7 @@ function levelsOf(scene, frame, range, lift) {
   const bottom = wheels || rigid ? 2 * radius + 4 : beams ? radius + 4 : 0;
   if (scene.silhouette && scene.main) return carLevels(scene, frame);
   const far = scene.oblique ? spread(scene.bodies.map(({ y }) => y)) * SIDE * frame.metre : 0;
-  const header = scene.column && frame.width >= 500 ? CLEAR : HEADER;
+  const header = scene.column && scene.tracks.length > 0 && frame.width >= 500 ? CLEAR : HEADER;
   const room = base - far - header - lift * range.up;
   /** @param {Body} body */
   const thickness = (body) => {
@@ -198,6 +198,7 @@ function levelsOf(scene, frame, range, lift) {
     if (kind === "wheel") return 2 * radius;
     if (kind === "beam" || (pitch !== null && mass === null)) return 9;
     if (kind === "table") return 16;
+    if (scene.oblique) return 10;
     if (body === main && pitch !== null) return Math.min(0.15 * height, 80);
     const share = main?.mass && mass ? Math.cbrt(mass / main.mass) : 1;
     return Math.max(14, Math.min(0.1 * height, 60) * Math.min(1, share));
@@ -235,7 +236,7 @@ function carLevels(scene, { radius, metre }) {
     of: (/** @type {Body} */ { kind, level }) => {
       if (kind === "wheel") return { z: radius, thick: 2 * radius };
       if (kind === "occupant") return { z: radius + 39 * unit, thick: 28 * unit };
-      return { z: radius + (scene.oblique ? 36 : 43) * unit + (level > 1 ? 24 * unit : 0), thick: 0 };
+      return { z: radius + (scene.oblique ? 39 : 43) * unit + (level > 1 ? 24 * unit : 0), thick: 0 };
     },
   };
 }
@@ -256,7 +257,7 @@ function topOf(made, body) {
   const own = body && made.bodies.get(body);
   if (!own) return 0;
   const { silhouette, oblique, wheelbase } = made.scene;
-  if (own.body.kind === "wheel") return silhouette && oblique ? 1.1 * made.radius : 2 * made.radius + 4;
+  if (own.body.kind === "wheel") return silhouette && oblique ? 1.6 * made.radius : 2 * made.radius + 4;
   if (own.body.kind === "body" && silhouette) return made.radius + 0.09 * made.metre * wheelbase;
   return own.z + own.thick / 2;
 }
@@ -266,6 +267,9 @@ function bottomOf(made, body) {
   const own = body && made.bodies.get(body);
   return own ? own.z - own.thick / 2 : made.roof ?? 0;
 }
+
+/** The largest scale of a strut. @param {Layout} made */
+const largestScale = ({ scene, height }) => (scene.column && height > 300 ? 1.5 : 1);
 
 /** Moves struts that would be in one place, or cross a body, to the right. @param {Layout} made */
 function besideEachOther(made) {
@@ -277,9 +281,10 @@ function besideEachOther(made) {
       && Math.abs(made.project(body.x, body.y, 0)[0] - at) < 10);
     const near = done.filter((other) => Math.abs(made.project(other.x, other.y, 0)[0] - at) < 10
       && other.y === one.y && other.top > one.bottom + 1 && other.bottom < one.top - 1);
+    const most = largestScale(made);
     const edge = Math.max(-Infinity, ...crossed.map(({ to }) => to + 8), ...near.map(({ shift, plan }) => shift
-      + plan.right));
-    if (edge > -Infinity && one.lever === null) one.shift = edge + 8 + one.plan.left;
+      + most * plan.right));
+    if (edge > -Infinity && one.lever === null) one.shift = edge + 8 + most * one.plan.left;
     done.push(one);
   }
 }
@@ -291,8 +296,8 @@ function widen(made) {
     const { body } = own;
     if (body.kind === "wheel" || body.kind === "occupant") continue;
     const arms = [
-      ...made.struts.flatMap(({ strut: { upper, lower }, shift }) =>
-        [upper, lower].filter((place) => place.body === body).map(({ ahead }) => ahead * metre + shift)),
+      ...made.struts.flatMap(({ strut: { upper, lower }, x, shift }) =>
+        [upper, lower].filter((place) => place.body === body).map(() => (x - body.x) * metre + shift)),
       ...made.struts.flatMap(({ strut: { upper }, lever }) => (lever?.hinged && upper.body === body
         ? [upper.ahead * metre + lever.arm] : [])),
       ...scene.tyres.filter((tyre) => tyre.body === body).map(({ x }) => (x - body.x) * metre),
@@ -311,7 +316,7 @@ function widen(made) {
  * @param {PlacedStrut} one @param {Layout} made */
 function rescale(one, made) {
   const { top, bottom } = one;
-  const most = made.scene.column && made.height > 300 ? 1.5 : 1;
+  const most = largestScale(made);
   const reach = made.range.reach[one.strut.name] ?? {};
   const beside = made.struts.filter((other) => other.top > bottom && other.bottom < top);
   const room = made.scene.column ? made.width * 0.5 : roomAt(made, beside, one.x, one.y);
@@ -326,7 +331,7 @@ function rescale(one, made) {
   one.scale = Math.max(0.2, one.scale);
   const whole = one.plan.left + one.plan.right;
   const named = one.plan.parts.length > 0 && one.plan.left + one.plan.right > bare.left + bare.right;
-  one.wide = Math.max(one.scale, named ? Math.min(1, room / whole) : 0);
+  one.wide = Math.max(one.scale, Math.min(named ? 1 : 0.7, room / whole));
 }
 
 /** The room of a strut, between those before and behind it [px]. @param {Layout} made

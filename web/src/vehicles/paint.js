@@ -42,7 +42,7 @@ export function stylesOf(element, own = "var(--s3)") {
     "body near": { fill: c.body, stroke: c.ink, width: 1.4, alpha: 0.72 },
     glass: { fill: c.glass, stroke: c.ink2, width: 0.9 },
     "glass near": { fill: c.glass, stroke: c.ink2, width: 0.9, alpha: 0.7 },
-    edge: { stroke: c.ink2, width: 1, alpha: 0.6 }, cut: { fill: c.surface, alpha: 0.9 },
+    edge: { stroke: c.ink2, width: 1, alpha: 0.6 }, cut: { fill: c.surface, alpha: 0.88, round: true },
     seat: { stroke: c.ink, width: 4 }, centre: { fill: c.surface, stroke: c.ink, width: 1.3 }, quarter: { fill: c.ink },
     tyre: { fill: c.tyre, stroke: c.ink2, width: 1 }, rim: { fill: c.body }, spoke: { stroke: c.ink2, width: 2.6 },
     hub: { fill: c.ink }, halo: { stroke: c.surface, width: 8 }, "halo thin": { stroke: c.surface, width: 4 },
@@ -51,6 +51,7 @@ export function stylesOf(element, own = "var(--s3)") {
     joint: { fill: c.surface, stroke: c.ink, width: 1.4 }, pivot: { fill: c.ink2 },
     chair: { fill: c.ink2 }, limb: { stroke: c.ink, width: 6 }, "limb thin": { stroke: c.ink, width: 3 },
     trunk: { stroke: c.ink, width: 9 }, "trunk thin": { stroke: c.ink, width: 4.5 }, head: { fill: c.ink },
+    chosen: { stroke: c.accent, width: 0.7 },
     other: { stroke: c.s1, width: 1.5, dash: DASH },
     "other round": { stroke: c.s1, width: 1.5, dash: DASH, round: true },
     "other trail": { stroke: c.s1, width: 1.5, dash: DASH }, bar: { stroke: c.ink, width: 1.2 },
@@ -64,6 +65,15 @@ function isDark(colour) {
   return red + green + blue > 380;
 }
 
+/** @param {string} kind @param {{[kind: string]: Style}} styles @returns {Style} */
+function styleOf(kind, styles) {
+  const found = styles[kind] ?? styles[kind.trim()];
+  if (found) return found;
+  const plain = styles[kind.replace(/ chosen$/, "")] ?? styles.wire;
+  const { stroke, width } = styles.chosen;
+  return (styles[kind] = plain.stroke ? { ...plain, stroke, width: (plain.width ?? 1) + (width ?? 0) } : plain);
+}
+
 const HALO = 3; // [px] around what is written over something
 const CORNER = 9; // [px] of a body
 
@@ -73,7 +83,7 @@ export function paint(pen, shapes, styles) {
   pen.lineJoin = "round";
   pen.lineCap = "round";
   for (const shape of shapes) {
-    const style = styles[shape.class] ?? styles[shape.class.trim()] ?? styles.wire;
+    const style = styleOf(shape.class, styles);
     pen.globalAlpha = style.alpha ?? 1;
     if (shape.kind === "text") {
       write(pen, shape, style);

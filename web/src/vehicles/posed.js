@@ -9,20 +9,23 @@ import { box, circle, draw, line, polygon, travelOf } from "./symbols.js";
 /** @import { Body, Pose, Strut, Tyre } from "./scene.js" */
 /** @import { Point, Shape } from "./symbols.js" */
 /** What is at one time: heights and angles, travels of elements [m], states of friction and gaps, how far wheels have
- * turned [rad], and the height of a road beside the wheel it is under [m], so many px before it.
+ * turned [rad], which element is selected, and the height of a road so many px before the wheel that it is under [m].
  * @typedef {{pose: Pose, travels: {[mount: string]: {[element: string]: number}},
  * states: {[mount: string]: {[element: string]: string}}, turned: number,
- * road: (name: string, px: number) => number}} Moment */
+ * road: (name: string, px: number) => number,
+ * chosen?: string | null}} Moment */
 
 /** Of a vehicle that stands still. @type {Moment} */
 export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0 };
 
+const SAME_SIDE = 0.3; // [m]
 const STEP = 4; // [px] of a road that is drawn
 const ROLLED = 9; // [rad/s] of a wheel, so that its spokes are seen to turn
 const COLUMN = 200; // [px/s] of a road under one wheel
 
 /** How fast a road passes [px/s]. @param {Layout} made @param {number} speed [m/s] */
-export const passing = (made, speed) => (made.scene.column || !(speed > 0) ? COLUMN : speed * made.metre);
+export const passing = (made, speed) => (made.scene.column || !(speed > 0) ? COLUMN
+  : speed * (made.project(1, 0, 0)[0] - made.project(0, 0, 0)[0]));
 
 /** What is at one time of a motion. @param {Layout} made @param {Motion} motion @param {number} at [s]
  * @param {{speed: number, shaded?: {element: string, state: string, intervals: [number, number][]}[]}} how
@@ -105,6 +108,8 @@ function fromTheSide(made, moment, behind, into) {
   for (const own of made.bodies.values()) if (isDrawn(made, own)) body(made, own, moment, into);
 }
 
+const NEAR = 0.25; // of the width, what belongs to the near side
+
 /** From the far side to the near one. @param {Layout} made @param {Moment} moment @param {Shape[]} behind
  * @param {Shape[]} into */
 function inDepth(made, moment, behind, into) {
@@ -113,14 +118,10 @@ function inDepth(made, moment, behind, into) {
   const [far, near] = [sides[0], sides[sides.length - 1]];
   for (const { bodies } of scene.links) if (!isAcross(bodies)) bar(made, bodies, moment, into);
   if (scene.silhouette && scene.main) car(made, scene.main, far, moment, into, "far");
-  const middle = (far + near) / 2;
-  let joined = false;
+  const first = sides.find((y) => y < near + NEAR * (far - near));
   for (const y of sides) {
-    if (y < middle && !joined) {
-      across(made, far, near, moment, into);
-      joined = true;
-    }
-    if (y === near && scene.silhouette && scene.main) {
+    if (y === first) across(made, far, near, moment, into);
+    if (y === first && scene.silhouette && scene.main) {
       car(made, scene.main, near, moment, into, "near");
       into.push(...behind);
     }
@@ -162,7 +163,8 @@ function ground(made, moment, into) {
   if (scene.oblique) {
     const [, far] = made.project(0, Math.max(...scene.tyres.map(({ y }) => y)), 0);
     into.push(box(0, far - 10, width, height, "plain"));
-    for (const y of [...new Set(scene.tracks.map((track) => track.y))].sort((a, b) => b - a)) {
+    const every = scene.tracks.map((track) => track.y);
+    for (const y of [Math.max(...every), Math.min(...every)]) {
       const [left] = made.project(Math.min(...scene.tracks.map(({ x }) => x)), y, 0);
       const [right] = made.project(Math.max(...scene.tracks.map(({ x }) => x)), y, 0);
       const profile = profileOf(made, y, moment, Math.max(0, left - 70), Math.min(width, right + 70));
@@ -187,15 +189,15 @@ function ground(made, moment, into) {
 /** The profile under the wheels of one side: of the nearest of its roads. @param {Layout} made @param {number} y
  * @param {Moment} moment @param {number} from @param {number} to @returns {Point[]} */
 function profileOf(made, y, moment, from, to) {
-  const { tracks, oblique } = made.scene;
-  const own = (oblique ? tracks.filter((track) => track.y === y) : tracks).map(({ name, x }) =>
+  const { tracks, oblique, frontal } = made.scene;
+  const own = (oblique ? tracks.filter((track) => Math.abs(track.y - y) < SAME_SIDE) : tracks).map(({ name, x }) =>
     ({ name, at: made.project(x, y, 0)[0] }));
   const [, level] = made.project(0, y, 0);
   /** @type {Point[]} */
   const points = [];
   for (let px = from; px <= to + STEP; px += STEP) {
     const near = own.reduce((best, each) => (Math.abs(each.at - px) < Math.abs(best.at - px) ? each : best));
-    points.push([px, level - made.lift * moment.road(near.name, px - near.at)]);
+    points.push([px, level - made.lift * moment.road(near.name, frontal ? 0 : px - near.at)]);
   }
   return points;
 }
@@ -225,7 +227,7 @@ function wheel(made, tyre, moment, into) {
   into.push(circle(px, hub, 0.15 * R, "hub"));
   if (rigid) primary(made, tyre, moment, px, hub, into);
   else if (own.kind === "wheel" && made.struts.some(({ strut: { lower }, lever }) => lower.body === own && !lever)) {
-    carrier(px, hub, hub - R - 4, R, into);
+    carrier(px, hub, hub - (made.scene.silhouette && made.scene.oblique ? 0.6 * R : R + 4), R, into);
   }
 }
 
@@ -249,15 +251,23 @@ function primary(made, tyre, moment, px, hub, into) {
     states: moment.states[tyre.name] ?? {} }, into);
 }
 
+/** Where a strut is, and its ends. @param {Layout} made @param {PlacedStrut} one @param {Pose} pose */
+export function endsOf(made, one, pose) {
+  const { x, y, shift, top, bottom } = one;
+  return {
+    x: made.project(x, y, 0)[0] + shift,
+    top: point(made, x, y, top, topHeight(one, pose))[1],
+    bottom: point(made, x, y, bottom, bottomHeight(one, pose))[1],
+  };
+}
+
 /** A strut between its two ends, wherever these are. @param {Layout} made @param {PlacedStrut} one
  * @param {Moment} moment @param {Shape[]} into */
 function strut(made, one, moment, into) {
-  const { x, y, shift, bottom, top, scale, wide, plan } = one;
+  const { x, y, bottom, top, scale, wide, plan } = one;
   const { upper, lower, name: mount } = one.strut;
   const [px] = made.project(x, y, 0);
-  const at = px + shift;
-  const [, yTop] = point(made, x, y, top, topHeight(one, moment.pose));
-  const [, yBottom] = point(made, x, y, bottom, bottomHeight(one, moment.pose));
+  const { x: at, top: yTop, bottom: yBottom } = endsOf(made, one, moment.pose);
   if (one.lever) lever(made, one, moment, px, into);
   over(made, lower, at, yBottom, moment, bottom, into);
   over(made, upper, at, yTop, moment, top, into);
@@ -268,7 +278,18 @@ function strut(made, one, moment, into) {
   }
   const travels = moment.travels[mount] ?? {};
   draw(plan, at, yTop, yBottom - yTop - made.lift * travelOf(plan, travels), { lift: made.lift, scale, wide,
-    labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {} }, into);
+    labels: true, travel: travels, reach: made.range.reach[mount] ?? {}, states: moment.states[mount] ?? {},
+    chosen: moment.chosen }, into);
+  if (made.scene.column) tell(moment.states[mount] ?? {}, at + plan.right * wide + 8, yBottom - 18, into);
+}
+
+/** Says which friction sticks and which gaps are open. @param {{[element: string]: string}} states @param {number} x
+ * @param {number} y @param {Shape[]} into */
+function tell(states, x, y, into) {
+  const names = (/** @type {string} */ state) => Object.keys(states).filter((key) => states[key] === state);
+  const [stick, open] = [names("stick"), names("open")];
+  if (stick.length > 0) into.push(text(x, y, `${stick.join(", ")} ${stick.length > 1 ? "stick" : "sticks"}`, "told"));
+  if (open.length > 0) into.push(text(x, y - 14, `${open.join(", ")} open`, "told"));
 }
 
 /** [px] of a hundredth of the wheelbase. @param {Layout} made */
@@ -484,12 +505,12 @@ function quantity(value, unit) {
 /** What stands beside things. @param {Layout} made @param {Moment} moment @param {Shape[]} into */
 function name(made, moment, into) {
   const { scene } = made;
-  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.thick >= 12) nameBody(made, own, moment, into);
+  for (const own of made.bodies.values()) if (isDrawn(made, own) && own.thick >= 10) nameBody(made, own, moment, into);
   if (scene.column && scene.tyres.length === 1) return nameWheel(made, scene.tyres[0], moment, into);
   for (const { x, y, rigid, body: of } of scene.tyres) {
     const [px, floor] = made.project(x, y, 0);
     if (rigid || of.kind !== "wheel" || (scene.oblique && y > 0)) continue;
-    into.push(text(px, scene.oblique ? floor + 18 : made.height - 26, inWords(of.name), "quiet", "middle"));
+    into.push(text(px, scene.oblique ? floor + 18 : made.height - 10, inWords(of.name), "quiet", "middle"));
   }
 }
 
@@ -505,12 +526,16 @@ function nameBody(made, own, moment, into) {
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
   const weight = of.mass === null ? "" : massText(of.mass);
-  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 44 < to - from && thick >= 15;
+  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 56 < to - from && thick >= 15;
   if (fits && of.kind !== "occupant" && !made.scene.oblique) {
     into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
     return;
   }
-  if (made.scene.oblique && of.kind === "occupant") {
+  if (made.scene.oblique && of.kind !== "occupant") {
+    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${weight}`, "beside"));
+    return;
+  }
+  if (made.scene.oblique) {
     const [x, y] = at(-6);
     into.push(text(x, y - 0.52 * thick - 6, words, "text", "middle"));
     return;

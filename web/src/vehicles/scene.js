@@ -24,8 +24,10 @@
  * @typedef {{name: string, body: Body, port: Port, road: string, network: any, rigid: boolean, x: number, y: number}}
  * Tyre */
 /** @typedef {{name: string, x: number, y: number, distance: number, side: string}} Track */
-/** @typedef {{model: string, bodies: Body[], struts: Strut[], links: Link[], tyres: Tyre[], tracks: Track[],
- * oblique: boolean, silhouette: boolean, column: boolean, main: Body | null, rear: number, wheelbase: number}} Scene */
+/** From the side, or `oblique` where there are two sides, or `frontal` where these are all; all in one `column`.
+ * @typedef {{model: string, bodies: Body[], struts: Strut[], links: Link[], tyres: Tyre[], tracks: Track[],
+ * oblique: boolean, frontal: boolean, silhouette: boolean, column: boolean, main: Body | null, rear: number,
+ * wheelbase: number}} Scene */
 
 const APART = 1.2; // [m] between bodies of which nothing says where they are
 const TRACK = 1.5; // [m] between both sides, where nothing says how far they are apart
@@ -48,6 +50,7 @@ export function scene(mechanism, model = "") {
   const tyres = wheels.flatMap(({ place: { body, ahead, aside }, name, port, road, network }) => (body === null ? []
     : [{ name, port, road, network, body, rigid: isNetwork(network), x: body.x + ahead, y: body.y + aside }]));
   rank(bodies, struts, tyres);
+  spreadOut(bodies);
   for (const strut of struts) {
     const { upper, lower } = strut;
     if (upper.body && lower.body && Math.abs(upper.ratio - lower.ratio) < SAME) strut.arm = upper.ratio;
@@ -63,6 +66,7 @@ export function scene(mechanism, model = "") {
     model, bodies, struts, links, tyres, tracks,
     oblique: spread(across) > SAME,
     silhouette: CARS.includes(model),
+    frontal: spread(along) > SAME && spread(tracks.map(({ distance }) => distance)) < SAME,
     rear: Math.min(...tyres.map(({ x }) => x)),
     wheelbase: spread(tyres.map(({ x }) => x)),
     column: spread(along) < SAME && spread(across) < SAME,
@@ -198,6 +202,15 @@ function apart(bodies, wheels, roads) {
     if (spread(here.map(({ distance }) => distance)) < SAME) continue;
     const middle = here.reduce((sum, { distance }) => sum + distance, 0) / here.length;
     for (const each of here) each.body.x += middle - each.distance;
+  }
+}
+
+/** Parts bodies that would be in one place on one level. @param {Body[]} bodies */
+function spreadOut(bodies) {
+  const placed = bodies.filter(({ kind, pitch }) => kind === "body" && pitch === null);
+  for (const { level, x, y } of placed) {
+    const here = placed.filter((other) => other.level === level && other.x === x && other.y === y);
+    if (here.length > 1) separate(here);
   }
 }
 

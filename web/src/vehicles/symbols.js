@@ -9,9 +9,9 @@
  * @typedef {{kind: string, name: string, element: string, key: string, value: number, parts: Plan[], left: number,
  * right: number, height: number}} Plan */
 /** `travel`: how much longer each element is than at rest [m]; `reach`: at most; `states`: of friction and gaps;
- * `scale` of symbols, `wide` of what is beside each other.
+ * `scale` of symbols, `wide` of what is beside each other; `chosen`: the element that is selected.
  * @typedef {{travel: {[key: string]: number}, reach: {[key: string]: number}, states: {[key: string]: string},
- * lift: number, scale: number, wide: number, labels: boolean}} Work */
+ * lift: number, scale: number, wide: number, labels: boolean, chosen?: string | null}} Work */
 
 const HALF = 15; // [px] of an element, at the scale 1
 const TALL = 54;
@@ -156,7 +156,9 @@ function symbol(plan, x, y, long, work, into) {
   const grown = lift * (work.travel[plan.key] ?? 0);
   const at = { x, y, s, end: y + long + grown, upper: y + long / 2, lower: y + long / 2 + grown, long, grown,
     reach: Math.min(lift * (work.reach[plan.key] ?? 0), long / 2 - 4 * s) };
+  const from = into.length;
   (SYMBOLS[/** @type {keyof typeof SYMBOLS} */ (plan.element)] ?? other)(at, plan, work, into);
+  if (plan.name === work.chosen) for (const shape of into.slice(from)) shape.class += " chosen";
   if (!work.labels || plan.right === HALF) return;
   into.push({ kind: "text", x: x + (HALF + 2) * s, y: y + (long + grown) / 2 + 4, text: plan.name, class: "name" });
 }

@@ -33,7 +33,7 @@ from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
 
 _MOST_TRIED = 200  # swept values
-_NOT_SEARCHED = {"sweeps": "sweep", "trade_off": "trade_off", "budgets": "break_even", "tolerance": "tolerance"}
+_NOT_SEARCHED = {"sweeps": "sweep", "budgets": "break_even", "tolerance": "tolerance"}
 
 
 _sound: Study | None = None  # the last one without problems: who checks before a run may tell how far that is
@@ -69,7 +69,8 @@ def _search_lines(study: Study) -> Iterator[str]:
     networks = ", ".join(f"{count} networks of {layout}" for layout, count in counts.items())
     yield (
         f"{study.path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}: "
-        f"{networks} to search for each index."
+        f"{networks} to search for each index{', and for their Pareto front' if study.trade_off else ''}"
+        f"{', and the best with real inerters' if study.real_inerters is not None else ''}."
     )
     if road := roads_sentence(study):
         yield f"{road}."
@@ -122,7 +123,8 @@ def search_plans(study: Study) -> dict[tuple[str, str], SearchPlan]:
         check_study(fixed_part(study))
         for layout in searched:
             try:
-                plans |= {(layout, index): _plan(study, layout, index) for index in study.indices}
+                asked = dict.fromkeys([*study.indices, *study.trade_off])
+                plans |= {(layout, index): _plan(study, layout, index) for index in asked}
             except InerterError as error:
                 problems.append(at(("layouts", layout), str(error)))
     if problems:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
@@ -12,8 +12,10 @@ from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Quantity, Row, Table, cells, columns
 
 if TYPE_CHECKING:
-    from inerter.files.study.searching import LayoutSearch, StudySearch
+    from inerter.files.study.search_parts import RealResult
+    from inerter.files.study.searching import LayoutFront, LayoutSearch, StudySearch
     from inerter.files.study.study import Study
+    from inerter.network_search.front_results import FrontNetwork
     from inerter.network_search.results import FoundNetwork
 
 RANKED = 10  # networks in a ranking for people
@@ -139,6 +141,130 @@ def _rows(one: LayoutSearch, names: list[str]) -> Iterator[list[str | int | floa
         ]
 
 
+def front_networks_table(study: Study, one: LayoutFront) -> Table:
+    """The networks on a front, each with the ranges in which it is the best."""
+    front = one.result.front
+    heads = [*columns("Elements", *study.trade_off), Column("Points"), Column("Network", prose=True)]
+    rows = []
+    for network in one.result.networks:
+        own = [point for point in front if point.layout == network]
+        ends = [
+            f"{format_quantity(min(values), unit)} to {format_quantity(max(values), unit)}"
+            if len(own) > 1
+            else format_quantity(values[0], unit)
+            for values, unit in zip(zip(*(point.values for point in own), strict=True), one.result.units, strict=True)
+        ]
+        rows.append(Row(cells(f"{own[0].n_elements}", *ends, f"{len(own)}", network)))
+    return Table(f"{_capital(one.heading)}: networks on the Pareto front", heads, rows)
+
+
+def front_points_table(study: Study, one: LayoutFront) -> Table:
+    """The points of a front, in ascending order of the first index."""
+    heads = [*columns("Point", *study.trade_off, "Elements"), Column("Network", words=True)]
+    rows = []
+    for number, point in enumerate(one.result.front, 1):
+        values = [Quantity(value, unit) for value, unit in zip(point.values, one.result.units, strict=True)]
+        status = "" if point.status.ok else str(point.status)
+        rows.append(Row(cells(f"{number}", *values, f"{point.n_elements}", point.layout), status=status))
+    return Table(f"{_capital(one.heading)}: the Pareto front over all networks", heads, rows)
+
+
+def front_sizes_table(study: Study, one: LayoutFront) -> Table:
+    """The front of the networks of up to each number of elements: its ends and its networks."""
+    heads = [*columns("Elements", *(f"Lowest {index}" for index in study.trade_off)), Column("Networks", prose=True)]
+    rows = []
+    for count, front in one.result.by_elements.items():
+        least = [min(point.values[index] for point in front) for index in range(len(study.trade_off))]
+        values = [Quantity(value, unit) for value, unit in zip(least, one.result.units, strict=True)]
+        networks = ", ".join(dict.fromkeys(point.layout for point in front))
+        rows.append(Row(cells(f"up to {count}", *values, networks)))
+    return Table(f"{_capital(one.heading)}: Pareto fronts by number of elements", heads, rows)
+
+
+def front_table(found: StudySearch) -> Table:
+    """Points of the fronts of all layouts, by the largest number of elements, with a column for every parameter."""
+    study = found.study
+    points = [point for one in found.fronts for front in one.result.by_elements.values() for point in front]
+    names = _parameters(points)
+    values = [label_with_unit(index, study.unit(index)) for index in study.trade_off]
+    units = [label_with_unit(name, parameter_unit(study, name)) for name in names]
+    keys = ("layout", "up_to_elements", "point", "network", "elements", *values, *units, "at_bound", "status")
+    rows = []
+    for one in found.fronts:
+        for count, front in one.result.by_elements.items():
+            for number, point in enumerate(front, 1):
+                at_bound = ";".join(f"{name}:{end}" for name, end in point.active_bounds.items())
+                own = [*point.values, *(point.parameters.get(name) for name in names), at_bound, str(point.status)]
+                rows.append(Row(cells(one.layout, count, number, point.layout, point.n_elements, *own)))
+    return Table("Pareto fronts over networks", [Column(key=key) for key in keys], rows)
+
+
+def real_networks_table(study: Study, one: LayoutSearch) -> Table:
+    """The best networks with real inerters, optimised once more, and the part of each gain that is retained."""
+    assert study.real_inerters is not None
+    several = len(study.real_inerters.methods) > 1
+    compared = isfinite(one.baseline)
+    heads = [
+        Column("Network", words=True),
+        *([Column("Method", words=True)] if several else []),
+        *columns("Ideal", "Same values", "Optimised"),
+        *(columns("Ideal gain", "Gain", "Retained") if compared else []),
+        Column("Agreement", only_on_pages=True),
+    ]
+    ideal = {found.layout: found.value for found in one.result.ranking}
+    rows = []
+    for each in one.real:
+        if not each.network:
+            continue
+        unit = one.result.unit
+        before, after = _real_gains(one, each)
+        gains = [
+            None if isnan(gain) else format_percent(gain)
+            for gain in (before, after, 100.0 * after / before if before > 0.0 else nan)
+        ]
+        content = [
+            each.network,
+            *([each.method] if several else []),
+            Quantity(ideal[each.network], unit),
+            Quantity(each.kept, unit),
+            Quantity(each.value, unit, each.standard_error),
+            *(gains if compared else []),
+            f"{each.agreed} of {each.starts}" if each.starts else None,
+        ]
+        rows.append(Row(cells(*content), status="" if each.ok else each.status_text))
+    return Table(f"{_capital(one.heading)}: the best networks with real inerters", heads, rows)
+
+
+def _real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
+    """Gains of a network on the baseline with ideal and with real inerters, in per cent."""
+    ideal = next(found.value for found in one.result.ranking if found.layout == each.network)
+    return improvement(ideal, one.baseline), improvement(each.value, one.real_baseline(each.method))
+
+
+def real_table(found: StudySearch) -> Table:
+    """The best networks with real inerters of all searches, with a column for every parameter."""
+    results = [(one, each) for one in found.searches for each in one.real if each.network]
+    names = _parameters([each for _, each in results])
+    units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
+    keys = ("layout", "index", "method", "network", "ideal", "same_values", "value", "standard_error", "unit")
+    more = ("ideal_improvement_percent", "improvement_percent", *units, "at_bound", "starts", "agreed", "status")
+    rows = []
+    for one, each in results:
+        ideal = next(network.value for network in one.result.ranking if network.layout == each.network)
+        rows.append(
+            Row(
+                cells(
+                    *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.value),
+                    *(each.standard_error, one.result.unit, *_real_gains(one, each)),
+                    *(each.parameters.get(name) for name in names),
+                    ";".join(f"{name}:{end}" for name, end in each.active_bounds.items()),
+                    *(each.starts, each.agreed, each.status_text),
+                )
+            )
+        )
+    return Table("Networks with real inerters", [Column(key=key) for key in (*keys, *more)], rows)
+
+
 def parameter_unit(study: Study, name: str) -> str:
     """Unit of a free value: one that the file names, or an element of a found network, whose name has its kind."""
     kinds = {kind.symbol: kind.unit for kind in ELEMENT_TYPES}
@@ -153,7 +279,7 @@ def at_bound_notes(one: LayoutSearch) -> Iterator[str]:
             yield f"{found.layout} has {ends}{f', so {found.simpler} does as well' if found.simpler else ''}"
 
 
-def _parameters(found: tuple[FoundNetwork, ...] | list[FoundNetwork]) -> list[str]:
+def _parameters(found: Iterable[FoundNetwork | FrontNetwork | RealResult]) -> list[str]:
     """Names of all parameters, by kind and number."""
     every = {name for network in found for name in network.parameters}
     ranks = {kind.symbol: rank for rank, kind in enumerate(ELEMENT_TYPES)}

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import partial
 from math import nan
 from pathlib import Path
@@ -13,88 +13,36 @@ from typing import Any
 
 from inerter.atomic_io import write_text
 from inerter.errors import OK, Status, StatusKind, WorkError
-from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
+from inerter.files.common.folder import FIGURES, REPORT, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.checking import fixed_part, kernels, search_plans
 from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED, VERSIONS, Progress, origins
-from inerter.files.study.search_tables import networks_table
+from inerter.files.study.search_parts import (
+    GroupResult,
+    NetworkFrontPart,
+    NetworkFrontResult,
+    NetworkGroup,
+    RealPart,
+    RealResult,
+    result_of,
+)
+from inerter.files.study.search_tables import front_table, networks_table, real_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
-from inerter.network_search.network_optimum import SearchedNetwork
-from inerter.network_search.plan import SearchPlan, search_group
+from inerter.network_search.front_results import NetworkFront
+from inerter.network_search.fronts import FrontPlan, front_waves
+from inerter.network_search.plan import SearchPlan
 from inerter.network_search.results import SearchResult, collect_results
-from inerter.networks.enumeration import Topology
 from inerter.networks.parser import names
-from inerter.table import csv_rows, csv_text
+from inerter.table import Table, csv_rows, csv_text
 from inerter.work.journal import Journal
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 
-TABLE = "search.csv"
-
-
-@dataclass(frozen=True)
-class NetworkGroup(StudyPart["GroupResult"]):
-    """Some networks of a layout, which are searched together for an index."""
-
-    layout: str
-    index: str
-    number: int
-    topologies: tuple[Topology, ...] = field(default=(), compare=False, repr=False)
-    plan: SearchPlan | None = field(default=None, compare=False, repr=False)
-
-    @property
-    def name(self) -> str:
-        """Name of the group in messages."""
-        return f"{self.layout} {self.index} group {self.number + 1}"
-
-    def compute(self, study: Study, designs: Mapping[Case, Outcome], threads: int) -> GroupResult:
-        """The best values of each network of the group."""
-        assert self.plan is not None
-        return self._result(search_group(self.plan, self.topologies))
-
-    def failed_result(self, study: Study, message: str) -> GroupResult:
-        """Result in which every network has failed for the same reason."""
-        return self._result([SearchedNetwork(topology, reason=message) for topology in self.topologies], message)
-
-    def _result(self, searched: Iterable[SearchedNetwork], message: str = "") -> GroupResult:
-        networks = [{**vars(one), "topology": one.topology.tree} for one in searched]
-        return GroupResult(self.layout, self.index, self.number, networks, message)
-
-
-@dataclass(frozen=True)
-class GroupResult(PartResult):
-    """The best values of some networks, or the reason why there are none; all of it survives JSON."""
-
-    layout: str
-    index: str
-    number: int
-    networks: list[dict[str, Any]]  # the fields of each `SearchedNetwork`
-    message: str = ""
-
-    @property
-    def part(self) -> NetworkGroup:
-        """Group to which the result belongs."""
-        return NetworkGroup(self.layout, self.index, self.number)
-
-    @property
-    def kind(self) -> str:
-        """Kind of status: `failed` if the group as a whole has no result."""
-        return (StatusKind.FAILED if self.message else StatusKind.OK).value
-
-    def optima(self) -> Iterator[SearchedNetwork]:
-        """The networks with what was found for each."""
-        for one in self.networks:
-            values = {"topology": Topology(_tree(one["topology"])), "values": tuple(one["values"])}
-            yield SearchedNetwork(**{**one, **values})
-
-
-def _tree(entry: Any) -> Any:
-    """The tree of a topology from JSON, which has lists for tuples."""
-    return entry if isinstance(entry, str) else tuple(map(_tree, entry))
+TABLE, FRONT_TABLE, REAL_TABLE = "search.csv", "search_front.csv", "search_real_inerters.csv"
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +54,20 @@ class LayoutSearch:
     heading: str  # index, and layout where there are several
     result: SearchResult
     baseline: float = nan
+    real: tuple[RealResult, ...] = ()  # the best networks with real inerters, and the baseline by the same methods
+
+    def real_baseline(self, method: str) -> float:
+        """The index of the baseline by a method; nan if it is not known."""
+        return next((one.value for one in self.real if one.method == method and not one.network), nan)
+
+
+@dataclass(frozen=True, eq=False)
+class LayoutFront:
+    """The front over the networks of a layout, for the indices of `trade_off`."""
+
+    layout: str
+    heading: str
+    result: NetworkFront
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +78,7 @@ class StudySearch:
     study: Study
     searches: tuple[LayoutSearch, ...]
     fixed: tuple[Outcome, ...] = ()  # designs of the layouts without a free network
+    fronts: tuple[LayoutFront, ...] = ()
     computed: int = 0  # networks that this run searched; the others were there already
 
     @property
@@ -153,22 +116,94 @@ def search_study(
 
     Raises what `run_study` raises, and `StudyError` for a study that cannot be searched.
     """
+    study = replace(study, indices=tuple(dict.fromkeys([*study.indices, *study.trade_off])))
     plans = search_plans(study)
     mode = WriteMode(Path(folder), "search", _result_names(), study.inputs, resume, force)
     with open_results(mode) as results, worker_pool(jobs, executor) as pool:
-        done, computed = _compute(study, plans, results, pool, progress, compiling, on_groups)
-        outcomes = tuple(one for one in done.values() if isinstance(one, Outcome))
-        found = StudySearch(results.folder, study, tuple(_searches(study, plans, done)), outcomes, computed)
+        journal = journals.journal_of(study, results.place / journals.NAME)
+        done: dict[Any, PartResult] = {one.part: one for one in _read(journal)} if results.resume else {}
+        results.list_journal(journals.NAME)
+        with logging_steps(), journal.appending(results.resume) as append:
+            work = _Work(study, pool, append, done, progress, compiling, on_groups)
+            found = _search(study, plans, work, results.folder)
         write_text(results.draft / RESOLVED, write_resolved(study))
         write_text(results.draft / VERSIONS, json.dumps(origins(study), indent=2) + "\n")
-        write_text(results.draft / TABLE, csv_text(csv_rows(networks_table(found))))
+        for name, table in tables_of(found).items():
+            write_text(results.draft / name, csv_text(csv_rows(table)))
         results.publish()
         finish(found, results.draft)
     return found
 
 
 def _result_names() -> tuple[str, ...]:
-    return (journals.NAME, RESOLVED, TABLE, VERSIONS, f"{FIGURES}/", REPORT)
+    return (journals.NAME, RESOLVED, TABLE, FRONT_TABLE, REAL_TABLE, VERSIONS, f"{FIGURES}/", REPORT)
+
+
+def tables_of(found: StudySearch) -> dict[str, Table]:
+    """Tables of a search by the names of their files."""
+    tables = {TABLE: networks_table(found)}
+    if found.fronts:
+        tables[FRONT_TABLE] = front_table(found)
+    if found.study.real_inerters is not None:
+        tables[REAL_TABLE] = real_table(found)
+    return tables
+
+
+def _search(study: Study, plans: Mapping[tuple[str, str], SearchPlan], work: _Work, folder: Path) -> StudySearch:
+    """Networks for each index, then their front, then the best of them with real inerters."""
+    work.prepare(_kernels(study, plans), *_parts(study, plans))
+    work.compute(_parts(study, plans))
+    outcomes = tuple(one for one in work.done.values() if isinstance(one, Outcome))
+    searches = list(_searches(study, plans, work.done))
+    fronts = tuple(_fronts(study, plans, searches, work)) if study.trade_off else ()
+    work.compute([part for one in searches for part in _real_parts(study, one)])
+    work.end()
+    real = [one for one in work.done.values() if isinstance(one, RealResult)]
+    searches = [
+        replace(one, real=tuple(each for each in real if (each.layout, each.index) == (one.layout, one.index)))
+        for one in searches
+    ]
+    return StudySearch(folder, study, tuple(searches), outcomes, fronts, work.computed)
+
+
+def _fronts(
+    study: Study, plans: Mapping[tuple[str, str], SearchPlan], searches: Sequence[LayoutSearch], work: _Work
+) -> Iterator[LayoutFront]:
+    """The front over the networks of each layout; the waves are those of an uninterrupted search."""
+    layouts = list(dict.fromkeys(layout for layout, _ in plans))
+    for layout in layouts:
+        plan = FrontPlan(tuple(replace(plans[layout, index]) for index in study.trade_off), study.points)
+        own = {one.index: one.result for one in searches if one.layout == layout}
+        waves, number = front_waves(plan, [own[index] for index in study.trade_off]), 0
+        *titles, last = (study.index(index).title for index in study.trade_off)
+        heading = f"trade-off between {', '.join(titles)} and {last}"
+        try:
+            scale, tasks = next(waves)
+            while True:
+                sent = replace(plan, plans=tuple(map(replace, plan.plans)))
+                parts = [
+                    NetworkFrontPart(layout, number, plan.plans[0].topology_text(one.topology), one, sent, scale)
+                    for one in tasks
+                ]
+                found = [one for one in work.compute(parts) if isinstance(one, NetworkFrontResult)]
+                scale, tasks = waves.send([one.network_points() for one in found])
+                number += 1
+        except StopIteration as end:
+            yield LayoutFront(layout, f"{heading}{f', {layout}' if len(layouts) > 1 else ''}", end.value)
+
+
+def _real_parts(study: Study, one: LayoutSearch) -> Iterator[RealPart]:
+    """The best networks of a search with inerters in them, and the baseline, by each method of `real_inerters`."""
+    if study.real_inerters is None:
+        return
+    searched = searched_layouts(study)
+    chosen = [found for found in one.result.ranking if not found.simpler][: study.real_inerters.best]
+    chosen = [found for found in dict.fromkeys([*one.result.frontier, *chosen]) if found.topology.counts["b"]]
+    for method in study.real_inerters.methods:
+        if study.baseline is not None and study.baseline not in searched:
+            yield RealPart(one.layout, one.index, method, "")
+        for found in chosen:
+            yield RealPart(one.layout, one.index, method, found.layout, replace(found, plan=replace(found.plan)))
 
 
 def _parts(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Case | NetworkGroup]:
@@ -182,61 +217,88 @@ def _parts(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Ca
     return [*fixed, *groups]
 
 
-def _compute(
-    study: Study,
-    plans: Mapping[tuple[str, str], SearchPlan],
-    results: Results,
-    pool: Pool,
-    progress: Progress,
-    compiling: ProgressCallback | None,
-    on_groups: Callable[[list[GroupResult]], object],
-) -> tuple[dict[Any, PartResult], int]:
-    """Results of all parts, and the number of networks that were not in the journal."""
-    parts = _parts(study, plans)
-    sizes = {part: len(part.topologies) if isinstance(part, NetworkGroup) else 1 for part in parts}
-    journal = journals.journal_of(study, results.place / journals.NAME)
-    done: dict[Any, PartResult] = {one.part: one for one in _read(journal)} if results.resume else {}
-    pending = [part for part in parts if part not in done]
-    if pending:
-        prepare_on(pool, _kernels(study, plans), compiling)
+class _Work:
+    """The work of a search: parts are computed once, and their results kept in the journal."""
 
-    def tell(ready: Collection[PartResult], last: PartResult | None) -> None:
-        on_groups([one for one in ready if isinstance(one, GroupResult)])
-        troubled = sum(not one.ok for one in done.values())
-        progress(sum(sizes[part] for part in done), sum(sizes.values()), last, troubled)
+    def __init__(
+        self,
+        study: Study,
+        pool: Pool,
+        append: Callable[..., object],
+        done: dict[Any, PartResult],
+        progress: Progress,
+        compiling: ProgressCallback | None,
+        on_groups: Callable[[list[GroupResult]], object],
+    ) -> None:
+        self.study, self.pool, self.append, self.done = study, pool, append, done
+        self.progress, self.compiling, self.on_groups = progress, compiling, on_groups
+        self.total = self.ready = 0  # networks of all parts so far, and those with a result
+        self.computed = 0  # those of this run
+        self.more = int(bool(study.trade_off) or study.real_inerters is not None)  # whether further parts will follow
 
-    tell(done.values(), None)
-    results.list_journal(journals.NAME)
-    run = partial(_result, study)
-    with logging_steps(), journal.appending(results.resume) as append:
-        for ready in pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, study)):
-            append(*(one.to_json() for one in ready))
-            done |= {one.part: one for one in ready}
-            tell(ready, ready[-1])
-    lost = len(set(parts) - set(done))
-    if lost:
-        raise WorkError(f"the executor returned no result for {lost} of {len(parts)} parts, and others twice.")
-    return {part: done[part] for part in parts}, sum(sizes[part] for part in pending)
+    def prepare(self, kernels: list[Any], *parts: StudyPart[Any]) -> None:
+        """Compile what the parts call, unless all of them are done."""
+        if any(part not in self.done for part in parts):
+            prepare_on(self.pool, kernels, self.compiling)
+
+    def compute(self, parts: Sequence[StudyPart[Any]]) -> list[PartResult]:
+        """Results of the parts, in their order."""
+        sizes = {part: len(part.topologies) if isinstance(part, NetworkGroup) else 1 for part in parts}
+        known, is_begun = [self.done[part] for part in parts if part in self.done], self.total > 0
+        pending = [part for part in parts if part not in self.done]
+        self.total += sum(sizes.values())
+        self.ready += sum(sizes[one.part] for one in known)
+        if not is_begun:
+            self._tell(known, None)
+        designs = {part: one for part, one in self.done.items() if isinstance(one, Outcome)}
+        run = partial(_result, self.study, designs)
+        lost = partial(lost_part, self.study)
+        for ready in self.pool.batches(run, pending, partial(run, threads=self.pool.jobs), lost):
+            self.append(*(one.to_json() for one in ready))
+            self.done |= {one.part: one for one in ready}
+            self.ready += sum(sizes[one.part] for one in ready)
+            self._tell(ready, ready[-1])
+        missing = len(set(parts) - set(self.done))
+        if missing:
+            raise WorkError(f"the executor returned no result for {missing} of {len(parts)} parts, and others twice.")
+        self.computed += sum(sizes[part] for part in pending)
+        return [self.done[part] for part in parts]
+
+    def end(self) -> None:
+        """Tell that no more parts follow."""
+        if self.more:
+            self.more = 0
+            self._tell([], next(reversed(self.done.values()), None))
+
+    def _tell(self, ready: Collection[PartResult], last: PartResult | None) -> None:
+        self.on_groups([one for one in ready if isinstance(one, GroupResult)])
+        troubled = sum(not one.ok for one in self.done.values())
+        self.progress(self.ready, self.total + self.more, last, troubled)
 
 
-def _result(study: Study, part: StudyPart[Any], threads: int = 1) -> PartResult:
-    result: PartResult = run_part(study, {}, part, threads)
+def _result(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[Any], threads: int = 1) -> PartResult:
+    result: PartResult = run_part(study, designs, part, threads)
     return result
 
 
 def _read(journal: Journal) -> Iterator[PartResult]:
     for entry in journal.read():
-        yield GroupResult(**entry) if "networks" in entry else Outcome(**entry)
+        yield result_of(entry)
 
 
 def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Any]:
     """The compiled code that the work calls."""
     found = [kernel for plan in plans.values() for kernel in plan.kernels()]
+    if study.trade_off:
+        found += FrontPlan(tuple(plans.values()), study.points).kernels()
     fixed = fixed_part(study)
     if fixed.layouts:
         found += kernels(fixed)
     elif others := [plan for plan in plans.values() if plan.compiled is None]:
         found += kernels(study, others[0].design(others[0].topologies[-1]))
+    for method in study.real_inerters.methods if study.real_inerters is not None else ():
+        plan = next(iter(plans.values()))
+        found += kernels(replace(study, optimise=method, evaluate=()), plan.design(plan.topologies[-1]))
     return list(dict.fromkeys(found))
 
 

@@ -33,7 +33,9 @@ from inerter.files.common.entries import (
     UPPER,
     SomeOfFile,
     declaration_of,
+    not_negative,
     one_of,
+    positive,
     some_names,
     some_of,
     whole,
@@ -51,7 +53,8 @@ from inerter.files.study.place import ELEMENTS, Sweep, place_of
 from inerter.files.study.task_registry import TASKS
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
-from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches
+from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches, with_gradients
+from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements.registry import format_unit_kinds
 from inerter.registry import cache_until_registration
 from inerter.units import quote_value
@@ -60,6 +63,8 @@ from inerter.vehicle.registry import VEHICLES
 _MOST_ROADS = 100_000
 _MOST_OF_FRONT = 1000
 OVER = ("mean", "worst")
+_SHAFT = RealInerter()
+_QUICK = with_gradients("exact")[0].name  # of the quick methods the one that models most
 SPACINGS = ("linear", "log")
 POINTS = 25  # of a front
 ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
@@ -199,6 +204,34 @@ _SCATTER = Scalar(_scatter, lambda: {"anyOf": [SHARE_SCHEMA, {"type": "string", 
 
 
 @keyed_dataclass
+class RealInerters:
+    """Real inerters in the best networks of a search: friction, elastic shaft, and the methods that optimise them."""
+
+    friction: float = key(not_negative("N"), "Friction of each inerter.", 'friction = "10 N"')
+    stiffness: float = key(
+        positive("N/m"), "Stiffness of the shaft in series.", 'stiffness = "1 MN/m"', default=_SHAFT.stiffness
+    )
+    damping: float = key(positive("N s/m"), "Damping of the shaft.", 'damping = "3.2 kN s/m"', default=_SHAFT.damping)
+    methods: tuple[str, ...] = key(
+        some_of("a method", METHODS),
+        "Methods, each of which optimises the values for real inerters; norm neglects their friction.",
+        'methods = ["expected-value"]',
+        default=(_QUICK,),
+    )
+    best: int = key(
+        whole(1, 1000),
+        "Number of the best networks, besides the best of each number of elements.",
+        "best = 3",
+        default=3,
+    )
+
+    @property
+    def shaft(self) -> RealInerter:
+        """The shaft of each inerter."""
+        return RealInerter(self.stiffness, self.damping)
+
+
+@keyed_dataclass
 class Settings:
     """Indices to compute, and the methods that compute them."""
 
@@ -272,6 +305,12 @@ class Settings:
         _INDICES, "Two or three indices whose Pareto front is computed.", 'trade_off = ["J1", "J3"]', default=()
     )
     points: int = key(whole(3, _MOST_OF_FRONT), "Number of designs on a Pareto front.", "points = 25", default=POINTS)
+    real_inerters: RealInerters | None = key(
+        table_of(RealInerters, about=RealInerters.__doc__),
+        "Real inerters with which inerter search optimises its best networks once more.",
+        'real_inerters = { friction = "10 N", best = 3 }',
+        default=None,
+    )
     tolerance: Mapping[str, float] = key(
         PlacesCodec(_SCATTER),
         "Relative tolerance of each value, for the distribution of the index and its Sobol' indices.",

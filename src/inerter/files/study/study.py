@@ -74,8 +74,12 @@ class Study(Settings):
         return name in self.own_indices or name in index_names()
 
     def symbol(self, name: str) -> str:
-        """Symbol of the index of that name."""
+        """Symbol of the index of that name; raises `StudyError` for an unknown one."""
         own = self.own_indices.get(name)
+        if not self.knows(name):
+            known = [*self.own_indices, *index_names()]
+            hint = nearest(name, known)
+            raise StudyError(str(EntryError(got=f"index {name!r}", expected=f"one of {', '.join(known)}", hint=hint)))
         return own.symbol if own else index_names()[name]
 
     def index(self, name: str) -> Index:

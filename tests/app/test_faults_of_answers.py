@@ -152,3 +152,11 @@ def test_every_remedy_with_an_option_is_an_offer_or_a_sentence() -> None:
         assert one["label"]
         config = one.get("config") or {one["ask"]["section"]: {one["ask"]["key"]: one["ask"]["example"]}}
         identification_of({"model": {}, **config}, Path("x.toml"))
+
+
+@pytest.mark.parametrize("panel", ["indices", "response", "compare", "optimise"])
+def test_an_index_that_is_none_is_a_sentence(client: TestClient, panel: str) -> None:
+    told = _answer(client, _with(), ["S1", "S3"], panel, indices=["J9"])
+    assert told.status_code == 400
+    assert "J9" in told.json()["sentence"]
+    assert "J1" in told.json()["sentence"]

@@ -1,0 +1,20 @@
+"""
+Over a kerb
+===========
+
+Motion of the body after a step of the road, linear: one metre of body for one metre of kerb.
+"""
+
+import inerter as it
+
+road = it.Road(roughness=5e-7, speed=25)
+comfort, grip = it.RideComfort(road), it.TyreLoad(road)
+k, c, b = it.Spring(120e3), it.Damper(it.free(100, 100e3, "c")), it.Inerter(it.free(1, 2000, "b"))
+
+
+def car(strut):
+    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+
+
+designs = {"S1": car(k | it.Damper(4981)), "S3": car(k | it.Damper(7544) - it.Inerter(366.5))}
+ax = it.plot_step_response(designs, ("road", "sprung_displacement"))

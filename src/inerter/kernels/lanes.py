@@ -1,0 +1,93 @@
+"""Several designs side by side: numbers of compiled code that are `WIDTH` numbers, one of each design.
+
+Parts that are written for numbers serve for these too: `in_lanes` makes an array of them, all arithmetic is that of
+each lane, and a number alone stands for one that is equal in all lanes. Each operation is rounded as it is for one
+number. There are no branches: a comparison becomes a number by `is_between`.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from inerter.kernels.decorators import instruction, numba_lanes
+
+Array = Any
+WIDTH = 16  # two registers of AVX-512
+
+
+def _is_between(x: float, low: float, high: float) -> float:
+    """1.0 if low < x < high, else 0.0, also for nan."""
+    return 1.0 if low < x < high else 0.0
+
+
+@instruction(_is_between)
+def is_between(typing: Any, x: Any, low: Any, high: Any) -> Any:
+    """Compile `_is_between`, in each lane."""
+    return numba_lanes().is_between(x, low, high)
+
+
+def _larger(x: float, y: float) -> float:
+    """The larger of two numbers; y if one is nan."""
+    return x if x > y else y
+
+
+@instruction(_larger)
+def larger(typing: Any, x: Any, y: Any) -> Any:
+    """Compile `_larger`, in each lane."""
+    return numba_lanes().larger(x, y)
+
+
+def _choose(condition: float, x: Any, y: Any) -> Any:
+    """The first of two numbers where the condition is not zero, else the second."""
+    return x if condition != 0.0 else y
+
+
+@instruction(_choose)
+def choose(typing: Any, condition: Any, x: Any, y: Any) -> Any:
+    """Compile `_choose`, in each lane."""
+    return numba_lanes().choose(condition, x, y)
+
+
+def _largest_lane(x: float) -> float:
+    """The largest of the numbers in all lanes."""
+    return x
+
+
+@instruction(_largest_lane)
+def largest_lane(typing: Any, x: Any) -> Any:
+    """Compile `_largest_lane`."""
+    return numba_lanes().largest_lane(x)
+
+
+def _root(x: float) -> float:
+    return np.sqrt(x)  # type: ignore[no-any-return]
+
+
+@instruction(_root)
+def root(typing: Any, x: Any) -> Any:
+    """Compile the square root, of each lane."""
+    return numba_lanes().root(x)
+
+
+def _in_lanes(flat: Array, shape: tuple[int, ...]) -> Array:
+    """Array of lanes in the room of an array of numbers, which has `WIDTH` numbers more than it needs."""
+    raise NotImplementedError
+
+
+@instruction(_in_lanes)
+def in_lanes(typing: Any, flat: Any, shape: Any) -> Any:
+    """Compile `_in_lanes`."""
+    return numba_lanes().in_lanes(flat, shape, WIDTH)
+
+
+def _in_numbers(lanes: Array) -> Array:
+    """The lanes (n, `WIDTH`) of an array (n,), to read and write."""
+    raise NotImplementedError
+
+
+@instruction(_in_numbers)
+def in_numbers(typing: Any, lanes: Any) -> Any:
+    """Compile `_in_numbers`."""
+    return numba_lanes().in_numbers(lanes)

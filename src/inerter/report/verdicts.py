@@ -1,0 +1,238 @@
+"""Verdict of a study without a sweep for each index: the decision that the workbench shows, from a table of results."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from math import hypot, isfinite, nan
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inerter.decision.caveats import CaveatKind
+from inerter.decision.decide import Decision, decide
+from inerter.decision.of_study import bound_clause, decisive_method, nonlinear_elements, remedy_of
+from inerter.decision.results import DesignResult, Improvement, IndexResult
+from inerter.errors import Status, StatusKind
+from inerter.figures.labels import (
+    bound_of,
+    by_method,
+    error_of,
+    format_list,
+    index_title,
+    index_unit,
+    indices,
+    layouts,
+    method_label,
+    methods,
+)
+from inerter.files.study.study import Study
+from inerter.formatting import format_quantity
+from inerter.methods.registry import brief_words_of, decisive_method_clause
+from inerter.methods.ties import ACCURACY
+from inerter.report.index_summary import best_layouts, margins_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STATIC = "the static limit, which no damper or inerter lowers"
+_TWO_SIDED = 2.0  # standard errors of a difference that is not significant
+_ELSEWHERE = (CaveatKind.LIMIT, CaveatKind.NEGLECTED)  # said once for all indices, in the sentence on limits and notes
+
+
+def verdict_sentences(
+    results: xr.Dataset, study: Study | None = None, static: Collection[tuple[str, str]] = ()
+) -> list[str]:
+    """Verdict and caveats of each index, in one paragraph.
+
+    `static` are indices and layouts whose largest gain is that under a steady force. With the study, the friction that
+    its methods model or neglect is named.
+    """
+    return [" ".join(_sentences(results, study, index, static)) for index in indices(results)]
+
+
+def _sentences(
+    results: xr.Dataset, study: Study | None, index: str, static: Collection[tuple[str, str]]
+) -> Iterator[str]:
+    told = study_decision(results, index, study)
+    yield _with_other_methods(results, index, told)
+    for caveat in told.verdict.caveats:
+        if caveat.kind not in _ELSEWHERE:
+            yield caveat.sentence
+    held = [one for one in told.winners if (index, one.name) in static]
+    if held:
+        names = format_list([one.name for one in held])
+        yield f"{held[0].goal.text} of {names} is {_STATIC}."
+
+
+def study_decision(results: xr.Dataset, index: str, study: Study | None = None) -> Decision:
+    """Decision on the best designs for an index, by the first method that models friction."""
+    method = decisive_method(methods(results)) if methods(results) else ""
+    one = by_method(results, method) if method else results
+    row = one.sel(index=index)
+    row = row.squeeze(
+        [name for name, size in row.sizes.items() if size == 1 and name not in ("layout", "parameter", "other")]
+    )
+    designs = [_design(results, row, index, name, method, study) for name in layouts(results)]
+
+    def over(first: DesignResult, second: DesignResult) -> Improvement | None:
+        return _over(row, first, second)
+
+    return decide(
+        designs,
+        over,
+        method=brief_words_of(method) if method else "",
+        remedy=remedy_of(method) if method else "",
+    )
+
+
+def _design(
+    results: xr.Dataset, row: xr.Dataset, index: str, layout: str, method: str, study: Study | None
+) -> DesignResult:
+    """Best design of a layout for an index, as a decision compares it."""
+    design, baseline = row.sel(layout=layout), row.attrs["baseline"]
+    modelled, neglected = ((), ()) if study is None else _nonlinear(study, layout, method)
+    return DesignResult(
+        name=layout,
+        goal=IndexResult(
+            index=index,
+            title=index_title(results, index),
+            unit=index_unit(results, index),
+            value=float(design["value"]),
+            status=_status(results, design, method),
+            standard_error=error_of(design),
+            error_bound=bound_of(design),
+            improvement=None if layout == baseline else _improvement(row, layout),
+        ),
+        others=tuple(_others(results, row, index, layout)),
+        at_bounds=tuple(_at_bounds(design)),
+        modelled=modelled,
+        neglected=neglected,
+        is_baseline=layout == baseline,
+        n_elements=int(design["elements"]) if "elements" in design.coords else 0,
+    )
+
+
+def _nonlinear(study: Study, layout: str, method: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    return nonlinear_elements(study.design(layout).mechanism(), method) if method else ((), ())
+
+
+def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
+    """Status of a design; its message names the method that can decide, where the study has no other."""
+    kind, message = Status.parts(str(design["status"].item()))
+    status = Status(StatusKind(kind) if kind in list(StatusKind) else StatusKind.FAILED, message)
+    clause = decisive_method_clause(method, status) if method and len(methods(results)) == 1 else ""
+    return Status(status.kind, f"{message.rstrip('.')}{clause}")
+
+
+def _improvement(row: xr.Dataset, layout: str) -> Improvement | None:
+    """Improvement over the baseline; None without a baseline, or if one of them has no finite value."""
+    design, baseline = row.sel(layout=layout), row.attrs["baseline"]
+    percent = float(design["improvement"])
+    if not baseline or not isfinite(percent):
+        return None
+    own, base = float(design["value"]), float(row["value"].sel(layout=baseline))
+    return Improvement(
+        percent,
+        error_of(design, "improvement"),
+        bound_of(design, "improvement"),
+        abs(own - base) <= _margin(row, layout, baseline) + 2.0 * ACCURACY * min(abs(own), abs(base)),
+    )
+
+
+def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improvement | None:
+    """Improvement of one design over another."""
+    own, other = first.goal.value, second.goal.value
+    if second.is_baseline:
+        return first.goal.improvement
+    if not isfinite(own) or not isfinite(other) or other == 0.0:
+        return None
+    errors = [_relative_error(row, one.name) * one.goal.value for one in (first, second)]
+    margin = _margin(row, first.name, second.name)
+    return Improvement(
+        100.0 * (1.0 - own / other),
+        100.0 * hypot(*errors) / abs(other) if all(map(isfinite, errors)) and any(errors) else nan,
+        is_tie=abs(own - other) <= margin + 2.0 * ACCURACY * min(abs(own), abs(other)),
+    )
+
+
+def _margin(row: xr.Dataset, first: str, second: str) -> float:
+    """Difference of two values within their 95 % confidence interval; zero without uncertainties."""
+    names = np.atleast_1d(row["layout"].values).tolist()
+    margins = margins_of(row, names.index(second))
+    return float(margins[names.index(first)])
+
+
+def _relative_error(row: xr.Dataset, layout: str) -> float:
+    design = row.sel(layout=layout)
+    error, value = error_of(design), float(design["value"])
+    return error / abs(value) if isfinite(error) and value else 0.0
+
+
+def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> Iterator[IndexResult]:
+    """Other indices of the same design, compared with those of the baseline's design.
+
+    Their standard errors are not among the results; those of the index itself, relative to it, take their place.
+    """
+    baseline = row.attrs["baseline"]
+    if "other_value" not in row or not baseline:
+        return
+    spread = 100.0 * hypot(_relative_error(row, layout), _relative_error(row, baseline))
+    for other in results["other"].values.tolist():
+        own, base = (float(row["other_value"].sel(layout=name, other=other)) for name in (layout, baseline))
+        by = None
+        if other != index and layout != baseline and isfinite(own) and isfinite(base) and base != 0.0:
+            percent = 100.0 * (1.0 - own / base)
+            by = Improvement(
+                percent, bound=_other_bound(row, layout, other), is_tie=abs(percent) <= _TWO_SIDED * spread
+            )
+        if other != index and not (np.isnan(own) and np.isnan(base)):
+            yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
+
+
+def _other_bound(row: xr.Dataset, layout: str, other: str) -> float:
+    """Largest error of an improvement in another index [%], to first order."""
+    if "other_error_bound" not in row:
+        return nan
+    bounds = row["other_error_bound"].sel(layout=[layout, row.attrs["baseline"]], other=other)
+    return 100.0 * float(bounds.sum(skipna=False))
+
+
+def _at_bounds(design: xr.Dataset) -> Iterator[str]:
+    if "at_bound" not in design:
+        return
+    for name in design["parameter"].values.tolist():
+        entry = design.sel(parameter=name)
+        value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
+        if bound and isfinite(value):
+            yield bound_clause(name, bound, value, str(entry["parameter_unit"].item()))
+
+
+def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:
+    """Verdict, and the best layouts by the other methods of the study."""
+    names, sentence = methods(results), told.verdict.sentence
+    decisive = decisive_method(names) if names else ""
+    clauses = [
+        f"; {method_label(results, method)} {_clause(by_method(results, method), index, told)}"
+        for method in names
+        if method != decisive
+    ]
+    return f"{sentence.removesuffix('.')}{''.join(clauses)}."
+
+
+def _clause(results: xr.Dataset, index: str, told: Decision) -> str:
+    """Clause on the best layouts by another method."""
+    best, baseline = best_layouts(results, index), results.attrs["baseline"]
+    if not best:
+        return "there is none"
+    design = results.sel(layout=best[0], index=index)
+    percent = float(design["improvement"])
+    by = Improvement(percent, error_of(design, "improvement"), bound_of(design, "improvement"))
+    same = {one.name for one in told.winners} == set(best)
+    who = f"still {format_list(best)}" if same else f"{format_list(best)}, {_value(results, design, index)}"
+    compared = best[0] != baseline and isfinite(percent) and not by.is_equal
+    return f"{who}{f', {by.words}' if compared else ''}"
+
+
+def _value(results: xr.Dataset, design: xr.Dataset, index: str) -> str:
+    unit = index_unit(results, index)
+    return format_quantity(float(design["value"]), unit, error=error_of(design), bound=bound_of(design))

@@ -1,0 +1,318 @@
+"""FMUs move as `simulate` does, in both versions, validated and stepped by FMPy."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from designs import design
+
+import inerter as it
+from inerter.errors import ExportError, WorkError
+from inerter.networks.transform import map_elements
+
+pytest.importorskip("fmpy", reason='FMPy steps FMUs: pip install "inerter[test]".')
+import fmpy
+from fmpy.validation import validate_fmu
+from fmu_master import Master
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("cc") is None or not sys.platform.startswith("linux"), reason="There is no C compiler called cc."
+)
+K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
+CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
+KINDS = ("fmu", "fmu3")
+SHOWN = ("sprung_acceleration", "strut_force", "tyre_load", "sprung_displacement")
+
+
+@pytest.fixture
+def masters() -> Iterator[list[Master]]:
+    opened: list[Master] = []
+    yield opened
+    for one in opened:
+        one.close()
+
+
+def opened(masters: list[Master], vehicle: object, kind: str, folder: Path, **options: object) -> Master:
+    path = it.export(vehicle, kind, folder / f"{kind}-{len(masters)}.fmu", **options)
+    masters.append(Master(path))
+    return masters[-1]
+
+
+def road(duration: float, step: float, seed: int = 0) -> tuple[it.Signal, np.ndarray, np.ndarray]:
+    """A road of cubics between the communication points, with its heights and slopes there; it begins at zero."""
+    rng = np.random.default_rng(seed)
+    time = step * np.arange(round(duration / step) + 1)
+    lines = [(rng.uniform(0.5, 30.0), 10.0 ** rng.uniform(-4, -2.3), rng.uniform(0, 2 * np.pi)) for _ in range(12)]
+    height = sum(a * (np.sin(2 * np.pi * f * time + p) - np.sin(p)) for f, a, p in lines)
+    slope = sum(2 * np.pi * f * a * np.cos(2 * np.pi * f * time + p) for f, a, p in lines)
+    return it.Signal.sampled(time, height, "cubic", derivative=slope), height, slope
+
+
+def rates(height: np.ndarray, slope: np.ndarray, step: float, at: int) -> tuple[float, float, float]:
+    """Velocity of a cubic over the step that begins at a knot, and its first two derivatives there."""
+    rise, ends = (height[at + 1] - height[at]) / step, slope[at] + slope[at + 1]
+    return slope[at], (6.0 * rise - 4.0 * slope[at] - 2.0 * slope[at + 1]) / step, 6.0 * (ends - 2.0 * rise) / step**2
+
+
+def driven(master: Master, height: np.ndarray, slope: np.ndarray, step: float, shown: tuple[str, ...]) -> np.ndarray:
+    """Outputs after every step, with the road at every input of a road."""
+    given = {v.name for v in master.description.modelVariables if v.causality == "input"}
+    inputs = [name for name in master.references if name in given and name.endswith("_velocity")]
+    found = []
+    for at in range(height.size - 1):
+        for name in inputs:
+            master.set(name, *rates(height, slope, step, at))
+        master.step(step)
+        found.append(master.get(*shown))
+    return np.array(found)
+
+
+def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, shown: tuple[str, ...]) -> np.ndarray:
+    roads = {r.name: signal for r in vehicle.mechanism().roads}  # type: ignore[attr-defined]
+    run = it.simulate(vehicle, road=roads, step=step, duration=duration)  # type: ignore[arg-type]
+    assert run.status.ok
+    return np.array([run[name][1:] for name in shown]).T
+
+
+def error(found: np.ndarray, expected: np.ndarray) -> float:
+    """Largest r.m.s. of the error over the r.m.s. of the signal."""
+    return float(np.max(np.sqrt(np.mean((found - expected) ** 2, axis=0) / np.mean(expected**2, axis=0))))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("number", [0, 1, 2, 3, 4, 9])
+def test_fmpy_has_nothing_against_it(kind: str, number: int) -> None:
+    data = it.export(design(number), kind)
+    assert validate_fmu(io.BytesIO(data)) == []
+    assert data == it.export(design(number), kind)  # byte for byte
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("step", [1e-3, 2e-4])
+def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master], tmp_path: Path) -> None:
+    signal, height, slope = road(1.0, step)
+    found = driven(opened(masters, CAR, kind, tmp_path), height, slope, step, SHOWN)
+    assert error(found, simulated(CAR, signal, step, 1.0, SHOWN)) < 1e-11
+
+
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (1, 2, 4, 5)))
+def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
+    vehicle, step = design(number), 1e-3
+    signal, height, slope = road(0.5, step, number)
+    shown = tuple(
+        f"{mount.name}_{'force' if isinstance(mount, it.Strut) else 'load'}" for mount in vehicle.mechanism().mounts()
+    )
+    expected = simulated(vehicle, signal, step, 0.5, shown)
+    seen = np.sqrt(np.mean(expected**2, axis=0)) > 1e-9 * np.sqrt(np.mean(expected**2))
+    found = driven(opened(masters, vehicle, "fmu", tmp_path), height, slope, step, shown)
+    assert error(found[:, seen], expected[:, seen]) < 1e-10
+
+
+SHAFT = it.Spring(1e6) | it.Damper(3200.0)
+ROUGH = {  # struts, with the largest error of an output against the event-driven simulation
+    "friction beside the inerter": (K | C - (B | it.Friction(100.0)), 1e-6),
+    "on an elastic shaft": (K | C - SHAFT - (B | it.Friction(100.0)), 1e-6),
+    "friction of the whole strut": (K | C | it.Friction(100.0), 5e-6),
+    "backlash and friction": (K | C - it.Gap(5e-4) - SHAFT - (B | it.Friction(20.0)), 3e-5),
+    "a stop": (it.Spring(3e4) | it.Damper(1.5e3) | (it.Spring(2e5) | it.Damper(500.0)) - it.Gap(5e-3), 5e-6),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", ROUGH)
+def test_friction_and_gaps_move_as_the_simulation(name: str, kind: str, masters: list[Master], tmp_path: Path) -> None:
+    strut, largest = ROUGH[name]
+    car, step = it.QuarterCar(181.75, 25.0, 120e3, strut), 1e-3
+    signal, height, slope = road(2.0, step)
+    found = driven(opened(masters, car, kind, tmp_path), height, slope, step, SHOWN)
+    assert error(found, simulated(car, signal, step, 2.0, SHOWN)) < largest
+    assert validate_fmu(str(tmp_path / f"{kind}-0.fmu")) == []
+
+
+def rough(number: int) -> it.Mechanism:
+    """A random design with friction beside most of its dampers and inerters, and with backlash and a shaft at some."""
+    rng = np.random.default_rng([691, number])
+
+    def change(element: it.Element) -> it.Network:
+        if not isinstance(element, it.Damper | it.Inerter) or rng.random() > 0.6:
+            return element
+        made = element | it.Friction(float(10.0 ** rng.uniform(0.5, 2.2)))
+        if number % 2 and rng.random() < 0.5:
+            shaft = it.Spring(float(10.0 ** rng.uniform(5, 6))) | it.Damper(float(10.0 ** rng.uniform(3, 4)))
+            made = made - it.Gap(float(10.0 ** rng.uniform(-4, -2.5))) - shaft
+        return made
+
+    mechanism = design(number).mechanism()
+    return replace(
+        mechanism, struts=tuple(replace(s, network=map_elements(s.network, change)) for s in mechanism.struts)
+    )
+
+
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (0, 2, 9, 14)))
+def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
+    """Most to 1e-5; slower where a light damper makes a time constant shorter than a tenth of a millisecond."""
+    vehicle, step = rough(number), 1e-3
+    signal, height, slope = road(0.5, step, number)
+    shown = tuple(f"{m.name}_{'force' if isinstance(m, it.Strut) else 'load'}" for m in vehicle.mounts())
+    try:
+        master = opened(masters, vehicle, "fmu", tmp_path)
+    except ExportError:  # friction or a gap where only springs are
+        return
+    expected = simulated(vehicle, signal, step, 0.5, shown)
+    seen = np.sqrt(np.mean(expected**2, axis=0)) > 1e-9 * np.sqrt(np.mean(expected**2))
+    assert error(driven(master, height, slope, step, shown)[:, seen], expected[:, seen]) < 3e-3
+
+
+def test_what_friction_and_gaps_must_stand_beside(tmp_path: Path) -> None:
+    alone = it.QuarterCar(181.75, 25.0, 120e3, K | C | it.Spring(1e5) - it.Friction(50.0))
+    with pytest.raises(it.InerterError, match="needs a mass, inerter or damper at both ends of the friction 'f'"):
+        it.export(alone, "fmu")
+    assert it.export(alone, "fmu", linear=True)
+    tyre = it.Mechanism(
+        (it.Coordinate("wheel", 30.0),),
+        (it.Strut("hook", it.Spring(1e4), {"wheel": 1.0}, it.GROUND),),
+        (it.Tyre("tyre", it.Spring(1e5) | it.Friction(10.0), {"wheel": 1.0}, "road"),),
+        (it.RoadInput("road"),),
+    )
+    with pytest.raises(it.InerterError, match="on the road itself"):
+        it.export(tyre, "fmu")
+    car = it.QuarterCar(181.75, 25.0, 120e3, K | C | it.Friction(50.0))
+    with pytest.raises(it.InerterError, match="has no output 'f_force'"):
+        it.export(car, "fmu", outputs=["f_force"])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_state_with_friction_is_restored_in_another_instance(
+    kind: str, masters: list[Master], tmp_path: Path
+) -> None:
+    car = it.QuarterCar(181.75, 25.0, 120e3, ROUGH["backlash and friction"][0])
+    _, height, slope = road(0.4, 1e-3)
+    one, other = opened(masters, car, kind, tmp_path), opened(masters, car, kind, tmp_path)
+    driven(one, height[:201], slope[:201], 1e-3, SHOWN)
+    saved = one.save()
+    later = driven(one, height[200:], slope[200:], 1e-3, SHOWN)
+    other.restore(saved, 0.2)
+    assert np.array_equal(driven(other, height[200:], slope[200:], 1e-3, SHOWN), later)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_state_is_restored_in_another_instance(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    _, height, slope = road(0.4, 1e-3)
+    one, other = opened(masters, CAR, kind, tmp_path), opened(masters, CAR, kind, tmp_path)
+    driven(one, height[:201], slope[:201], 1e-3, SHOWN)
+    saved = one.save()
+    later = driven(one, height[200:], slope[200:], 1e-3, SHOWN)
+    other.restore(saved, 0.2)
+    assert np.array_equal(driven(other, height[200:], slope[200:], 1e-3, SHOWN), later)
+    one.restore(saved, 0.2)
+    assert np.array_equal(driven(one, height[200:], slope[200:], 1e-3, SHOWN), later)
+    one.reset()
+    again = driven(one, height, slope, 1e-3, SHOWN)
+    other.reset()
+    assert np.array_equal(driven(other, height, slope, 1e-3, SHOWN), again)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_steps_of_any_length(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    """A road velocity that is one cubic: the exact flow does not depend on the steps."""
+    master = opened(masters, CAR, kind, tmp_path)
+    cubic = np.polynomial.Polynomial([0.3, -2.0, 15.0, -40.0])
+    ends = []
+    for cuts in (np.linspace(0.0, 0.3, 31), np.sort([0.0, *np.random.default_rng(1).uniform(0.0, 0.3, 20), 0.3])):
+        master.reset()
+        for begin, end in pairwise(cuts):
+            master.set("road_velocity", *(cubic.deriv(n)(begin) if n else cubic(begin) for n in range(4)))
+            master.set("sprung_force", 100.0)
+            master.step(end - begin)
+        ends.append(master.get(*SHOWN))
+    assert np.allclose(ends[0], ends[1], rtol=1e-11)
+
+
+def test_both_versions_are_one_engine(masters: list[Master], tmp_path: Path) -> None:
+    _, height, slope = road(0.3, 1e-3)
+    found = [driven(opened(masters, CAR, kind, tmp_path), height, slope, 1e-3, SHOWN) for kind in KINDS]
+    assert np.array_equal(*found)
+
+
+def test_derivatives_of_fmi_2_are_of_one_step(masters: list[Master], tmp_path: Path) -> None:
+    master = opened(masters, CAR, "fmu", tmp_path)
+    master.set("road_velocity", 1.0, 5.0)
+    master.step(0.1)
+    assert master.get("road_velocity") == pytest.approx(1.5, rel=1e-15)
+    master.step(0.1)
+    assert master.get("road_velocity") == pytest.approx(1.5, rel=1e-15)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_directional_derivatives_are_what_acts_at_once(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    master = opened(masters, CAR, kind, tmp_path)
+    known, unknown = (
+        [master.references["sprung_force"]],
+        [master.references[n] for n in ("sprung_acceleration", "tyre_load")],
+    )
+    assert list(master.fmu.getDirectionalDerivative(unknown, known, [1.0])) == [1.0 / 181.75, 0.0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("strut", [K | C - B, ROUGH["backlash and friction"][0]], ids=["linear", "switching"])
+def test_its_sources_alone_make_the_same_library(strut: it.Network, kind: str, tmp_path: Path) -> None:
+    """By a compiler that warns of everything, as C99."""
+    with zipfile.ZipFile(io.BytesIO(it.export(it.QuarterCar(181.75, 25.0, 120e3, strut), kind))) as archive:
+        archive.extractall(tmp_path)
+    main = {"fmu": "fmi2.c", "fmu3": "fmi3.c"}[kind]
+    options = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wno-type-limits", "-Werror", "-O2", "-fPIC", "-shared"]
+    command = ["cc", *options, "-fvisibility=hidden", "-ffp-contract=off", "-o", "again.so", main, "-lm"]
+    done = subprocess.run(command, cwd=tmp_path / "sources", capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr
+    (library,) = (tmp_path / "binaries").glob("*/*.so")
+    assert library.read_bytes() == (tmp_path / "sources" / "again.so").read_bytes()
+    symbols = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True).stdout
+    names = {line.split()[-1] for line in symbols.splitlines()}
+    assert names == declared(kind)
+
+
+def declared(kind: str) -> set[str]:
+    """Functions of the standard's own headers, which FMPy has; of FMI 2.0 without those of model exchange alone."""
+    folder, number = Path(fmpy.__file__).parent / "c-code", {"fmu": 2, "fmu3": 3}[kind]
+    text = (folder / f"fmi{number}FunctionTypes.h").read_text(encoding="utf-8")
+    if kind == "fmu":
+        begin, end = text.index("Model Exchange\n"), text.index("Co-Simulation\n")
+        text = text[:begin] + text[end:]
+    return set(re.findall(rf"\b(fmi{number}\w+)TYPE\b", text))
+
+
+def test_what_is_in_the_archive() -> None:
+    with zipfile.ZipFile(io.BytesIO(it.export(design(1), "fmu3", title="half car"))) as archive:
+        names = set(archive.namelist())
+        text = archive.read("modelDescription.xml").decode()
+    assert "binaries/x86_64-linux/half_car.so" in names
+    assert {"sources/engine.c", "sources/fmi3.c", "sources/model.h", "sources/buildDescription.xml"} <= names
+    assert 'name="road_front_velocity" valueReference="1" causality="input"' in text
+    assert re.search(r'name="road_rear_velocity_rate2" .*unit="m/s\^3"', text)
+    assert "delays and coherence are not in the model" in text
+
+
+def test_any_title_is_a_description(tmp_path: Path) -> None:
+    data = it.export(CAR, "fmu", title='Ü "<&>" \x01 ' + 300 * "long ")
+    assert validate_fmu(io.BytesIO(data)) == []
+
+
+def test_a_missing_or_failing_compiler_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CC", "no-compiler-of-this-name")
+    with pytest.raises(it.InerterError, match="there is none called cc"):
+        it.export(CAR, "fmu")
+    monkeypatch.setenv("CC", "false")
+    with pytest.raises(WorkError, match=r"The C compiler .* failed"):
+        it.export(CAR, "fmu")

@@ -1,0 +1,119 @@
+"""The frame of the page: nothing is scrolled, the verdict is that of the library, and keys lead to every place."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor, wait_until
+
+SCROLLED = """() => {
+  const page = document.documentElement;
+  const parts = [...document.querySelectorAll("header, nav.decision, .panel, footer.keys")];
+  const outside = parts.map(each => each.getBoundingClientRect())
+    .filter(box => box.bottom > innerHeight + 1 || box.right > innerWidth + 1);
+  return [page.scrollHeight - page.clientHeight, page.scrollWidth - page.clientWidth, outside.length];
+}"""
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
+def test_the_page_is_not_scrolled(visitor: Visitor, size: tuple[int, int]) -> None:
+    page = visitor.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    visitor.settled()
+    for tab in ("response", "history", "compare", "margins", "tolerance", "work", "rig"):
+        page.click(f"#tab-{tab}")
+        visitor.drawn()
+        assert page.evaluate(SCROLLED) == [0, 0, 0], tab
+
+
+def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor) -> None:
+    """Of each index as the goal; what does not fit into the line is counted, and opens with a key."""
+    page = visitor.page
+    visitor.settled()
+    for goal in ("J3", "J5"):
+        with page.expect_response(
+            lambda answer, goal=goal: (
+                "panel/decision" in answer.url and answer.ok and answer.request.post_data_json["index"] == goal
+            )
+        ) as found:
+            page.keyboard.press("2")
+            page.locator(f"input[name=goal][value={goal}]").check()
+            page.keyboard.press("Escape")
+        told = found.value.json()
+        page.wait_for_function(
+            "text => document.querySelector('#verdict > b').textContent === text", arg=told["verdict"]["sentence"]
+        )
+        sentences = [each["sentence"] for each in told["verdict"]["caveats"]]
+        assert page.locator("#verdict .caveat").evaluate_all("all => all.map(each => each.textContent)") == sentences
+        hidden = page.locator("#verdict .caveat[hidden]").count()
+        if hidden:
+            assert page.inner_text("#caveats-all") == f"{hidden} more"
+            page.keyboard.press("v")
+            assert page.locator("#verdict .menu-body li").all_inner_texts() == sentences
+            page.keyboard.press("Escape")
+        rows = page.locator(".answers tbody tr")
+        assert [row.locator(".pick").get_attribute("title") for row in rows.all()] == [
+            row["layout"] for row in told["rows"]
+        ]
+
+
+def test_keys_lead_to_every_place(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.settled()
+    focus = "() => document.activeElement.closest('section, nav, header, dialog, footer')?.className"
+    for key, place in {"1": "", "3": "panel answers", "4": "panel tabs"}.items():
+        page.keyboard.press(key)
+        wait_until(lambda place=place: page.evaluate(focus) == place)
+    assert page.locator("#tab-margins[aria-selected=true]").count() == 1
+    page.keyboard.press("?")
+    assert page.locator("dialog[open]").count() == 1
+    page.keyboard.press("Escape")
+    page.wait_for_selector("dialog[open]", state="detached")
+    page.keyboard.press("Control+o")
+    assert page.locator("#open-menu[open]").count() == 1
+    page.keyboard.press("Escape")
+    page.fill(".title", "o1?v")  # what is typed is text
+    assert page.locator("dialog[open], #verdict details[open]").count() == 0
+    page.locator("[data-place='elements.c'] input[type=range]").focus()
+    before = page.get_attribute("[id='entry elements.c']", "title")
+    page.keyboard.press("ArrowUp")
+    number = float(str(before).partition(" ")[0])
+    wait_until(lambda: abs(_number(page) / number - 1.01) < 1e-3)
+    page.keyboard.press("x")
+    wait_until(lambda: not page.locator("[data-place='elements.c'] input[type=checkbox]").is_checked())
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    wait_until(lambda: page.get_attribute("[id='entry elements.c']", "title") == before)
+    with page.expect_request("**/api/panel/optimise"):
+        page.keyboard.press("o")
+
+
+def _number(page: Any) -> float:
+    return float(str(page.get_attribute("[id='entry elements.c']", "title")).partition(" ")[0])
+
+
+def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors: Callable[..., Visitor]) -> None:
+    """The first screen has a card for each example; a study that was left is offered the next time."""
+    visitor = visitors(serve(None)).visit()
+    page = visitor.page
+    names = [each["name"] for each in json.loads(visitor.served.get("examples"))["examples"]]
+    wait_until(lambda: page.locator(".card").count() == len(names))
+    assert sorted(page.locator(".card").evaluate_all("all => all.map(each => each.dataset.example)")) == sorted(names)
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowLeft")
+    chosen = page.evaluate("() => document.activeElement.dataset.example")
+    assert chosen == "quarter-car"
+    page.keyboard.press("Enter")
+    title = page.locator("input.title")
+    title.wait_for()
+    opened = title.input_value()
+    assert f'title = "{opened}"' in (EXAMPLES / "quarter-car.toml").read_text()
+    visitor.settled()
+    page.reload()
+    other = visitors(visitor.served, context=page.context).visit().page
+    other.locator(".list-row", has_text=opened).click()
+    other.wait_for_function("text => document.querySelector('input.title')?.value === text", arg=opened)

@@ -1,0 +1,174 @@
+"""The vehicle in motion on the page: it moves, is held, has one clock with the plot, and says why it stands still."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from browser import EXAMPLES, Served, Visitor, wait_until
+
+_INK = """() => {
+  const canvas = document.querySelector(".vehicle canvas");
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let sum = 0;
+  for (let i = 0; i < data.length; i += 4) sum = (sum * 31 + data[i] + 3 * data[i + 1] + 7 * data[i + 3]) % 1e9;
+  return sum;
+}"""
+_COUNT = """([red, green, blue]) => {
+  const canvas = document.querySelector(".vehicle canvas");
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let found = 0;
+  for (let i = 0; i < data.length; i += 4) {
+    if (data[i] === red && data[i + 1] === green && data[i + 2] === blue && data[i + 3] === 255) found += 1;
+  }
+  return found;
+}"""
+STICK = [0xC7, 0x77, 0x00]  # as the page's colours say
+
+
+def _moving(visitor: Visitor) -> None:
+    """Wait until the motion is drawn."""
+    visitor.settled()
+    visitor.page.wait_for_selector(".vehicle[data-being=current] canvas[data-frames]")
+
+
+def _time(visitor: Visitor) -> float:
+    """The time that is drawn while it is held."""
+    visitor.page.wait_for_timeout(100)
+    return float(visitor.page.get_attribute(".vehicle canvas", "aria-valuenow"))
+
+
+def _drag(visitor: Visitor, seconds: float) -> None:
+    """Drag the picture, which is held, by so much."""
+    page = visitor.page
+    box = page.locator(".vehicle canvas").bounding_box()
+    x, y = box["x"] + 20, box["y"] + box["height"] - 30
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 200 * seconds, y, steps=3)
+    page.mouse.up()
+
+
+def _hold(visitor: Visitor) -> None:
+    visitor.page.get_by_role("button", name="Hold").click()
+
+
+def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:
+    page = visitor.page
+    _moving(visitor)
+    before = page.evaluate(_INK)
+    wait_until(lambda: page.evaluate(_INK) != before)
+    _hold(visitor)
+    held = _time(visitor)
+    still = page.evaluate(_INK)
+    page.wait_for_timeout(200)
+    assert (_time(visitor), page.evaluate(_INK)) == (held, still)
+    page.keyboard.press("Escape")
+    page.evaluate("() => document.activeElement.blur()")
+    page.keyboard.press(" ")
+    wait_until(lambda: page.evaluate(_INK) != still)
+
+
+def test_the_picture_and_the_plot_have_one_time(visitor: Visitor) -> None:
+    page = visitor.page
+    _moving(visitor)
+    _hold(visitor)
+    page.click("#tab-history")
+    visitor.drawn()
+    before = _time(visitor)
+    _drag(visitor, 0.5)
+    after = _time(visitor)
+    assert after - before == pytest.approx(0.5, abs=0.02)
+    page.focus(".vehicle canvas")
+    page.keyboard.press("ArrowRight")
+    assert _time(visitor) - after == pytest.approx(1.0 / 60.0, abs=2e-3)
+    page.keyboard.press("Shift+ArrowLeft")
+    assert _time(visitor) - after == pytest.approx(-9.0 / 60.0, abs=2e-3)
+
+
+def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
+    """Thirty steps are no thirty simulations, and the last one is the one that is drawn."""
+    page = visitor.page
+    _moving(visitor)
+    asked: list[dict[str, Any]] = []
+    page.on("request", lambda request: asked.append(request.post_data_json) if "panel/history" in request.url else None)
+    with page.expect_request("**/api/panel/history"):
+        page.evaluate(
+            """async () => {
+              const slider = document.getElementById("slider elements.k");
+              for (let i = 0; i < 30; i += 1) {
+                slider.value = String(200 + i);
+                slider.dispatchEvent(new Event("input", { bubbles: true }));
+                await new Promise((done) => setTimeout(done, 20));
+              }
+            }"""
+        )
+    _moving(visitor)
+    page.wait_for_timeout(600)
+    _moving(visitor)
+    assert len(asked) <= 5
+    assert asked[-1]["study"]["elements"]["k"] == page.input_value("[id='entry elements.k']")
+
+
+def test_friction_that_sticks_is_amber(visitors: Any, served: Served, tmp_path: Path) -> None:
+    study = tmp_path / "sticks.toml"
+    study.write_text((EXAMPLES / "ball_screw.toml").read_text().replace('f = "10 N"', 'f = "100 kN"'))
+    visitor = visitors(served).visit()
+    visitor.open(study)
+    page = visitor.page
+    page.wait_for_selector("text=sticks.toml is open")
+    for layout, amber in (("S1", False), ("S3", True)):
+        page.locator(".answers .pick", has_text=layout).first.click()
+        page.wait_for_timeout(500)
+        _moving(visitor)
+        wait_until(lambda amber=amber: (page.evaluate(_COUNT, STICK) > 40) == amber)
+
+
+@pytest.mark.parametrize(("name", "reason"), [("absorber", "At rest."), ("train", ""), ("full-car", ""), ("seat", "")])
+def test_each_vehicle_is_drawn(name: str, reason: str, visitors: Any, served: Served) -> None:
+    visitor = visitors(served).visit()
+    page = visitor.page
+    visitor.open(EXAMPLES / f"{name}.toml")
+    page.wait_for_selector(f"text={name}.toml is open")
+    visitor.settled()
+    if reason:
+        page.wait_for_selector(".vehicle .why", timeout=30_000)
+        assert page.inner_text(".vehicle .why").startswith(reason)
+        assert "Traceback" not in page.inner_text(".vehicle")
+    else:
+        _moving(visitor)
+        assert page.locator(".vehicle .why").count() == 0
+    page.wait_for_selector(".vehicle canvas[data-frames]")
+    box = page.locator(".vehicle canvas").bounding_box()
+    assert box["width"] > 300
+    assert box["height"] > 200
+
+
+def test_reduced_motion_holds_the_vehicle(visitors: Any, served: Served) -> None:
+    visitor = visitors(served, reduced_motion="reduce").visit()
+    page = visitor.page
+    _moving(visitor)
+    page.wait_for_selector(".vehicle button:has-text('Run')")
+    still = page.evaluate(_INK)
+    page.wait_for_timeout(300)
+    assert page.evaluate(_INK) == still
+    page.get_by_role("button", name="Run").click()
+    wait_until(lambda: page.evaluate(_INK) != still)
+
+
+@pytest.mark.campaign
+def test_frames_are_short(visitor: Visitor, serve: Callable[..., Served]) -> None:
+    """A frame's own work is a small part of a sixtieth of a second."""
+    _moving(visitor)
+    worst = visitor.page.evaluate(
+        """async () => {
+          const long = [];
+          new PerformanceObserver((list) => long.push(...list.getEntries().map(({ duration }) => duration)))
+            .observe({ entryTypes: ["longtask"] });
+          await new Promise((done) => setTimeout(done, 3000));
+          return Math.max(0, ...long);
+        }"""
+    )
+    assert worst < 200.0  # [ms]

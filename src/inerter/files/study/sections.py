@@ -64,7 +64,6 @@ _MOST_ROADS = 100_000
 _MOST_OF_FRONT = 1000
 OVER = ("mean", "worst")
 _SHAFT = RealInerter()
-_QUICK = with_gradients("exact")[0].name  # of the quick methods the one that models most
 SPACINGS = ("linear", "log")
 POINTS = 25  # of a front
 ROAD_EXAMPLE = 'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"'
@@ -212,11 +211,12 @@ class RealInerters:
         positive("N/m"), "Stiffness of the shaft in series.", 'stiffness = "1 MN/m"', default=_SHAFT.stiffness
     )
     damping: float = key(positive("N s/m"), "Damping of the shaft.", 'damping = "3.2 kN s/m"', default=_SHAFT.damping)
-    methods: tuple[str, ...] = key(
+    given_methods: tuple[str, ...] = key(
         some_of("a method", METHODS),
-        "Methods, each of which optimises the values for real inerters; norm neglects their friction.",
+        "Methods, each of which optimises the values; statistical linearisation if left out.",
         'methods = ["expected-value"]',
-        default=(_QUICK,),
+        default=(),
+        name="methods",
     )
     best: int = key(
         whole(1, 1000),
@@ -224,6 +224,11 @@ class RealInerters:
         "best = 3",
         default=3,
     )
+
+    @property
+    def methods(self) -> tuple[str, ...]:
+        """Methods that optimise; of the quick methods the one that models most if the file gives none."""
+        return self.given_methods or (with_gradients("exact")[0].name,)
 
     @property
     def shaft(self) -> RealInerter:

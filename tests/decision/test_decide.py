@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.decision.caveats import CaveatKind, Over
-from inerter.decision.decide import Answer, Decision, decide
+from inerter.decision.decide import VerdictKind, Decision, decide
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import OK, Status, StatusKind
 
@@ -88,13 +88,13 @@ def test_an_unreliable_value_is_never_an_answer(found: tuple[list[DesignResult],
     verdict = decision.verdict
     for one in decision.designs:
         if not one.unchosen and one.goal.is_doubtful and not one.breaks_limit:
-            assert verdict.answer is not Answer.ANSWER
+            assert verdict.answer is not VerdictKind.ANSWER
         if not one.unchosen and (one.goal.is_doubtful or not isfinite(one.goal.value)):
             assert CaveatKind.STATUS in kinds(decision, one.name)
     for one in decision.winners:
         if any(limit.kept is None for limit in one.limits):
-            assert verdict.answer is not Answer.ANSWER
-    assert (verdict.answer is Answer.DOUBT) == verdict.sentence.startswith("Not certain: ")
+            assert verdict.answer is not VerdictKind.ANSWER
+    assert (verdict.answer is VerdictKind.DOUBT) == verdict.sentence.startswith("Not certain: ")
 
 
 @given(results())
@@ -127,7 +127,7 @@ def test_what_is_equally_good_is_not_called_better(found: tuple[list[DesignResul
         by = one.goal.improvement
         if base is not None and by is not None and by.is_equal:
             assert f"better than {base.name}" not in text.replace("No strut is better", "")
-    if len(decision.winners) > 1 and decision.verdict.answer is not Answer.NONE:
+    if len(decision.winners) > 1 and decision.verdict.answer is not VerdictKind.NONE:
         assert "equally good" in text or " as good as " in text
     for one in decision.winners:
         by = over(min(decision.winners, key=_value), one)
@@ -167,70 +167,70 @@ BETTER = Improvement(16.0, 0.02)
     [
         (
             [BASE, design("S3", 2.52, by=BETTER, modelled=("friction f",))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), with its friction.",
         ),
         (
             [BASE, design("S3", 2.52, by=BETTER, neglected=("friction f", "friction g"))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), without its friction.",
         ),
         (
             [design("S1", 3.0, is_baseline=True, neglected=("gap g",)), design("S3", 2.52, by=BETTER)],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1), without the gap of S1.",
         ),
         (
             [BASE, design("S2", 2.7, by=Improvement(10.0)), design("S3", 2.703, by=Improvement(9.9))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S2 and S3 are equally good (difference 0.10 +- 0.30 %) in ride comfort (J1), 10.0 % better than S1.",
         ),
         (
             [BASE, design("S3", 2.999, by=Improvement(0.03))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.0 %).",
         ),
         (
             [BASE, design("S3", 3.3, by=Improvement(-10.0))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "No strut is better than S1 in ride comfort (J1); S3, the next, is 10.0 % worse.",
         ),
         (
             [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 3.3, by=Improvement(-10.0))],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S3 is best in ride comfort (J1) of the struts that keep the limits, 10.0 % worse than S1, which does not "
             "keep them.",
         ),
         (
             [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 2.0, by=BETTER, limits=(BROKEN,))],
-            Answer.NONE,
+            VerdictKind.NONE,
             "No strut keeps the limits: S1 is the closest, with suspension travel 8.4 mm (limit: at most 8 mm).",
         ),
         (
             [BASE, design("S3", 2.0, unchosen=("c", "b"))],
-            Answer.NONE,
+            VerdictKind.NONE,
             "No value of c and b of S3 has been chosen yet: choose values, or find the best ones.",
         ),
         (
             [BASE, design("S3", 2.52, by=BETTER, status=Status(StatusKind.INACCURATE, "it sticks"))],
-            Answer.DOUBT,
+            VerdictKind.DOUBT,
             "Not certain: S3 is 16.000 +- 0.020 % better than S1 in ride comfort (J1).",
         ),
         (
             [design("S1", nan, is_baseline=True, status=Status(StatusKind.FAILED, "no")), design("S3", 2.5)],
-            Answer.DOUBT,
+            VerdictKind.DOUBT,
             "Not certain: S3 is best in ride comfort (J1), 2.5 m/s^2; S1 has no finite value.",
         ),
         (
             [design("S2", 2.5), design("S3", 2.6)],
-            Answer.ANSWER,
+            VerdictKind.ANSWER,
             "S2 is best in ride comfort (J1), 2.5 m/s^2, 3.8 % better than S3.",
         ),
-        ([BASE], Answer.NONE, "Ride comfort (J1) of S1 is 3 m/s^2; there is no other strut to compare it with."),
+        ([BASE], VerdictKind.NONE, "Ride comfort (J1) of S1 is 3 m/s^2; there is no other strut to compare it with."),
     ],
-    ids=lambda one: one.value if isinstance(one, Answer) else "",
+    ids=lambda one: one.value if isinstance(one, VerdictKind) else "",
 )
-def test_sentences(designs: list[DesignResult], answer: Answer, sentence: str) -> None:
+def test_sentences(designs: list[DesignResult], answer: VerdictKind, sentence: str) -> None:
     def over(one: DesignResult, other: DesignResult) -> Improvement | None:
         percent = 100.0 * (1.0 - one.goal.value / other.goal.value)
         close = 0.0 < abs(percent) < 0.2

@@ -14,7 +14,7 @@ from inerter.methods.ties import equally_least
 from inerter.statements import Severity, Statement
 
 
-class Answer(StrEnum):
+class VerdictKind(StrEnum):
     """Reliability of a verdict."""
 
     ANSWER = "answer"
@@ -23,22 +23,22 @@ class Answer(StrEnum):
 
 
 @dataclass(frozen=True)
-class Verdict(Statement):
+class DecisionVerdict(Statement):
     """Verdict in one sentence, with its caveats."""
 
     text: str
-    answer: Answer
+    answer: VerdictKind
     caveats: tuple[Caveat, ...] = ()
 
     @property
     def severity(self) -> Severity:
         """Warning unless it is an answer."""
-        return Severity.INFO if self.answer is Answer.ANSWER else Severity.WARNING
+        return Severity.INFO if self.answer is VerdictKind.ANSWER else Severity.WARNING
 
     @property
     def sentence(self) -> str:
         """The verdict in words."""
-        return f"Not certain: {self.text}" if self.answer is Answer.DOUBT else self.text
+        return f"Not certain: {self.text}" if self.answer is VerdictKind.DOUBT else self.text
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Decision:
     designs: tuple[DesignResult, ...]
     ranks: tuple[int | None, ...]
     winners: tuple[DesignResult, ...]
-    verdict: Verdict
+    verdict: DecisionVerdict
 
 
 def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", remedy: str = "") -> Decision:
@@ -86,12 +86,12 @@ def _order(design: DesignResult) -> tuple[bool, bool, float]:
     return not is_chosen, not isfinite(value), value if is_chosen and isfinite(value) else 0.0
 
 
-def _verdict(contest: Contest, rest: Sequence[DesignResult]) -> Verdict:
+def _verdict(contest: Contest, rest: Sequence[DesignResult]) -> DecisionVerdict:
     text, is_answer = _sentence(contest, rest)
     doubts = [one for one in contest.chosen if one.goal.is_doubtful and not one.breaks_limit]
     unsure = doubts or any(map(unknown_limits, contest.winners))
-    answer = Answer.NONE if not is_answer else Answer.DOUBT if unsure else Answer.ANSWER
-    return Verdict(text, answer, tuple(caveats_of(contest)))
+    answer = VerdictKind.NONE if not is_answer else VerdictKind.DOUBT if unsure else VerdictKind.ANSWER
+    return DecisionVerdict(text, answer, tuple(caveats_of(contest)))
 
 
 def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool]:

@@ -58,7 +58,7 @@ def real_eigenvectors(typing: Any, transposed: Any, real: Any, imaginary: Any, r
     Eigenvalues are real[k] + j imaginary[k]. A real one has its eigenvector in rows[k]; a conjugate pair stands at k
     and k + 1, first that with a positive imaginary part, whose eigenvector is rows[k] + j rows[k + 1].
     """
-    from llvmlite import ir  # type: ignore[import-untyped]  # noqa: PLC0415 - heavy
+    from llvmlite import ir  # noqa: PLC0415 - heavy
     from numba import types  # noqa: PLC0415
     from numba.core import cgutils as utilities  # noqa: PLC0415
 

@@ -96,7 +96,7 @@ def _mutated(body: dict[str, Any], chance: random.Random) -> dict[str, Any]:
         elif how == "nested":
             inside[last] = chance.choice([[inside[last]], {"x": inside[last]}, [inside[last]] * 2])
         else:
-            inside[last] = chance.choice(ODD)
+            inside[last] = copy.deepcopy(chance.choice(ODD))
     return body
 
 

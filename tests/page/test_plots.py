@@ -75,9 +75,10 @@ def test_a_response_that_is_drawn_is_that_of_the_answer(log: bool, served: Serve
         assert ((up[0] <= gain) & (gain <= up[1])).all()
 
 
-def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visitors: Any, tmp_path: Path) -> None:
+def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visitors: Any) -> None:
     visitor = visitors(served).visit()
     page = visitor.page
+    visitor.settled()
     visitor.open(EXAMPLES / "half-car.toml")
     page.wait_for_selector("[aria-label=Output]")
     visitor.settled()

@@ -48,12 +48,12 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
   const hasPoints = points.length > 0;
   return html`<div class="plot" data-keys=${hasPoints ? "Points" : "Plot"}
       onKeyDown=${hasPoints && pointKeys(points, laid, take)}>
-    <div class="row plot-tools">${children}<span class="grow"></span>
+    <div class="row plot-tools">${children}<div class="row plot-ends">
       ${zoom && html`<button type="button" onClick=${() => setZoom(null)}>Whole range</button>`}
       ${switches.map(chip)}
       <${Chip} on=${asTable} set=${() => setAsTable(!asTable)}>Table<//>
       <${SaveMenu} plot=${declared} table=${table} current=${current} drawn=${drawn} shown=${!asTable} />
-    </div>
+    </div></div>
     <div class="plot-area" ref=${place}>
       ${asTable && html`<${NumberTable} plot=${declared} table=${table} />`}
       ${!asTable && laid && html`<${Drawn} plot=${declared} laid=${laid} svg=${drawn} picked=${picked} look=${look}

@@ -81,6 +81,13 @@ function Others({ store }) {
 /** An output as a person calls it. @param {string} label */
 const wordsOf = (label) => label.replaceAll("_", " ").replaceAll(" x ", " × ");
 
+/** Names without their factors and the word in which all end. @param {string[]} names */
+function shortened(names) {
+  const bare = names.map((name) => name.replace(/ × .*$/, ""));
+  const last = / [^ ]+$/.exec(bare[0] ?? "")?.[0];
+  return last && bare.every((name) => name.endsWith(last)) ? bare.map((name) => name.slice(0, -last.length)) : bare;
+}
+
 /** The plots of gain and of phase. @param {Answered[]} answers
  * @param {{index: string, label: string, document: Document}} how
  * @returns {{gain: Declaration, phase: Declaration} | null} */
@@ -91,11 +98,13 @@ function declared(answers, { index, label, document }) {
   const colours = layoutColours(document);
   const baseline = baselineOf(document).layout;
   const several = label === ALL;
+  const short = shortened(labels.map(wordsOf));
   /** @param {"gain" | "phase"} what @returns {Curve[]} */
   const curves = (what) => answers.flatMap(({ frequency, responses, pale }) => responses
     .filter((each) => each.index === index && (several || each.label === label))
     .map((each) => ({
-      name: several ? `${each.name} ${wordsOf(each.label)}` : each.name,
+      name: several ? `${each.name} ${short[labels.indexOf(each.label)]}` : each.name,
+      unnamed: several && each.layout === baseline && each.layout !== document.layout,
       x: frequency,
       y: what === "gain" ? each.gain : degrees(each.phase),
       colour: several && each.layout !== baseline ? numberedColour(labels.indexOf(each.label))
@@ -105,7 +114,7 @@ function declared(answers, { index, label, document }) {
       pale,
     }))).toSorted((one, other) => Number(one.strong) - Number(other.strong));
   const x = { what: "frequency", unit: "Hz", log: true };
-  const title = several ? `${index}, all outputs` : first.title;
+  const title = several ? `${index}, all outputs, dashed ${baseline}` : first.title;
   const gain = curves("gain");
   const phase = curves("phase");
   const known = phase.some(({ y }) => y.some((each) => each !== null));

@@ -44,8 +44,9 @@ function rowsOf(state, value) {
   const rows = (value?.rows ?? []).filter((/** @type {any} */ { layout }) =>
     designs.some((design) => design.layout === layout));
   const missing = designs.filter(({ layout }) => !rows.some((row) => row.layout === layout));
+  const others = (rows[0]?.others ?? []).map((/** @type {any} */ { index }) => ({ index }));
   return [...rows, ...missing.map((design) => ({ layout: design.layout, unchosen: unchosenIn(state, design),
-    is_baseline: design.layout === baselineOf(document).layout, others: [] }))];
+    is_baseline: design.layout === baselineOf(document).layout, others }))];
 }
 
 /** @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
@@ -53,7 +54,7 @@ function Ranking({ store, answer: { is, value, before } }) {
   const state = store.get();
   const document = state.history.present;
   const rows = rowsOf(state, value);
-  const others = (value?.rows?.[0]?.others ?? []).map((/** @type {any} */ each) => each);
+  const others = value?.rows?.[0]?.others ?? [];
   const baseline = baselineOf(document).layout;
   const { goal } = value ?? {};
   /** @param {KeyboardEvent} event */

@@ -217,9 +217,12 @@ def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor
         page.fill("#network-text", "")
         page.wait_for_selector(".answers table.stale", state="detached")
         assert page.evaluate(SHOWN)["numbers"] == []
-    page.wait_for_selector(".answers[data-being=none]")
-    assert page.evaluate(SHOWN)["numbers"] == []
-    assert page.evaluate(SHOWN)["curves"] == 0
+    page.wait_for_selector(".answers[data-being=current]")  # those of the other layouts
+    visitor.drawn()
+    assert page.locator(".answers tr.on [data-value]").count() == 0
+    assert page.locator(".answers tr:not(.on) [data-value]").count() > 0
+    assert "S3e" not in page.locator(".drawn .name").all_inner_texts()
+    assert page.locator(".vehicle canvas").count() == 0
 
 
 @pytest.mark.campaign

@@ -330,7 +330,7 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
     for name in ("fit.json", "residuals.csv"):
         (folder / name).write_bytes(visitor.served.get(f"work/{job['id']}/files/{name}"))
     drop(visitor, folder)
-    page.wait_for_selector("text=fit.json: The device is in the new layout")
+    page.wait_for_selector(".notice:has-text('fit.json: '):has-text('The device is in the new layout')")
     wait_until(lambda: _study(visitor) == taken)
     assert names
     page.locator(".fit").get_by_role("button", name="Forget").click()

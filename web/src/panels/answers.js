@@ -44,8 +44,9 @@ function rowsOf(state, value) {
   const rows = (value?.rows ?? []).filter((/** @type {any} */ { layout }) =>
     designs.some((design) => design.layout === layout));
   const missing = designs.filter(({ layout }) => !rows.some((row) => row.layout === layout));
+  const others = (rows[0]?.others ?? []).map((/** @type {any} */ { index }) => ({ index }));
   return [...rows, ...missing.map((design) => ({ layout: design.layout, unchosen: unchosenIn(state, design),
-    is_baseline: design.layout === baselineOf(document).layout, others: [] }))];
+    is_baseline: design.layout === baselineOf(document).layout, others }))];
 }
 
 /** @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
@@ -53,7 +54,7 @@ function Ranking({ store, answer: { is, value, before } }) {
   const state = store.get();
   const document = state.history.present;
   const rows = rowsOf(state, value);
-  const others = (value?.rows?.[0]?.others ?? []).map((/** @type {any} */ each) => each);
+  const others = value?.rows?.[0]?.others ?? [];
   const baseline = baselineOf(document).layout;
   const { goal } = value ?? {};
   /** @param {KeyboardEvent} event */
@@ -93,12 +94,10 @@ function Row({ store, row, missing }) {
     <td class="number" title=${row.message} data-index=${on ? goal : undefined}
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
-      <${Against} row=${row} unchosen=${unchosen.length > 0} /></td>
+      <${Against} row=${{ ...row, status: null }} unchosen=${unchosen.length > 0} /></td>
     ${others.map((/** @type {any} */ other) => html`<td class=${`number ${unchosen.length ? "" : better(other)}`}
       key=${other.index} data-index=${on ? other.index : undefined} data-value=${other.value} title=${other.message}>
-      ${!isBaseline && unchosen.length === 0 && typeof other.improvement_percent === "number"
-        && html`${signed(other.improvement_percent)}${other.tie && html`<div class="scatter">as good</div>`}`}
-      ${isOk(other.status) ? "" : html`<div class="doubt">${other.status}</div>`}
+      <${Against} row=${{ ...other, is_baseline: isBaseline || unchosen.length > 0 }} unchosen=${false} />
       <div class="scatter">${amountText(other)}</div></td>`)}
   </tr>`;
 }
@@ -108,13 +107,14 @@ const LEAST = 0.05; // [%] a standard error that changes what is written
 /** By how much the goal is better than of the baseline; first what makes that doubtful.
  * @param {{row: any, unchosen: boolean}} props */
 function Against({ row: { is_baseline: isBaseline, improvement_percent: value, improvement_error_percent: error,
-  improvement_status: status, tie }, unchosen }) {
+  improvement_status: difference, status: own, tie }, unchosen }) {
   if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
-  if (isBaseline || typeof value !== "number") return null;
+  const none = isBaseline || typeof value !== "number";
+  const status = none ? own : difference;
   const told = error >= LEAST ? estimated(value, error, 1) : null;
   return html`${isOk(status) ? "" : html`<div class="doubt">${status}</div>`}
-    ${told === null ? signed(value) : html`${value > 0 ? "+" : ""}${told[0]} %
-      <div class="scatter">± ${told[1]} %</div>`}${tie && html`<div class="scatter">as good</div>`}`;
+    ${none ? null : told === null ? signed(value) : html`${value > 0 ? "+" : ""}${told[0]} %
+      <div class="scatter">± ${told[1]} %</div>`}${!none && tie && html`<div class="scatter">as good</div>`}`;
 }
 
 /** A change in per cent, with its sign. @param {number | null | undefined} value @param {number} [places] */

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inerter.decision.caveats import CaveatKind, Over
-from inerter.decision.decide import VerdictKind, Decision, decide
+from inerter.decision.decide import Decision, VerdictKind, decide
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import OK, Status, StatusKind
 

@@ -60,4 +60,5 @@ sphinx_gallery_conf = {
     "abort_on_example_error": True,
     "nested_sections": False,
     "show_signature": False,
+    "capture_repr": (),
 }

@@ -115,7 +115,7 @@ def test_what_cannot_be_drawn_is_said() -> None:
     free = it.QuarterCar(MASS, WHEEL, TYRE, it.Spring(K) | it.Damper(it.free(1e2, 1e4, name="c")))
     for call, words in (
         (lambda: it.plot_trajectory(run, "nothing"), "nothing"),
-        (lambda: it.plot_trajectory(run, "tyre_load", window=(5.0, 6.0)), "from 5 s to 6 s"),
+        (lambda: it.plot_trajectory(run, "tyre_load", window=(5.0, 6.0)), "from 5 to 6 s"),
         (lambda: it.plot_trajectory(run, []), "needs outputs"),
         (lambda: it.plot_bode({}, ("road", "tyre_load")), "at least one"),
         (lambda: it.plot_bode(STRUT, ("road", "tyre_load")), "Expected a vehicle"),

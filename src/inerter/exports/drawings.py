@@ -74,7 +74,7 @@ def _label(element: Element) -> str:
 
 
 def _short(number: float) -> str:
-    return f"{number:.4f}".rstrip("0").rstrip(".")
+    return repr(round(number, 4))
 
 
 SVG = ExportKind("svg", "drawing of the networks", (".svg",), _figure)

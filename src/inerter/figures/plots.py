@@ -20,7 +20,7 @@ from inerter.figures.labels import axis_label, capital
 from inerter.figures.networks import network_figure
 from inerter.figures.style import colour, layout_styles, log_axis, new_figure, style_context
 from inerter.files.study.responses import gain_unit, source_unit
-from inerter.formatting import choose_scale
+from inerter.formatting import choose_scale, format_number, format_range
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.networks.elements.algebra import Network, check_network
@@ -160,7 +160,9 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
         for ratio in (0.1, 0.3, 0.7) if reach else ():
             ray = np.array([0.0, reach])
             ax.plot(-ratio / np.sqrt(1.0 - ratio**2) * ray, ray, ":", color="#AAAAAA", linewidth=0.7)
-            ax.annotate(f"{ratio:g}", (-ratio / np.sqrt(1.0 - ratio**2) * reach, reach), color="#777777", fontsize=6.5)
+            ax.annotate(
+                format_number(ratio), (-ratio / np.sqrt(1.0 - ratio**2) * reach, reach), color="#777777", fontsize=6.5
+            )
         ax.set(xlabel=axis_label("Real part", "1/s"), ylabel=axis_label("Imaginary part", "rad/s"))
         _legend(ax, len(named))
     return ax
@@ -223,8 +225,8 @@ def plot_trajectory(
     inside = (run.time >= low) & (run.time <= high)
     if not names or not inside.any():
         raise SimulationError(
-            f"A plot of a motion needs outputs, and samples in its window: got {names!r} from {low:g} s to {high:g} s, "
-            f"where the motion is known from {run.time[0]:g} s to {run.time[-1]:g} s."
+            f"A plot of a motion needs outputs, and samples in its window: got {names!r} from "
+            f"{format_range(low, high, 's')}, where the motion is known from {format_range(run.time[0], run.time[-1], 's')}."
         )
     with style_context():
         several = list(axes) if axes is not None else new_figure(len(names), height=1.9)[1]

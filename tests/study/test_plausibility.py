@@ -79,6 +79,6 @@ def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
     answer = " ".join(lines[lines.rindex("Warning: J1") :].split())
     assert "more than the acceleration of gravity" in answer
     assert "more than the static load of 2.028 kN" in answer  # (181.75 kg + 25 kg) g
-    assert answer.index("Warning") < answer.index("Best ride comfort")
+    assert answer.index("Warning") < answer.index("better than S1 in ride comfort (J1)")
     assert "Road: class G of ISO 8608 (Gd(n0) = 51200e-6 m^3" in " ".join(lines.split())
     assert "no public road is as rough" in (tmp_path / "results" / "report.html").read_text(encoding="utf-8")

@@ -224,9 +224,10 @@ def plot_trajectory(
     low, high = window if window is not None else (float(run.time[0]), float(run.time[-1]))
     inside = (run.time >= low) & (run.time <= high)
     if not names or not inside.any():
+        known = format_range(run.time[0], run.time[-1], "s")
         raise SimulationError(
             f"A plot of a motion needs outputs, and samples in its window: got {names!r} from "
-            f"{format_range(low, high, 's')}, where the motion is known from {format_range(run.time[0], run.time[-1], 's')}."
+            f"{format_range(low, high, 's')}, where the motion is known from {known}."
         )
     with style_context():
         several = list(axes) if axes is not None else new_figure(len(names), height=1.9)[1]

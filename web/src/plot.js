@@ -14,9 +14,9 @@ import { printed, shown } from "./state/scale.js";
  * subscribe: (told: (at: number) => void) => () => void}} Cursor */
 /** `current`: whether the numbers are those of what is on the page, so that they can be saved; `switches`: the axes
  * that can be turned to a logarithmic scale; `picked`: the point that is looked at; `at`: the place that is read, where
- * several plots share it; `table`: where it has more than the curves.
- * @typedef {{plot: Declaration, current?: boolean, children?: any, switches?: ("x" | "y")[], cursor?: Cursor | null,
- * picked?: number | null, look?: (point: number) => void, take?: (point: Point) => void, table?: Numbers,
+ * several plots share it; `table`: where it has more than the curves. Without a plot there is a place for it.
+ * @typedef {{plot: Declaration | null, current?: boolean, children?: any, switches?: ("x" | "y")[],
+ * cursor?: Cursor | null, picked?: number | null, look?: (point: number) => void, take?: (point: Point) => void, table?: Numbers,
  * at?: number | null, read?: (at: number | null) => void}} PlotProps */
 
 /** A colour of curves, for styles. @param {string} token */
@@ -33,12 +33,15 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
   const [at, read] = more.read ? [more.at ?? null, more.read] : [ownAt, ownRead];
   const drawn = useRef(/** @type {SVGSVGElement | null} */ (null));
   const names = useRef(/** @type {Name[]} */ ([]));
-  const declared = useMemo(() => withLogs(plot, logs), [plot, logs]);
-  const laid = useMemo(() => size && layoutOf(declared, { ...size, zoom, before: names.current }),
+  const declared = useMemo(() => plot && withLogs(plot, logs), [plot, logs]);
+  const laid = useMemo(() => declared && size && layoutOf(declared, { ...size, zoom, before: names.current }),
     [declared, size, zoom]);
   useLayoutEffect(() => {
     names.current = laid?.names ?? [];
   }, [laid]);
+  if (plot === null || declared === null)
+    return html`<div class="plot"><div class="row plot-tools">${children}</div>
+      <div class="plot-area" ref=${place}></div></div>`;
   /** @param {"x" | "y"} axis */
   const chip = (axis) => html`<${Chip} key=${axis} on=${declared[axis].log ?? false}
     title=${`Logarithmic scale: ${plot[axis].what}`} set=${() => setLogs({ ...logs, [axis]: !declared[axis].log })}>

@@ -49,8 +49,7 @@ export function HistoryPanel({ store }) {
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
-    ${plot === null && html`<div class="row plot-tools">${controls}</div><div class="plot empty"></div>`}
-    ${plot && html`<${Plot} plot=${plot} current=${answer.is === "current"} cursor=${clock}>${controls}<//>`}
+    <${Plot} plot=${plot} current=${answer.is === "current"} cursor=${clock}>${controls}<//>
   </div>`;
 }
 

@@ -344,6 +344,72 @@ def export(
 
 @app.command(
     help_epilogue="""Examples:
+  inerter plot examples/quarter-car.toml --kind bode --index J1
+  inerter plot quarter-car-results --kind network --layout S3 --index J1 -o s3.pdf"""
+)
+def plot(
+    source: Path,
+    /,
+    *,
+    kind: Annotated[str, Parameter(help="What is drawn: bode, nyquist, poles, admittance or network.")],
+    layout: Annotated[
+        tuple[str, ...], Parameter(negative="", show_default=False, help="Layout; repeatable. Default: all.")
+    ] = (),
+    index: Annotated[str | None, Parameter(help="Index whose best designs are drawn, if values are free.")] = None,
+    point: Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")] = None,
+    output: Annotated[Path | None, Parameter(name=["--output", "-o"], help="Output file: .svg, .pdf or .png.")] = None,
+    force: Annotated[
+        bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")
+    ] = False,
+) -> None:
+    """Plot designs: frequency responses, poles, admittances of struts, or drawings of networks.
+
+    Free values are those of the best design for the index: read from a folder
+    of results, or found anew from a study file.
+
+    Parameters
+    ----------
+    source
+        A study file (TOML), or a folder with its results.
+    """
+    from inerter.cli.plot import plot as command
+
+    command(source, kind, layout, index, point, output, force=force)
+
+
+@app.command(
+    help_epilogue="""Examples:
+  inerter docs    says how to build the site
+  inerter docs site    opens the site in that folder"""
+)
+def docs(site: Path | None = None, /) -> None:
+    """Open the documentation in the browser, or say how to get it.
+
+    The site with all pages, the reference and the gallery takes 65 MB, more than
+    the package itself, and so it is not part of it.
+
+    Parameters
+    ----------
+    site
+        Folder in which the site was built.
+    """
+    if site is None:
+        print(
+            "The documentation is the folder docs/ of the sources of inerter. To build its site, in the sources:\n"
+            '  pip install ".[site]" && sphinx-build docs site && inerter docs site'
+        )
+        return
+    start = (site / "index.html").resolve()
+    if not start.is_file():
+        raise StudyError(f"{site}: has no index.html. Build the site first: sphinx-build docs {site}")
+    import webbrowser
+
+    webbrowser.open(start.as_uri())
+    print(start)
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter serve
   inerter serve examples/quarter-car.toml
   inerter serve my-study.toml --port 8722 --no-browser"""

@@ -16,7 +16,8 @@ import { printed, shown } from "./state/scale.js";
  * that can be turned to a logarithmic scale; `picked`: the point that is looked at; `at`: the place that is read, where
  * several plots share it; `table`: where it has more than the curves. Without a plot there is a place for it.
  * @typedef {{plot: Declaration | null, current?: boolean, children?: any, switches?: ("x" | "y")[],
- * cursor?: Cursor | null, picked?: number | null, look?: (point: number) => void, take?: (point: Point) => void, table?: Numbers,
+ * cursor?: Cursor | null, picked?: number | null, look?: (point: number) => void, take?: (point: Point) => void,
+ * table?: Numbers,
  * at?: number | null, read?: (at: number | null) => void}} PlotProps */
 
 /** A colour of curves, for styles. @param {string} token */

@@ -55,7 +55,9 @@ def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
 
     def visitor(served: Served, *, context: Any = None, **settings: Any) -> Visitor:
         if context is None:
-            context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **settings})
+            # vehicles that move take half of a processor each, and are the subject of few tests
+            usual = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce"}
+            context = chromium.new_context(**{**usual, **settings})
             context.set_default_timeout(60_000)  # [ms], for busy machines
             contexts.append(context)
         window = Visitor(context.new_page(), served)

@@ -176,7 +176,11 @@ def _find_out(tab: str) -> Callable[[Any], None]:
 
 ASKING: dict[str, Callable[[Any], None]] = {
     "a slider": _slide,
-    "a road": lambda page: page.click("#tab-history"),
+    "a road": lambda page: (
+        page.click("#tab-history"),
+        page.fill("label:has-text('for [s]') input", "12"),
+        page.keyboard.press("Enter"),
+    ),
     "an optimum": lambda page: page.get_by_role("button", name="Find best").click(),
     "a budget": _find_out("budget"),
     "a tolerance": _find_out("tolerance"),

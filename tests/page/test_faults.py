@@ -77,6 +77,7 @@ def test_a_quantity_in_another_unit_is_taken_over(visitor: Visitor) -> None:
     page.wait_for_selector("[id='entry elements.k'][title='685.22 lbf/inch']")
 
 
+@pytest.mark.campaign
 def test_sizes_that_nothing_has_are_answered_at_once(visitor: Visitor) -> None:
     """Whatever number is typed, no answer takes long, and nothing of the page stands still or fails."""
     page = visitor.page
@@ -101,6 +102,7 @@ ODD = study_text(
 )
 
 
+@pytest.mark.campaign
 def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Path) -> None:
     _open(visitor, tmp_path, "odd", ODD)
     page = visitor.page
@@ -136,6 +138,7 @@ REFERENCES = study_text(
 REFERENCES += '[indices.stroke]\nkind = "element-stroke"\nelement = "k"\n'
 
 
+@pytest.mark.campaign
 def test_an_element_is_renamed_wherever_the_study_names_it(visitor: Visitor, tmp_path: Path) -> None:
     _open(visitor, tmp_path, "references", REFERENCES)
     page, before = visitor.page, visitor.values()
@@ -149,6 +152,7 @@ def test_an_element_is_renamed_wherever_the_study_names_it(visitor: Visitor, tmp
     assert 'main_spring = "10 %"' in saved or "main_spring = 0.1" in saved
 
 
+@pytest.mark.campaign
 def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -165,6 +169,7 @@ def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None
     assert page.locator("[aria-label=Layouts] .pick[title='S1']").count() == 1
 
 
+@pytest.mark.campaign
 def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Visitor) -> None:
     page = visitor.page
     _layout(visitor, "S2")
@@ -182,6 +187,7 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     assert page.inner_text(".problems").count("layouts.S3e") == 1
 
 
+@pytest.mark.campaign
 def test_a_file_that_another_program_changes_is_told_and_read_again(
     serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:
@@ -211,6 +217,7 @@ def test_a_file_that_another_program_changes_is_told_and_read_again(
     page.wait_for_selector(".notice:has-text('removed or renamed')")
 
 
+@pytest.mark.campaign
 def test_work_that_is_done_says_nothing_of_a_step(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -273,6 +280,7 @@ MARKUP = "<img src=//evil.example/x onerror=window.struck=1>"
 NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "\u202etxt.exe", "${window.struck=1}", "javascript:struck=1"]
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("name", NAMES)
 def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, name: str) -> None:
     """Titles, layouts, elements, units, designs, files: what is written in them is shown, never run or asked for."""
@@ -352,6 +360,7 @@ def _example(visitor: Visitor, name: str) -> None:
     visitor.page.wait_for_selector(".answers[data-being=current], .answers[data-being=none]", timeout=120_000)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("first", "other"), sampled(PAIRS, always=[("train", "half-car"), ("seat", "absorber")],
                          kept=12))  # fmt: skip
 def test_an_example_shows_the_same_after_any_other(
@@ -386,6 +395,7 @@ def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visi
     assert "%" in page.inner_text(".answers table")
 
 
+@pytest.mark.campaign
 def test_a_tolerance_that_the_method_neglects_has_no_number(visitor: Visitor) -> None:
     page = visitor.page
     _example(visitor, "ball_screw")

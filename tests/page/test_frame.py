@@ -18,6 +18,7 @@ SCROLLED = """() => {
 }"""
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
 def test_the_page_is_not_scrolled(visitor: Visitor, size: tuple[int, int]) -> None:
     page = visitor.page
@@ -60,6 +61,7 @@ def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor
         ]
 
 
+@pytest.mark.campaign
 def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -69,12 +71,13 @@ def test_keys_lead_to_every_place(visitor: Visitor) -> None:
         wait_until(lambda place=place: page.evaluate(focus) == place)
     assert page.locator("#tab-margins[aria-selected=true]").count() == 1
     page.keyboard.press("?")
-    assert page.locator("dialog[open]").count() == 1
+    page.wait_for_selector("dialog[open]")
     page.keyboard.press("Escape")
     page.wait_for_selector("dialog[open]", state="detached")
     page.keyboard.press("Control+o")
-    assert page.locator("#open-menu[open]").count() == 1
+    page.wait_for_selector("#open-menu[open]")
     page.keyboard.press("Escape")
+    page.wait_for_selector("#open-menu[open]", state="detached")
     page.fill(".title", "o1?v")  # what is typed is text
     assert page.locator("dialog[open], #verdict details[open]").count() == 0
     page.locator("[data-place='elements.c'] input[type=range]").focus()
@@ -95,6 +98,7 @@ def _number(page: Any) -> float:
     return float(str(page.get_attribute("[id='entry elements.c']", "title")).partition(" ")[0])
 
 
+@pytest.mark.campaign
 def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors: Callable[..., Visitor]) -> None:
     """The first screen has a card for each example; a study that was left is offered the next time."""
     visitor = visitors(serve(None)).visit()

@@ -75,6 +75,7 @@ def test_a_response_that_is_drawn_is_that_of_the_answer(log: bool, served: Serve
         assert ((up[0] <= gain) & (gain <= up[1])).all()
 
 
+@pytest.mark.campaign
 def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visitors: Any) -> None:
     visitor = visitors(served).visit()
     page = visitor.page
@@ -102,6 +103,7 @@ def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visito
     assert heads[0] == heads[1]
 
 
+@pytest.mark.campaign
 def test_a_plot_is_read_by_keyboard_and_as_a_table(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -138,6 +140,7 @@ def _saved(visitor: Visitor, kind: str, into: Path) -> Path:
     return path
 
 
+@pytest.mark.campaign
 def test_a_plot_is_saved_as_picture_and_numbers(served: Served, visitors: Any, tmp_path: Path) -> None:
     visitor = visitors(served)
     answer = _answer(visitor, "response", visitor.visit)
@@ -158,6 +161,7 @@ def test_a_plot_is_saved_as_picture_and_numbers(served: Served, visitors: Any, t
         assert values[:, column].tolist() == each["gain"]
 
 
+@pytest.mark.campaign
 def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -176,6 +180,7 @@ def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     assert page.locator(".plot-tools .menu-body button").first.is_enabled()
 
 
+@pytest.mark.campaign
 def test_other_designs_are_drawn_too(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -190,12 +195,13 @@ def _finished(visitor: Visitor, kind: str, points: int) -> Any:
     """The result of a job that is begun in the page."""
     page = visitor.page
     page.click("#tab-work")
+    others = {each["id"] for each in json.loads(visitor.served.get("work"))["work"]}
     form = page.locator("form.begin", has_text=kind)
     form.locator("[name=points]").fill(str(points))
     form.get_by_role("button", name="Begin").click()
     job = page.locator(".job", has_text=kind.split(" ", maxsplit=1)[0]).first
     job.locator(".plot .drawn").wait_for(timeout=120_000)
-    (known,) = [each for each in json.loads(visitor.served.get("work"))["work"] if each["title"].startswith(kind)]
+    (known,) = [each for each in json.loads(visitor.served.get("work"))["work"] if each["id"] not in others]
     return job, json.loads(visitor.served.get(f"work/{known['id']}/result"))
 
 
@@ -256,6 +262,7 @@ def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(visitor: Visi
     wait_until(lambda: (page.input_value("#network-text"), visitor.values()) == before)
 
 
+@pytest.mark.campaign
 def test_the_time_of_a_history_is_that_of_the_picture(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "ball_screw.toml")).visit()
     page = visitor.page

@@ -28,6 +28,12 @@ _COUNT = """([red, green, blue]) => {
 STICK = [0xC7, 0x77, 0x00]  # as the page's colours say
 
 
+@pytest.fixture
+def visitor(served: Served, visitors: Callable[..., Visitor]) -> Visitor:
+    """A window in which vehicles move."""
+    return visitors(served, reduced_motion="no-preference").visit()
+
+
 def _moving(visitor: Visitor) -> None:
     """Wait until the motion is drawn."""
     visitor.settled()
@@ -55,6 +61,7 @@ def _hold(visitor: Visitor) -> None:
     visitor.page.get_by_role("button", name="Hold").click()
 
 
+@pytest.mark.campaign
 def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:
     page = visitor.page
     _moving(visitor)
@@ -71,6 +78,7 @@ def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:
     wait_until(lambda: page.evaluate(_INK) != still)
 
 
+@pytest.mark.campaign
 def test_the_picture_and_the_plot_have_one_time(visitor: Visitor) -> None:
     page = visitor.page
     _moving(visitor)
@@ -88,6 +96,7 @@ def test_the_picture_and_the_plot_have_one_time(visitor: Visitor) -> None:
     assert _time(visitor) - after == pytest.approx(-9.0 / 60.0, abs=2e-3)
 
 
+@pytest.mark.campaign
 def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
     """Thirty steps are no thirty simulations, and the last one is the one that is drawn."""
     page = visitor.page
@@ -112,10 +121,11 @@ def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
     assert asked[-1]["study"]["elements"]["k"] == page.input_value("[id='entry elements.k']")
 
 
+@pytest.mark.campaign
 def test_friction_that_sticks_is_amber(visitors: Any, served: Served, tmp_path: Path) -> None:
     study = tmp_path / "sticks.toml"
     study.write_text((EXAMPLES / "ball_screw.toml").read_text().replace('f = "10 N"', 'f = "100 kN"'))
-    visitor = visitors(served).visit()
+    visitor = visitors(served, reduced_motion="no-preference").visit()
     visitor.open(study)
     page = visitor.page
     page.wait_for_selector("text=sticks.toml is open")
@@ -126,9 +136,10 @@ def test_friction_that_sticks_is_amber(visitors: Any, served: Served, tmp_path: 
         wait_until(lambda amber=amber: (page.evaluate(_COUNT, STICK) > 40) == amber)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("name", "reason"), [("absorber", "At rest."), ("train", ""), ("full-car", ""), ("seat", "")])
 def test_each_vehicle_is_drawn(name: str, reason: str, visitors: Any, served: Served) -> None:
-    visitor = visitors(served).visit()
+    visitor = visitors(served, reduced_motion="no-preference").visit()
     page = visitor.page
     visitor.open(EXAMPLES / f"{name}.toml")
     page.wait_for_selector(f"text={name}.toml is open")

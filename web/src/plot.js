@@ -40,8 +40,8 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
   useLayoutEffect(() => {
     names.current = laid?.names ?? [];
   }, [laid]);
-  if (plot === null || declared === null)
-    return html`<div class="plot"><div class="row plot-tools">${children}</div>
+  if (plot === null || declared === null) // with an empty second child, else what is typed among the first would go
+    return html`<div class="plot"><div class="row plot-tools">${children}${null}</div>
       <div class="plot-area" ref=${place}></div></div>`;
   /** @param {"x" | "y"} axis */
   const chip = (axis) => html`<${Chip} key=${axis} on=${declared[axis].log ?? false}

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from pages import ROOT, text_of
+from pages import NUMBER, ROOT, text_of
 
 import inerter
 from inerter.cli.main import app
@@ -55,3 +55,11 @@ def test_tests_that_the_theory_names_exist() -> None:
     )
     assert len(named) > 20
     assert [name for name in named if not (ROOT / "tests" / name).exists()] == []
+
+
+def test_numbers_of_the_paper_are_those_of_the_tutorial() -> None:
+    paper = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8")
+    example = paper.partition("# Example")[2].partition("# References")[0]
+    numbers = NUMBER.findall(example)
+    assert len(numbers) >= 5
+    assert [number for number in numbers if number not in NUMBER.findall(text_of("tutorial.md"))] == []

@@ -241,7 +241,8 @@ def test_a_front_that_is_drawn_is_that_of_the_job(serve: Callable[..., Served], 
 
 
 @pytest.mark.campaign
-def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(visitor: Visitor) -> None:
+def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(serve: Callable[..., Served], visitors: Any) -> None:
+    visitor = visitors(serve(EXAMPLES / "quarter-car.toml")).visit()  # where there are no other jobs
     page = visitor.page
     job, result = _finished(visitor, "Sweep", 3)
     plot = job.locator(".plot")

@@ -16,6 +16,7 @@ from inerter.kernels.network_norms import indices
 from inerter.methods.network_norm import network_program
 
 BLOCK = 40
+PEAKS = 160  # of which one in six or seven has a peak that the compiled code knows
 ROOT = 4e-16  # of the last operations, which the bound leaves out
 
 
@@ -45,11 +46,11 @@ def test_a_bound_holds_where_a_difference_loses_its_digits(number):
     assert error == math.inf or abs(value / member.exact() - 1.0) <= error + ROOT
 
 
-@pytest.mark.parametrize("block", sampled(range(100), range(2)))
+@pytest.mark.parametrize("block", sampled(range(25), range(1)))
 def test_a_peak_gain_is_within_its_bound_of_rational_arithmetic(block):
     pytest.importorskip("flint", reason="python-flint is not installed")
     compared = 0
-    for number in range(BLOCK * block, BLOCK * (block + 1)):
+    for number in range(PEAKS * block, PEAKS * (block + 1)):
         member = random_member(number, extreme=0.1, peaks=True)
         found = None if member is None else side_by_side(member, 1, number)
         if found is None or found[1][0] == math.inf or (exact := member.exact()) is None:

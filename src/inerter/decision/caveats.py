@@ -75,7 +75,7 @@ def caveats_of(contest: Contest) -> list[Caveat]:
         *_statuses(contest),
         *_ties(contest),
         *_limits(contest),
-        *_neglected(contest),
+        *_neglect_caveats(contest),
         *_bounds(contest),
         *_unchosen(contest),
     ]
@@ -157,7 +157,7 @@ def unknown_limits(design: DesignResult) -> list[LimitResult]:
     return [one for one in design.limits if one.kept is None]
 
 
-def _neglected(contest: Contest) -> Iterator[Caveat]:
+def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
     for what, names in _names_by(contest.chosen, lambda one: one.neglected).items():
         remedy = f"; {contest.remedy} models it" if contest.remedy else ""
         by = f" by {contest.method}" if contest.method else ""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from inerter.figures.networks import Schematic
 
 
-def _titled(request: ExportSpec) -> dict[str, Network]:
+def _networks_by_title(request: ExportSpec) -> dict[str, Network]:
     """Networks by their titles; mounts with the same network share one, and one alone has none."""
     together: dict[Network, list[str]] = {}
     for name, network in request.networks.items():
@@ -29,7 +29,7 @@ def _figure(request: ExportSpec, suffix: str) -> bytes:
     content = io.BytesIO()
     with style_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied")
-        figure = network_figure(_titled(request), values=True)
+        figure = network_figure(_networks_by_title(request), values=True)
         figure.savefig(content, format=suffix.removeprefix("."), metadata=UNDATED[suffix])
     return content.getvalue()
 
@@ -38,7 +38,7 @@ def _tikz(request: ExportSpec, suffix: str) -> str:
     from inerter.figures.networks import schematic  # noqa: PLC0415 - heavy
 
     lines = ["% written by inerter; needs \\usepackage{tikz}, one unit is one point"]
-    for title, network in _titled(request).items():
+    for title, network in _networks_by_title(request).items():
         lines += [f"% {title}"] if title else []
         lines += tikz_lines(schematic(network, values=True))
     return "\n".join([*lines, ""])

@@ -94,9 +94,9 @@ class _Source:
             carried, moved = (taken[name] for name in of_mount(mount))
             self.outputs.append(f'output Real {carried}(unit="N") = {self._network(network, *ends)};')
             self.outputs.append(f'output Real {moved}(unit="m") = {ends[0]}.s - {ends[1]}.s;')
-        return self._joined(" ".join(title.split()))
+        return self._connect_parts(" ".join(title.split()))
 
-    def _joined(self, title: str) -> str:
+    def _connect_parts(self, title: str) -> str:
         quoted = title.replace("\\", "\\\\").replace('"', '\\"')
         package = package_name(title)
         lines = [f'package {package} "{quoted}, written by inerter"', _INERTER.rstrip(), *self.models]

@@ -119,7 +119,7 @@ def plot_admittance(
     named = {"": networks} if isinstance(networks, Network) else dict(networks)
     if not named:
         check_network(None)
-    hertz = _checked(np.geomspace(0.1, 100.0, _POINTS) if frequency is None else frequency)
+    hertz = _check_frequencies(np.geomspace(0.1, 100.0, _POINTS) if frequency is None else frequency)
     with style_context():
         upper, lower = _pair(axes)
         for look, network in zip(_looks(named), named.values(), strict=True):
@@ -149,7 +149,7 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
     """
     with style_context():
         ax = _single(ax)
-        named = _named(designs)
+        named = _designs_by_name(designs)
         reach = 0.0
         for number, (name, vehicle) in enumerate(named.items()):
             poles = np.linalg.eigvals(state_space(vehicle).A)
@@ -185,7 +185,7 @@ def plot_step_response(
     time = np.linspace(0.0, duration, _STEPS)
     with style_context():
         ax = _single(ax)
-        named = _named(designs)
+        named = _designs_by_name(designs)
         label = ""
         for look, vehicle in zip(_looks(named), named.values(), strict=True):
             mechanism = vehicle.mechanism()
@@ -234,7 +234,7 @@ def plot_trajectory(
         if len(several) != len(names):
             raise SimulationError(f"Each of {len(names)} outputs needs axes, got {len(several)}.")
         for name, ax in zip(names, several, strict=True):
-            values, label = _scaled(run, name, inside)
+            values, label = _scale_output(run, name, inside)
             ax.plot(run.time[inside], values, linewidth=0.9, color=colour(0))
             ax.set(ylabel=label, xlim=(low, high))
             _shade(run, (low, high), ax)
@@ -265,7 +265,7 @@ def plot_loop(
     inside = (run.time >= low) & (run.time <= high)
     with style_context():
         ax = _single(ax)
-        (along, x_label), (height, y_label) = (_scaled(run, name, inside) for name in (across, up))
+        (along, x_label), (height, y_label) = (_scale_output(run, name, inside) for name in (across, up))
         ax.plot(along, height, linewidth=0.9, color=colour(0))
         ax.set(xlabel=x_label, ylabel=y_label)
     return ax
@@ -336,10 +336,10 @@ class _Curve:
 
 def _responses(designs: Designs, response: Response, frequency: ArrayLike | None) -> Iterator[_Curve]:
     """A curve for each design and each output of the response."""
-    named = _named(designs)
+    named = _designs_by_name(designs)
     found = [_system(vehicle.mechanism(), vehicle, response) for vehicle in named.values()]
     omega = resonant_range([system.A for system, *_ in found])
-    hertz = omega / (2.0 * np.pi) if frequency is None else _checked(frequency)
+    hertz = omega / (2.0 * np.pi) if frequency is None else _check_frequencies(frequency)
     for look, (system, pade_order, what, unit) in zip(_looks(named), found, strict=True):
         values = frequency_response(system, 2.0 * np.pi * hertz, pade_order)
         for row, output in enumerate(system.outputs):
@@ -369,7 +369,7 @@ def _system(mechanism: Mechanism, vehicle: Vehicle, response: Response) -> tuple
     return system, None, what, gain_unit(unit_of(mechanism, [output]), per)
 
 
-def _named(designs: Designs) -> dict[str, Vehicle]:
+def _designs_by_name(designs: Designs) -> dict[str, Vehicle]:
     named = dict(designs) if isinstance(designs, Mapping) else {"": designs}
     if not named:
         raise DesignError("A plot of designs needs at least one, got none.")
@@ -390,7 +390,7 @@ def _fainter(row: int) -> dict[str, Any]:
     return {"alpha": 1.0 / (1 + row)} if row else {}
 
 
-def _checked(frequency: ArrayLike) -> Array:
+def _check_frequencies(frequency: ArrayLike) -> Array:
     found = np.atleast_1d(np.asarray(frequency, dtype=float))
     if found.ndim != 1 or not found.size or not np.all(np.isfinite(found) & (found > 0.0)):
         raise LinearSystemError("Frequencies of a plot are a list of positive numbers of Hz.")
@@ -423,7 +423,7 @@ def _free_motion(A: Array, begin: Array, row: Array, time: Array) -> Array:
     return found
 
 
-def _scaled(run: Trajectory, name: str, inside: NDArray[np.bool_]) -> tuple[Array, str]:
+def _scale_output(run: Trajectory, name: str, inside: NDArray[np.bool_]) -> tuple[Array, str]:
     """Samples of an output in a unit that suits their size, and the label of their axis."""
     values, output = run[name][inside], run.outputs[name]
     scale = choose_scale([float(np.abs(values).max())], output.unit)

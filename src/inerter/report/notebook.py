@@ -28,7 +28,7 @@ Fact = tuple[str, object]
 
 def estimate_html(found: Estimate) -> str:
     """Value with its errors, and what the method left out."""
-    facts: list[Fact] = [("value", _estimated(found))]
+    facts: list[Fact] = [("value", _estimate_quantity(found))]
     if found.interval is not None:
         facts.append(("95 % interval", _interval(found.interval, found.unit)))
     if found.error_sources:
@@ -38,13 +38,17 @@ def estimate_html(found: Estimate) -> str:
 
 def comparison_html(found: Comparison) -> str:
     """Both values, and the difference in words."""
-    facts = [("first", _estimated(found.first)), ("second", _estimated(found.second)), ("difference", str(found))]
+    facts = [
+        ("first", _estimate_quantity(found.first)),
+        ("second", _estimate_quantity(found.second)),
+        ("difference", str(found)),
+    ]
     return _html(_facts("Comparison", facts), found.status)
 
 
 def optimum_html(found: Optimum) -> str:
     """Best value, its parameters with active bounds, active limits, and how many starts agree."""
-    facts: list[Fact] = [("value", _estimated(found.estimate)), *_parameters(found.parameters, found.design)]
+    facts: list[Fact] = [("value", _estimate_quantity(found.estimate)), *_parameters(found.parameters, found.design)]
     facts += [(f"{bound} bound", name) for name, bound in found.active_bounds.items()]
     facts += [("limit", label) for label in found.active_limits]
     facts.append(("starts that agree", f"{found.n_converged} of {found.n_starts}"))
@@ -60,7 +64,7 @@ def break_even_html(found: BreakEven) -> str:
 
 def tolerance_html(found: Tolerance) -> str:
     """Distribution of an index, and the part of each value in its variance."""
-    facts: list[Fact] = [("nominal", _estimated(found.nominal)), ("mean", Quantity(found.mean, found.unit))]
+    facts: list[Fact] = [("nominal", _estimate_quantity(found.nominal)), ("mean", Quantity(found.mean, found.unit))]
     facts += [
         ("95 % quantile", Quantity(found.quantile(0.95), found.unit)),
         ("worst", Quantity(found.worst, found.unit)),
@@ -142,7 +146,7 @@ def _facts(caption: str, facts: Sequence[Fact]) -> Table:
     return Table(caption, columns("what", "value"), [Row(cells(name, content)) for name, content in facts])  # type: ignore[arg-type]
 
 
-def _estimated(found: Estimate) -> Quantity:
+def _estimate_quantity(found: Estimate) -> Quantity:
     error = float("nan") if found.standard_error is None else found.standard_error
     return Quantity(found.value, found.unit, error=error, bound=found.error_bound)
 

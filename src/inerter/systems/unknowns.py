@@ -46,7 +46,7 @@ def unknowns(descriptor: Descriptor) -> tuple[tuple[str, str], ...]:
     units = {"acceleration": "m/s^2", "velocity": "m/s", "elongation": "m"}
     angles = _angles(descriptor)
     told = []
-    for name in _numbered(names, descriptor.states):
+    for name in _number_unknowns(names, descriptor.states):
         node, _, what = name.rpartition("_")
         what = what.rstrip("0123456789")
         told.append((name, units[what].replace("m", "rad", 1) if node in angles else units[what]))
@@ -57,7 +57,7 @@ def _motions(columns: Matrix, frame: Frame, what: str) -> list[str]:
     return [f"{frame.graph.nodes[int(np.argmax(np.abs(column)))]}_{what}" for column in columns.T]
 
 
-def _numbered(names: Sequence[str], taken: Sequence[str]) -> list[str]:
+def _number_unknowns(names: Sequence[str], taken: Sequence[str]) -> list[str]:
     """The names with a number behind where they would occur twice, here or among those that are taken."""
     found: list[str] = []
     for name in names:

@@ -62,7 +62,7 @@ def switching_system(mechanism: Mechanism, wanted: Sequence[str] | None, title: 
     graph = full_graph(mechanism)
     reactive = [b for b in graph.branches if b.element.switch is not None]
     _check(mechanism, graph, reactive)
-    opened, names = _opened(mechanism, graph, reactive)
+    opened, names = _open_mechanism(mechanism, graph, reactive)
     roads = [road.name for road in mechanism.roads]
     reactions = [f"reaction_{i}" for i in range(len(reactive))]
     inputs = [*roads, *(force.name for force in mechanism.forces), *reactions]
@@ -130,7 +130,7 @@ def _check(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch]) -> No
             )
 
 
-def _opened(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch]) -> tuple[Mechanism, dict[int, str]]:
+def _open_mechanism(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch]) -> tuple[Mechanism, dict[int, str]]:
     """The mechanism of single branches without friction and gaps, and the name of the strut of each branch."""
     count = len(mechanism.coordinates)
     inner = [f"inner_node_{i}" for i in range(len(graph.nodes) - count)]

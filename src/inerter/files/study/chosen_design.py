@@ -42,7 +42,9 @@ class ChosenDesign:
         vehicle = self.study.at(self.case.swept).design(self.case.layout)
         if not vehicle.free_values():
             return vehicle
-        values = _read(self.source, self.study, self.case) if self.source.is_dir() else _found(self.study, self.case)
+        values = (
+            _read(self.source, self.study, self.case) if self.source.is_dir() else _search_values(self.study, self.case)
+        )
         return vehicle.with_values({name: values[name] for name in vehicle.free_values()})
 
 
@@ -56,9 +58,9 @@ def chosen_design(source: Path, layout: str | None, index: str | None, point: in
     study = load_study(source / RESOLVED if source.is_dir() else source)
     if problems := list(unchosen_problems(study)):
         raise refusal(study.path, problems)
-    chosen = _chosen("layout", layout, list(study.layouts), source)
+    chosen = _choose("layout", layout, list(study.layouts), source)
     is_free = bool(study.design(chosen).free_values())
-    asked = _chosen("index", index, list(study.indices), source) if is_free or index else study.indices[0]
+    asked = _choose("index", index, list(study.indices), source) if is_free or index else study.indices[0]
     every = cases(study)
     number = _point(point, every.points, study, source)
     case = Case(chosen, asked, number, every.sweep_values(number))
@@ -66,7 +68,7 @@ def chosen_design(source: Path, layout: str | None, index: str | None, point: in
     return ChosenDesign(study, case, source, inputs)
 
 
-def _chosen(what: str, given: str | None, known: list[str], source: Path) -> str:
+def _choose(what: str, given: str | None, known: list[str], source: Path) -> str:
     if given is None:
         if len(known) == 1:
             return known[0]
@@ -90,7 +92,7 @@ def _point(point: int | None, count: int, study: Study, source: Path) -> int:
     return point - 1
 
 
-def _found(study: Study, case: Case) -> dict[str, float]:
+def _search_values(study: Study, case: Case) -> dict[str, float]:
     """Values found by the search of the study."""
     assert study.optimise is not None
     outcome = run_case(replace(study, evaluate=(study.optimise,)), case)

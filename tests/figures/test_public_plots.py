@@ -126,3 +126,14 @@ def test_what_cannot_be_drawn_is_said() -> None:
     ):
         with pytest.raises(it.InerterError, match=words):
             call()
+
+
+def test_a_response_to_several_sources_has_no_phase() -> None:
+    """Two tracks with a coherence are two sources: the gain from one of them alone would be wrong."""
+    road = it.Road(roughness=5e-7, speed=25.0, coherence=it.Coherence.first_order(wavenumber=0.2))
+    car = it.FullCar(1400, 2400, 520, 45, 40, 220e3, 220e3, 1.2, 1.5, 1.5, 1.5, STRUT, STRUT)
+    with pytest.raises(it.InerterError, match="Several independent sources"):
+        it.plot_bode(car, it.RideComfort(road))
+    inputs = it.state_space(car).inputs
+    gain, _ = it.plot_bode(car, (inputs[0], "roll_acceleration"))
+    assert len(gain.lines) == 1

@@ -51,7 +51,8 @@ def plot_bode(
     `designs` is one vehicle or several by their names; `response` an index, whose outputs are drawn without weights
     over its excitation, or the names of an input and an output of `state_space`. A road is an input by its velocity.
 
-    Raises `DesignError` for a design with free values, and what `state_space` raises for unknown names.
+    Raises `DesignError` for a design with free values, or a response to several independent sources, as of two tracks
+    with a coherence; and what `state_space` raises for unknown names.
 
     >>> import inerter as it
     >>> strut = it.Spring(120e3) | it.Damper(2e3)
@@ -342,6 +343,11 @@ def _responses(designs: Designs, response: Response, frequency: ArrayLike | None
     hertz = omega / (2.0 * np.pi) if frequency is None else _check_frequencies(frequency)
     for look, (system, pade_order, what, unit) in zip(_looks(named), found, strict=True):
         values = frequency_response(system, 2.0 * np.pi * hertz, pade_order)
+        if values.shape[2] > 1:
+            raise DesignError(
+                "Several independent sources excite this response, so that it has no phase. Plot it from one input to "
+                'one output, such as ("road_front_left", "roll_acceleration").'
+            )
         for row, output in enumerate(system.outputs):
             several = {"label": f"{look['label']} {_words(output)}".strip()} if len(system.outputs) > 1 else {}
             yield _Curve(hertz, values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)

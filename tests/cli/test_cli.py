@@ -179,7 +179,7 @@ def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys
     assert "5 designs and break-even values" in err
     assert out.isascii()
     assert max(map(len, out.splitlines())) <= 80
-    (friction,) = re.findall(r"S3 .*up to (\d+) \+- (\d+) N$", out, re.MULTILINE)
+    (friction,) = re.findall(r"S3, J1 .*up to (\d+) \+- (\d+) N$", out, re.MULTILINE)
     assert 300 < int(friction[0]) < 600
     words = " ".join(out.split())
     assert re.search(
@@ -188,7 +188,7 @@ def test_a_real_ball_screw_with_its_errors_and_its_budget(tmp_path: Path, capsys
     )
     assert {path.name for path in folder.iterdir()} >= {"budgets.csv", "summary.csv", "report.html"}
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "Break-even value of f: for which f each layout is better than S1, by simulation" in page
+    assert "Break-even values: where each layout is better than S1, by simulation" in page
     assert "The methods side by side" in page
     assert "Each mean is over 8 random inputs, which seed 0 decides" in page
     assert (folder / "figures" / "methods.svg").exists()

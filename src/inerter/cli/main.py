@@ -19,7 +19,7 @@ from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.atomic_io import remove_temporary_folders
 from inerter.cli.interrupts import came, heed, interruptible, tell
-from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
+from inerter.cli.options import OWN, BestFor, ClusterOptions, Force, ForceFile, Jobs, Json, Output, Resume, SweepPoint
 from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem
@@ -301,7 +301,7 @@ def rig(
 @app.command(
     help_epilogue="""Examples:
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
-  inerter export quarter-car-results --layout S3 --index J1 --to modelica -o car.mo
+  inerter export quarter-car-results --layout S3 --index J1 --to modelica
   inerter export my-car.toml --layout real --to spice --linear"""
 )
 def export(
@@ -310,8 +310,8 @@ def export(
     *,
     to: Annotated[str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex.")],
     layout: Annotated[str | None, Parameter(help="Layout; may be left out if there is one.")] = None,
-    index: Annotated[str | None, Parameter(help="Index whose best design is exported, if values are free.")] = None,
-    point: Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")] = None,
+    index: BestFor = None,
+    point: SweepPoint = None,
     only: Annotated[
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
@@ -323,9 +323,7 @@ def export(
         Path | None,
         Parameter(name=["--output", "-o"], help="Output file; its suffix chooses among those of the kind."),
     ] = None,
-    force: Annotated[
-        bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")
-    ] = False,
+    force: ForceFile = False,
 ) -> None:
     """Export a design to another program: matrices, Modelica source, a netlist, tables, or a drawing.
 
@@ -345,7 +343,7 @@ def export(
 @app.command(
     help_epilogue="""Examples:
   inerter plot examples/quarter-car.toml --kind bode --index J1
-  inerter plot quarter-car-results --kind network --layout S3 --index J1 -o s3.pdf"""
+  inerter plot quarter-car-results --kind poles --index J1 -o poles.pdf"""
 )
 def plot(
     source: Path,
@@ -355,12 +353,10 @@ def plot(
     layout: Annotated[
         tuple[str, ...], Parameter(negative="", show_default=False, help="Layout; repeatable. Default: all.")
     ] = (),
-    index: Annotated[str | None, Parameter(help="Index whose best designs are drawn, if values are free.")] = None,
-    point: Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")] = None,
+    index: BestFor = None,
+    point: SweepPoint = None,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"], help="Output file: .svg, .pdf or .png.")] = None,
-    force: Annotated[
-        bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")
-    ] = False,
+    force: ForceFile = False,
 ) -> None:
     """Plot designs: frequency responses, poles, admittances of struts, or drawings of networks.
 

@@ -57,3 +57,6 @@ Force = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
 ]
+ForceFile = Annotated[bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")]
+BestFor = Annotated[str | None, Parameter(help="Index for which designs are best, if values are free.")]
+SweepPoint = Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")]

@@ -27,7 +27,13 @@ Exportable = Vehicle | Network | LinearSystem | Trajectory
 
 @dataclass(frozen=True, eq=False)
 class ExportSpec:
-    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted."""
+    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted.
+
+    >>> import inerter as it
+    >>> spec = it.ExportSpec(it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), to="spice")
+    >>> list(spec.networks)
+    ['strut']
+    """
 
     of: Exportable
     to: str

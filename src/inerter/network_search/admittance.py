@@ -44,6 +44,13 @@ class AdmittanceResult:
 
     `n_converged` of `n_starts` searches at the highest degree ended at this value; it is the best one found, which is
     not proved to be the lowest.
+
+    >>> import inerter as it
+    >>> place = it.Spring(60e3) | it.any_network(1, dampers=(10, 1e6))
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, strut=place)
+    >>> best = it.optimise_admittance(car, it.RideComfort(it.Road(5e-7, 25.0)), degree=0)  # a damper [N s/m]
+    >>> round(best.numerator[0] / best.denominator[0], 6) == round(best.network().damping, 6)
+    True
     """
 
     value: float

@@ -23,7 +23,13 @@ Fraction = tuple[Complex, Complex]  # numerator and denominator
 
 
 class Network:
-    """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`."""
+    """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)  # - binds tighter than |
+    >>> isinstance(strut, it.Network), [part.label for part in strut.elements()]
+    (True, ['k', 'c', 'b'])
+    """
 
     _repr_svg_ = shown_by("inerter.figures.plots:network_svg")
 

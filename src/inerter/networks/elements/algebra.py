@@ -25,7 +25,7 @@ Fraction = tuple[Complex, Complex]  # numerator and denominator
 class Network:
     """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`."""
 
-    _repr_svg_ = shown_by("inerter.figures.plots:network_svg")
+    _repr_svg_ = shown_by("inerter.figures.plots.network:network_svg")
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))

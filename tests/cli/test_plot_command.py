@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from inerter.cli.main import call
+from inerter.cli.main import app, call
+from inerter.exports.registry import EXPORTS
+from inerter.figures.plots.kinds import PLOTS
 
 STUDY = Path(__file__).parents[2] / "examples" / "quarter-car.toml"
 
@@ -136,3 +139,11 @@ def test_the_documentation_is_opened_or_said_where(
     (tmp_path / "index.html").write_text("", encoding="utf-8")
     assert call(["docs", str(tmp_path)]) == 0
     assert opened == [(tmp_path / "index.html").resolve().as_uri()]
+
+
+@pytest.mark.parametrize(("command", "option", "kinds"), [("plot", "--kind", PLOTS), ("export", "--to", EXPORTS)])
+def test_help_names_all_kinds(command: str, option: str, kinds: Mapping[str, object]) -> None:
+    """Help is shown without an import of the kinds, so it has their names a second time."""
+    (argument,) = (one for one in app[command].assemble_argument_collection() if option in one.names)
+    files = [key for key, kind in kinds.items() if getattr(kind, "is_file", True)]
+    assert re.findall(rf"\b({'|'.join(files)})\b", argument.parameter.help) == files

@@ -179,7 +179,7 @@ def _share_within_classes(
         for topology in members:
             like[topology] = tuple(other for other in members if other != topology)
             own = known[topology]
-            if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
+            if plan.compiled_index is None or known[best].value >= own.value * (1.0 - TIED):
                 continue
             try:
                 values = transform_values(best, known[best].values, topology)

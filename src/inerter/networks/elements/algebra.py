@@ -31,7 +31,7 @@ class Network:
     (True, ['k', 'c', 'b'])
     """
 
-    _repr_svg_ = shown_by("inerter.figures.plots:network_svg")
+    _repr_svg_ = shown_by("inerter.figures.plots.network:network_svg")
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))

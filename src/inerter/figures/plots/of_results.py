@@ -62,6 +62,25 @@ def plot_map(results: xr.Dataset, index: str, *, axes: Sequence[Axes] | None = N
     `results` is the dataset of a study, as `results.nc` has it; each layout is on axes of its own.
 
     Raises `StudyError` if not two numbers are swept, the index is not there, or the number of axes is another.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> study = '''
+    ... vehicle = {model = "quarter-car", sprung_mass = "250 kg", unsprung_mass = "35 kg", tyre_stiffness = "180 kN/m"}
+    ... road = {speed = "25 m/s", class = "B"}
+    ... elements = {k = "60 kN/m", c = "2 kN s/m"}
+    ... layouts = {S1 = "k | c"}
+    ... [study]
+    ... indices = ["J1"]
+    ... evaluate = ["norm"]
+    ... sweep = {k = ["40 kN/m", "60 kN/m"], c = ["1 kN s/m", "2 kN s/m"]}
+    ... '''
+    >>> with TemporaryDirectory() as name:
+    ...     _ = Path(name, "values.toml").write_text(study)
+    ...     results = it.run_study(it.load_study(Path(name, "values.toml")), Path(name, "results")).data
+    >>> len(it.plot_map(results, "J1"))  # axes, one for each layout
+    1
     """
     _check(results, index, 2, "a map", "two swept numbers")
     count = len(layouts(results))

@@ -133,6 +133,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     WHOLE: nothing,
     f"{EXPORTED} matlab": nothing,
     f"{EXPORTED} modelica -o car.mo": nothing,
+    f"{EXPORTED} fmu --part strut": nothing,
 }
 BRIEF = [
     f"{EXPORTED} matlab",

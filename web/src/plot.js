@@ -5,7 +5,7 @@ import { html, useEffect, useId, useLayoutEffect, useMemo, useRef, useState } fr
 import { indexAt, layoutOf, nearest, valueAt } from "./plots/layout.js";
 import { pngOf, svgOf } from "./plots/saving.js";
 import { csvOf, tableOf, thinned } from "./plots/table.js";
-import { download } from "./remembering.js";
+import { download, fileName } from "./remembering.js";
 import { printed, shown } from "./state/scale.js";
 
 /** @import { Declaration, Layout, Point, Name } from "./plots/layout.js" */
@@ -395,7 +395,7 @@ function NumberTable({ plot, table }) {
 /** @param {{plot: Declaration, table?: Numbers, current: boolean, drawn: {current: SVGSVGElement | null},
  * shown: boolean}} props */
 function SaveMenu({ plot, table, current, drawn, shown: isDrawn }) {
-  const name = plot.title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 80) || "plot";
+  const name = fileName(plot.title);
   const picture = () => /** @type {SVGSVGElement} */ (drawn.current);
   const ground = () => getComputedStyle(/** @type {Element} */ (picture().parentElement)).backgroundColor;
   /** @param {string} kind @param {() => Promise<Blob> | Blob} make @param {boolean} possible */

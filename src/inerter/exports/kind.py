@@ -14,13 +14,14 @@ class ExportKind:
     """A kind of export.
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
-    suffixes, an object of Python.
+    suffixes, an object of Python. `requires` is what the machine must have for it.
     """
 
     key: str
     description: str
     suffixes: tuple[str, ...]
     make: Callable[[ExportSpec, str], Any]
+    requires: str = ""
 
     @property
     def is_file(self) -> bool:

@@ -159,5 +159,5 @@ def _array(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
-FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2)
-FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3)
+FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2, "a C compiler")
+FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3, "a C compiler")

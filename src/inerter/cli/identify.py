@@ -13,6 +13,7 @@ from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
+from inerter.cli.reading import time_interval
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, WriteMode, open_results
 from inerter.files.common.toml import check_measurements
@@ -132,7 +133,7 @@ def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
     if "fixture_mass" in given:
         changes["fixture_mass"] = _uncertain("fixture_mass", given["fixture_mass"], "kg")
     if "trim" in given:
-        changes["start"], changes["stop"] = _times(given["trim"])
+        changes["start"], changes["stop"] = time_interval("--trim", given["trim"])
     if "gaps" in given:
         try:
             changes["gaps"] = gap_treatment(given["gaps"])
@@ -170,14 +171,3 @@ def _positive(name: str, text: str, unit: str) -> float:
     if value <= 0.0:
         raise StudyError(f'{option}: Got "{text}": not positive; expected more than 0 {unit}.')
     return value
-
-
-def _times(text: str) -> tuple[float | None, float | None]:
-    begin, colon, end = text.partition(":")
-    try:
-        times = tuple(float(part) if part.strip() else None for part in (begin, end))
-    except ValueError:
-        colon = ""
-    if not colon:
-        raise StudyError(f'Got --trim "{text}"; expected FROM:TO in seconds, such as --trim 0.5:4.')
-    return times[0], times[1]

@@ -15,6 +15,11 @@ class ExportKind:
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
     suffixes, an object of Python. `requires` is what the machine must have for it.
+
+    >>> import inerter as it
+    >>> kind = it.EXPORTS["modelica"]
+    >>> kind.suffixes, kind.is_file
+    (('.mo',), True)
     """
 
     key: str

@@ -63,7 +63,7 @@ class Contest:
         return next((one for one in self.designs if one.is_baseline), None)
 
     @property
-    def chosen(self) -> list[DesignResult]:
+    def complete(self) -> list[DesignResult]:
         """Designs with a value for every design variable."""
         return [one for one in self.designs if not one.unchosen]
 
@@ -102,7 +102,7 @@ def _worse(contest: Contest) -> Iterator[Caveat]:
 
 def _statuses(contest: Contest) -> Iterator[Caveat]:
     shown = [*contest.winners, *filter(None, [contest.baseline])]
-    values = [(one.name, one.goal) for one in contest.chosen if one.goal.status.kind is not StatusKind.INFEASIBLE]
+    values = [(one.name, one.goal) for one in contest.complete if one.goal.status.kind is not StatusKind.INFEASIBLE]
     values += [(one.name, other) for one in shown if not one.unchosen for other in one.others]
     by_reason: dict[tuple[str, str], list[tuple[str, IndexResult]]] = {}
     for name, result in values:
@@ -135,7 +135,7 @@ def _ties(contest: Contest) -> Iterator[Caveat]:
 
 def _limits(contest: Contest) -> Iterator[Caveat]:
     best = min((one.goal.value for one in contest.winners), default=-1.0)
-    for design in contest.chosen:
+    for design in contest.complete:
         broken = [f"{one.words} ({one.value})" for one in design.limits if one.kept is False]
         if broken:
             lower = isfinite(design.goal.value) and design.goal.value < best
@@ -158,7 +158,7 @@ def unknown_limits(design: DesignResult) -> list[LimitResult]:
 
 
 def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
-    for what, names in _names_by(contest.chosen, lambda one: one.neglected).items():
+    for what, names in _names_by(contest.complete, lambda one: one.neglected).items():
         remedy = f"; {contest.remedy} models it" if contest.remedy else ""
         by = f" by {contest.method}" if contest.method else ""
         yield Caveat(CaveatKind.NEGLECTED, f"{capital(what)} of {format_list(names)} is neglected{by}{remedy}.")

@@ -88,7 +88,7 @@ def _order(design: DesignResult) -> tuple[bool, bool, float]:
 
 def _verdict(contest: Contest, rest: Sequence[DesignResult]) -> DecisionVerdict:
     text, is_answer = _sentence(contest, rest)
-    doubts = [one for one in contest.chosen if one.goal.is_doubtful and not one.breaks_limit]
+    doubts = [one for one in contest.complete if one.goal.is_doubtful and not one.breaks_limit]
     unsure = doubts or any(map(unknown_limits, contest.winners))
     answer = VerdictKind.NONE if not is_answer else VerdictKind.DOUBT if unsure else VerdictKind.ANSWER
     return DecisionVerdict(text, answer, tuple(caveats_of(contest)))
@@ -127,7 +127,7 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
 
 def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
     """Sentence where no design is ranked."""
-    broken = [one for one in contest.chosen if one.breaks_limit]
+    broken = [one for one in contest.complete if one.breaks_limit]
     if broken:
         closest = min(broken, key=lambda one: one.excess)
         worst = max((one for one in closest.limits if one.kept is False), key=lambda one: one.excess, default=None)
@@ -159,7 +159,7 @@ def _sentence_on_baseline(
         by = rest[0].goal.improvement
         worse = f"; {rest[0].name}, the next, is {by.words}" if by is not None and isfinite(by.percent) else ""
         return f"No strut is better than {base.name} in {goal}{worse}.", True
-    if broken := [one.name for one in contest.chosen if one.breaks_limit]:
+    if broken := [one.name for one in contest.complete if one.breaks_limit]:
         verb = "does" if len(broken) == 1 else "do"
         return f"{base.name} is the only strut that keeps the limits; {format_list(broken)} {verb} not.", True
     if unchosen:

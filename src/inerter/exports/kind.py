@@ -17,14 +17,27 @@ class ExportKind:
     """A kind of export.
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
+<<<<<<< HEAD
     suffixes, an object of Python. It `takes` those of `OPTIONS` that it can say.
+=======
+    suffixes, an object of Python. `requires` is what the machine must have for it.
+
+    >>> import inerter as it
+    >>> kind = it.EXPORTS["modelica"]
+    >>> kind.suffixes, kind.is_file
+    (('.mo',), True)
+>>>>>>> main
     """
 
     key: str
     description: str
     suffixes: tuple[str, ...]
     make: Callable[[ExportSpec, str], Any]
+<<<<<<< HEAD
     takes: tuple[str, ...] = ()
+=======
+    requires: str = ""
+>>>>>>> main
 
     @property
     def is_file(self) -> bool:

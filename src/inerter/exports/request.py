@@ -1,4 +1,4 @@
-"""What is exported, and the options with which it is: each kind of export takes of it what its format can say."""
+"""Requests for an export: an object, a kind and options; each kind reads the options that its format has."""
 
 from __future__ import annotations
 
@@ -27,7 +27,13 @@ Exportable = Vehicle | Network | LinearSystem | Trajectory
 
 @dataclass(frozen=True, eq=False)
 class ExportSpec:
-    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted."""
+    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted.
+
+    >>> import inerter as it
+    >>> spec = it.ExportSpec(it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), to="spice")
+    >>> list(spec.networks)
+    ['strut']
+    """
 
     of: Exportable
     to: str
@@ -117,7 +123,7 @@ class ExportSpec:
         return np.asarray(given, dtype=float)
 
     def _vehicle(self, wanted: str) -> Vehicle:
-        """What is exported, as a vehicle; raises `ExportError` if it is none."""
+        """The exported object as a vehicle; raises `ExportError` if it is none."""
         if isinstance(self.of, type) or not callable(getattr(self.of, "mechanism", None)):
             raise ExportError(f"An export to {self.to} is one of {wanted}, got {type(self.of).__name__}.")
         found: Any = self.of

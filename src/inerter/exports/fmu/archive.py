@@ -216,5 +216,10 @@ def _matrix(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
+<<<<<<< HEAD
 FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2, ("part", "speed"))
 FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3, ("part", "speed"))
+=======
+FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2, "a C compiler")
+FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3, "a C compiler")
+>>>>>>> main

@@ -13,11 +13,8 @@ from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
-<<<<<<< HEAD
 from inerter.cli.quantity_options import positive_option
-=======
 from inerter.cli.reading import time_interval
->>>>>>> main
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, WriteMode, open_results
 from inerter.files.common.toml import check_measurements
@@ -163,26 +160,3 @@ def _uncertain(name: str, text: object, unit: str = "") -> Uncertain:
         return parse_uncertain(text, unit)
     except UnitError as error:
         raise StudyError(f"--{name.replace('_', '-')}: {error}") from None
-
-
-<<<<<<< HEAD
-def _times(text: str) -> tuple[float | None, float | None]:
-    begin, colon, end = text.partition(":")
-    try:
-        times = tuple(float(part) if part.strip() else None for part in (begin, end))
-    except ValueError:
-        colon = ""
-    if not colon:
-        raise StudyError(f'Got --trim "{text}"; expected FROM:TO in seconds, such as --trim 0.5:4.')
-    return times[0], times[1]
-=======
-def _positive(name: str, text: str, unit: str) -> float:
-    option = f"--{name.replace('_', '-')}"
-    try:
-        value = parse_quantity(text, unit)
-    except UnitError as error:
-        raise StudyError(f"{option}: {error}") from None
-    if value <= 0.0:
-        raise StudyError(f'{option}: Got "{text}": not positive; expected more than 0 {unit}.')
-    return value
->>>>>>> main

@@ -17,27 +17,21 @@ class ExportKind:
     """A kind of export.
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
-<<<<<<< HEAD
-    suffixes, an object of Python. It `takes` those of `OPTIONS` that it can say.
-=======
-    suffixes, an object of Python. `requires` is what the machine must have for it.
+    suffixes, an object of Python. `requires` is what the machine must have for it; it `takes` those of `OPTIONS` that
+    its format has.
 
     >>> import inerter as it
     >>> kind = it.EXPORTS["modelica"]
     >>> kind.suffixes, kind.is_file
     (('.mo',), True)
->>>>>>> main
     """
 
     key: str
     description: str
     suffixes: tuple[str, ...]
     make: Callable[[ExportSpec, str], Any]
-<<<<<<< HEAD
-    takes: tuple[str, ...] = ()
-=======
     requires: str = ""
->>>>>>> main
+    takes: tuple[str, ...] = ()
 
     @property
     def is_file(self) -> bool:
@@ -45,7 +39,7 @@ class ExportKind:
         return bool(self.suffixes)
 
     def contents(self, request: ExportSpec, suffix: str) -> Any:
-        """What `make` gives; raises `ExportError` for an option that this kind does not take."""
+        """Contents by `make`; raises `ExportError` for an option that this kind does not take."""
         for option, text in OPTIONS.items():
             if getattr(request, option) and option not in self.takes:
                 raise ExportError(f"An export to {self.key} has no {option}: it cannot be of {text}.")

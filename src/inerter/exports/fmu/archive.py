@@ -12,6 +12,7 @@ import tempfile
 import zipfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
@@ -216,10 +217,6 @@ def _matrix(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
-<<<<<<< HEAD
-FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2, ("part", "speed"))
-FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3, ("part", "speed"))
-=======
-FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2, "a C compiler")
-FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3, "a C compiler")
->>>>>>> main
+_KIND = partial(ExportKind, suffixes=(".fmu",), requires="a C compiler", takes=("part", "speed"))
+FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=_make_2)
+FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=_make_3)

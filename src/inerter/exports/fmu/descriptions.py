@@ -28,7 +28,7 @@ _RATE = re.compile(r"(.*?)(?:/s(?:\^(\d+))?)?")
 _TOOL = "inerter"
 _OF_STRUTS = (
     (NamedQuantity("mean_force", "N"), "Mean of strut_force over the last step."),
-    (NamedQuantity("inertance", "kg"), "What strut_force gains at once for each m/s^2 of upper_acceleration."),
+    (NamedQuantity("inertance", "kg"), "Gain of strut_force at once for each m/s^2 of upper_acceleration."),
     (NamedQuantity("coupling_ratio"), "inertance (1/upper_mass + 1/lower_mass): below one for an explicit host."),
 )
 

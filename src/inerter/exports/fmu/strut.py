@@ -91,7 +91,7 @@ def strut_system(network: Network, masses: tuple[float, float], title: str) -> S
 
 
 def port_masses(mechanism: Mechanism, strut: Strut) -> tuple[float, float]:
-    """What the upper and the lower port of a strut weigh, each alone; zero for a port on a road or on the ground."""
+    """Masses of the upper and the lower port of a strut, each alone; zero for a port on a road or on the ground."""
     masses = {c.name: c.coefficient for c in mechanism.masses.values()}
 
     def mass(port: Port) -> float:

@@ -69,7 +69,7 @@ class SwitchingSystem:
 
     @property
     def parameters(self) -> tuple[FmuParameter, ...]:
-        """What a host may set: values of elements and masses, limits of friction and gaps, masses of a host."""
+        """Numbers that a host may set: values of elements and masses, limits of friction and gaps, masses of a host."""
         values = () if self.equations is None else self.equations.parameters
         speed = () if self.speed is None else (self.speed,)
         return (*values, *(one for one in self.limits if one is not None), *self.host_masses, *speed)

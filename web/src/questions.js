@@ -3,7 +3,7 @@
 import { numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { isRange, own, strutsOf, entryAt } from "./state/document.js";
+import { entryAt, indicesIn, isRange, own, strutsOf } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -29,7 +29,7 @@ export const allDesigns = (document) =>
 
 /** The index by which designs are ranked. @param {State} state @returns {string | undefined} */
 export function goalOf({ view, history }) {
-  const indices = history.present.study.study?.indices ?? [];
+  const indices = indicesIn(history.present.study);
   return indices.includes(view.index) ? view.index : indices[0];
 }
 

@@ -150,6 +150,17 @@ class FigureRequest(OfDesigns):
     seed: Annotated[int, Field(ge=0)] = 0
 
 
+class DesignExport(Body):
+    """A design that is wanted in the format of another program."""
+
+    kind: Name
+    suffix: Annotated[Name, Field(description="Of the file, where the kind has several.")] = ""
+    study: Document
+    design: DesignRequest
+    index: Annotated[Name | None, Field(description="Whose curves are in tables, by default the first.")] = None
+    linear: Annotated[bool, Field(description="Leave out friction and gaps on purpose.")] = False
+
+
 class ExportRequest(Body):
     """A panel, and its request, whose numbers are wanted as a table."""
 

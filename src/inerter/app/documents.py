@@ -50,7 +50,7 @@ def study_from(document: object) -> Study:
     A layout with a free network is a problem too.
     """
     study = searched_study_from(document)
-    here = "In the workbench: Work, Search for the best network."
+    here = "In the workbench: Jobs, Search for the best network."
     if unchosen := [replace(problem, hint=f"{problem.hint} {here}") for problem in unchosen_problems(study)]:
         raise refusal(PATH, unchosen)
     return study

@@ -3,7 +3,7 @@
 import { treeOf, unchosenIn } from "../library.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
 import { allDesigns, answerOf, baselineOf, goalOf } from "../questions.js";
-import { nextLayout, textOf } from "../state/document.js";
+import { indicesIn, nextLayout, textOf } from "../state/document.js";
 import { estimated, placed, shown, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
@@ -121,16 +121,16 @@ function Against({ row: { is_baseline: isBaseline, improvement_percent: value, i
 export function signed(value, places) {
   if (typeof value !== "number") return "–";
   const size = Math.abs(value);
+  if (size < 0.005 && places === undefined) return "0 %";
   const digits = places ?? (size < 0.1 ? 2 : size < 100 ? 1 : 0);
   return `${value < 0 ? "−" : "+"}${size.toFixed(digits)} %`;
 }
 
 /** The indices that the study asks for. @param {State} state @returns {{symbol: string, title: string}[]} */
 export function indicesOf(state) {
-  const asked = state.history.present.study.study?.indices ?? [];
   const known = state.about?.indices ?? [];
-  return asked.map((/** @type {string} */ symbol) => known.find((/** @type {any} */ each) => each.symbol === symbol)
-    ?? { symbol, title: symbol });
+  return indicesIn(state.history.present.study).map((symbol) =>
+    known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
 }
 
 /** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */

@@ -76,8 +76,8 @@ const ROWS = [
   (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
   (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
-  ({ view: { seconds, seed } }, document) => [
-    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
+  ({ view: { seconds, seed, output } }, document) => [
+    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
       rest: 300 },
     ofDesigns("mechanism", presentDesign(document)),
   ],
@@ -192,9 +192,14 @@ function effortOf(state, scattering) {
   };
 }
 
-/** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
-export const bodyOf = (state, panel) => panel === "indices" ? indicesBody(state) :
-  questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
+/** What is asked for a table of a panel, whether it is shown or not: of all outputs. @param {State} state
+ * @param {string} panel */
+export function bodyOf(state, panel) {
+  if (panel === "indices") return indicesBody(state);
+  const asked = questions({ ...state, view: { ...state.view, tab: panel } });
+  const { output, ...body } = asked.find((question) => question.panel === panel)?.body ?? {};
+  return body;
+}
 
 /** The method by which the page judges; none where the server has told of none, and then those of the study.
  * @param {State} state */

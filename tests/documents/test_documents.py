@@ -159,6 +159,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     WHOLE: nothing,
     f"{EXPORTED} matlab": nothing,
     f"{EXPORTED} modelica -o car.mo": nothing,
+    f"{EXPORTED} fmu --part strut": nothing,
     "inerter plot examples/quarter-car.toml --kind bode --index J1": nothing,
     "inerter plot examples/stick_slip.toml --kind trajectory --window 1:3": nothing,
 }

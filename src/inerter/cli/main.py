@@ -302,7 +302,9 @@ def rig(
     help_epilogue="""Examples:
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
-  inerter export my-car.toml --layout real --to spice --linear"""
+  inerter export my-car.toml --layout real --to spice --linear
+  inerter export examples/quarter-car.toml --layout S3 --index J1 --to fmu --part strut
+  inerter export examples/half-car.toml --layout S1 --index J1 --to fmu --speed "25 m/s\""""
 )
 def export(
     source: Path,
@@ -316,6 +318,10 @@ def export(
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
     ] = (),
+    part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
+    speed: Annotated[
+        str | None, Parameter(help='Speed of an FMU with one road for all axles, such as "25 m/s"; it is a parameter.')
+    ] = None,
     linear: Annotated[
         bool, Parameter(negative="", show_default=False, help="Leave out friction and gaps on purpose.")
     ] = False,
@@ -337,7 +343,7 @@ def export(
     """
     from inerter.cli.export import export as command
 
-    command(source, to, layout, index, point, only, output, linear=linear, force=force)
+    command(source, to, layout, index, point, only, output, part=part, speed=speed, linear=linear, force=force)
 
 
 @app.command(

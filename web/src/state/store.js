@@ -21,8 +21,8 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
  * playing: boolean, compared: string[], against: string, seconds: number, seed: number, output: string,
  * across: boolean, tall: boolean, ghosts: string[]}} View  `index`: by which layouts are ranked, the first of the study
- * where it is none of them; `output`: of the motion, the first where it is empty; `ghosts`: designs whose responses are drawn too;
- * `method`: by which is judged, the quick one where it is empty; `against`: what the others are compared with;
+ * where it is none of them; `output`: of the motion, the first where it is empty; `ghosts`: designs whose responses are
+ * drawn too; `method`: by which is judged, the quick one where it is empty; `against`: what others are compared with;
  * `across`: the drawing over the width of the page; `tall`: the tabs over the height of it */
 /** Values that are the best of a layout. @typedef {{study: Study, index: string, values: {[name: string]: string}}}
  * Optimum */

@@ -17,7 +17,10 @@ import pytest
 from browser import launched_chromium
 
 SITE = os.environ.get("INERTER_SITE", "")
-pytestmark = pytest.mark.skipif(not SITE, reason="INERTER_SITE does not name the folder of a built site")
+pytestmark = [
+    pytest.mark.campaign,
+    pytest.mark.skipif(not SITE, reason="INERTER_SITE does not name the folder of a built site: see .ci/run"),
+]
 KINDS = {
     "start": "index.html",
     "tutorial": "tutorial-vehicle.html",

@@ -206,6 +206,34 @@ def test_minimum_functions_of_degree_two_are_bridges_of_seven_elements(inverted,
     assert (n_reactive(found), count(found)[Damper]) == (5, 2)
 
 
+def of_a_bridge(bridge: Bridge) -> tuple[Polynomial, Polynomial]:
+    """By Kirchhoff's laws at both inner nodes and the upper end, with all admittances times s."""
+    powers = {Spring: 0, Damper: 1, Inerter: 2}
+    a, b, c, d, e = ([Fraction(0)] * powers[type(arm)] + [Fraction(arm.value)] for arm in bridge.parts)
+    left, right = reduce(add, (a, b, e)), reduce(add, (c, d, e))
+    inner = add(multiply(left, right), [-x for x in multiply(e, e)])
+    back = add(multiply(multiply(a, a), right), multiply(multiply(c, c), left))
+    back = reduce(add, (back, multiply(multiply(a, c), e), multiply(multiply(a, c), e)))
+    n, d = add(multiply(add(a, c), inner), [-x for x in back]), [Fraction(0), *inner]
+    first = next(i for i in range(len(d)) if n[i] or d[i])
+    last = max(i for i, x in enumerate(n) if x)
+    return n[first : last + 1], d[first : last + 1]
+
+
+@pytest.mark.parametrize("kinds", [(Inerter, Spring), (Spring, Inerter)])
+def test_bridges_of_two_reactive_elements_are_found_again(kinds):
+    """Ladenheim (1948): of biquadratics that are not regular, only these have two reactive elements."""
+    rng, regular = np.random.default_rng(2), Counter()
+    for _ in range(60):
+        arm, *dampers, between = np.exp(rng.uniform(-2.0, 2.0, 5))
+        n, d = of_a_bridge(Bridge(kinds[0](arm), *map(Damper, dampers), kinds[1](between)))
+        assert degree(n, d) == 2
+        found = assert_realised(n, d, rng)
+        assert (n_reactive(found), count(found)[Damper]) == (2, 3)
+        regular[isinstance(found, Bridge)] += 1
+    assert min(regular.values()) > 10
+
+
 @given(st.lists(st.integers(1, 50), min_size=2, max_size=7, unique=True), logarithmic(1e-2, 1e2), st.booleans())
 def test_lossless_admittances_need_as_many_elements_as_their_degree(squares, factor, inverted):
     """Foster (1924): zeros and poles alternate on the axis."""

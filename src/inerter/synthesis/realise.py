@@ -8,7 +8,7 @@ Where it lies between, the step of Bott and Duffin (1949), "Impedance synthesis 
 Phys. 20(8), lowers the degree by two and leaves two functions. Its six reactive elements are a balanced bridge, whose
 two inner nodes may be joined by anything; joined by one element, five suffice (Pantell 1954; Reza 1954; Fialkow and
 Gerst 1955). Partial fractions, each with the constant that makes it positive real, often need fewer where their sum
-allows them.
+allows them, and bridges with two reactive elements, where a biquadratic has one (`synthesis.bridges`).
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from inerter.errors import NetworkError, SynthesisError
 from inerter.formatting import format_number
 from inerter.networks.elements import Bridge, Damper, Inerter, Network, Spring
+from inerter.synthesis.bridges import bridges_of_five
 from inerter.synthesis.immittance import DIGITS, Immittance
 from inerter.synthesis.positive_real import Ratio, find_violation
 from inerter.systems.polynomials import Polynomial
@@ -156,7 +157,10 @@ def _expand_smallest(f: Immittance) -> Network:
             regular.append(partial(_remove_at_end, g, least, x))
         else:
             other.append(partial(_remove_inside, g, least, x))
-    attempts: list[Attempt] = [*regular, partial(_split, f), partial(_split, f.inverse()), *([] if regular else other)]
+    attempts: list[Attempt] = [*regular, partial(_split, f), partial(_split, f.inverse())]
+    if not regular:
+        attempts += [partial(next, bridges_of_five(f), None)] if len(f.bottom) == len(f.top) == 3 else []
+        attempts += other
     networks: list[Network] = []
     for attempt in attempts:
         with suppress(ArithmeticError, NetworkError):

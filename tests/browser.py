@@ -84,10 +84,10 @@ class Visitor:
         self.page.get_by_text("Open", exact=True).click()
         self.page.set_input_files(".menu input[type=file]", [str(path) for path in files])
 
-    def download(self, name: str, into: Path) -> Path:
-        """Save by the menu what it calls so, in a folder."""
+    def download(self, name: str, into: Path, menu: str = "Save") -> Path:
+        """Save by a menu what it calls so, in a folder."""
         with self.page.expect_download() as found:
-            self.page.get_by_text("Save", exact=True).click()
+            self.page.get_by_text(menu, exact=True).click()
             self.page.get_by_role("button", name=name).click()
         self.page.keyboard.press("Escape")  # closes the menu
         path = into / str(found.value.suggested_filename)

@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from _pytest.doctest import DoctestItem
 from hypothesis import HealthCheck, settings
 
 import inerter
@@ -38,8 +39,18 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         prepare(kernel for kernel in _kernels() if kernel.signature is not None)
 
 
+LONG_EXAMPLES = {"Fit", "ModelSelection", "StagedIdentification", "identify", "identify_staged", "select_model"}
+
+
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Those that are allowed more time than others come first, so that none is left to run alone at the end."""
+    """Those that are allowed more time than others come first, so that none is left to run alone at the end.
+
+    Examples in docstrings that fit records are a campaign.
+    """
+    for item in items:
+        if isinstance(item, DoctestItem) and item.name.rpartition(".")[2] in LONG_EXAMPLES:
+            item.add_marker(pytest.mark.campaign)
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
 
 

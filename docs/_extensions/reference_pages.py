@@ -8,8 +8,10 @@ from __future__ import annotations
 import inspect
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import is_dataclass
+from inspect import cleandoc
 from io import StringIO
 from pathlib import Path
+from textwrap import indent
 from typing import Any
 
 from rich.console import Console
@@ -45,6 +47,59 @@ SUBJECTS = {
     "papers": "Papers",
     "files": "Study files and results",
     "": "Registries, fields and errors",
+}
+
+# examples of constants, which have no docstring; those of all other names stand in theirs
+EXAMPLES = {
+    "ELEMENTS": """
+        >>> {key: kind.unit for key, kind in it.ELEMENTS.items()}
+        {'spring': 'N/m', 'damper': 'N s/m', 'inerter': 'kg', 'friction': 'N', 'gap': 'm'}
+        """,
+    "EXPORTS": """
+        >>> it.EXPORTS["matlab"].suffixes
+        ('.mat', '.m')
+        """,
+    "GROUND": """
+        >>> it.Strut("column", it.Spring(1e6), upper={"floor": 1.0}, lower=it.GROUND).lower  # no coordinate moves it
+        {}
+        """,
+    "INDICES": """
+        >>> it.INDICES["J1"] is it.RideComfort, it.INDICES["J3"].unit
+        (True, 'N')
+        """,
+    "LAYOUTS": """
+        >>> it.LAYOUTS["S3"].expression
+        'k | c - b'
+        """,
+    "METHODS": """
+        >>> it.METHODS["norm"] is it.Norm, [key for key, kind in it.METHODS.items() if not kind.supports_optimisation]
+        (True, [])
+        """,
+    "PAPERS": """
+        >>> it.PAPERS["wang-su-2008"].parts[:3]
+        ('rig', 'linear', 'table1')
+        """,
+    "ROAD_CLASSES": """
+        >>> [round(it.ROAD_CLASSES[letter].mean * 1e6) for letter in "ABC"]  # Gd(n0) [1e-6 m^3]
+        [16, 64, 256]
+        """,
+    "SIGNALS": """
+        >>> it.SIGNALS["sine"].of_roads, sorted(it.SIGNALS["chirp"].keys)
+        (False, ['amplitude', 'duration', 'highest', 'lowest'])
+        """,
+    "SymbolLine": """
+        >>> dashpot: it.SymbolLine = ((0.0, 20.0), (0.0, -20.0))  # points of a line in the drawing of an element
+        >>> len(dashpot)
+        2
+        """,
+    "TASKS": """
+        >>> list(it.TASKS)
+        ['fronts', 'tolerances', 'budgets']
+        """,
+    "VEHICLES": """
+        >>> it.VEHICLES["half-car"] is it.HalfCar
+        True
+        """,
 }
 
 
@@ -128,7 +183,8 @@ def _page(name: str) -> str:
     thing = getattr(inerter, name)
     head = f"{name}\n{'=' * len(name)}\n\n.. currentmodule:: inerter\n\n"
     if not _is_documented(thing):
-        return f"{head}.. py:data:: {name}\n\n   {_data(thing)}\n"
+        example = indent(f">>> import inerter as it\n{cleandoc(EXAMPLES[name])}", "   ")
+        return f"{head}.. py:data:: {name}\n\n   {_data(thing)}\n\n{example}\n"
     kind, members = ("class", "   :members:\n") if inspect.isclass(thing) else ("function", "")
     return f"{head}.. auto{kind}:: {name}\n{members}"
 

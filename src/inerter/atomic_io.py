@@ -121,7 +121,7 @@ def write_netcdf(path: Path, data: xarray.Dataset) -> None:
 
 
 def netcdf_content(data: xarray.Dataset) -> memoryview:
-    """What a netCDF file of a dataset holds."""
+    """Content of the netCDF file of a dataset."""
     import h5netcdf  # noqa: PLC0415 - heavy
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415 - heavy
 

@@ -16,7 +16,15 @@ from inerter.statements import Severity, Statement
 
 
 class InerterError(Exception, Statement):
-    """Base of all errors of this package. Invalid request; the message contains a remedy."""
+    """Base of all errors of this package. Invalid request; the message contains a remedy.
+
+    >>> import inerter as it
+    >>> try:
+    ...     it.Spring(-1.0)
+    ... except it.InerterError as error:
+    ...     print(type(error).__name__)
+    NetworkError
+    """
 
     severity = Severity.ERROR
 
@@ -112,7 +120,12 @@ class WorkError(InerterError):
 
 
 class StatusKind(StrEnum):
-    """Kind of the status of a result."""
+    """Kind of the status of a result.
+
+    >>> import inerter as it
+    >>> it.Status().kind is it.StatusKind.OK
+    True
+    """
 
     OK = "ok"
     UNSTABLE = "unstable"
@@ -144,7 +157,14 @@ _RANKS = {kind: rank for rank, kind in enumerate(_SEVERITIES)}
 
 @dataclass(frozen=True)
 class Status(Statement):
-    """Reliability of a result, with an explanation unless it is `ok`."""
+    """Reliability of a result, with an explanation unless it is `ok`.
+
+    >>> import inerter as it
+    >>> undamped = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3))
+    >>> found = it.evaluate(undamped, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> found.value, found.status.ok, found.status.kind.value
+    (inf, False, 'marginal')
+    """
 
     kind: StatusKind = StatusKind.OK
     message: str = ""
@@ -179,7 +199,12 @@ OK = Status()
 
 @dataclass(frozen=True)
 class ErrorSource:
-    """Named source of numerical error with its relative `bound`."""
+    """Named source of numerical error with its relative `bound`.
+
+    >>> import inerter as it
+    >>> it.Estimate(2.0, "m/s^2", error_sources=(it.ErrorSource("rounding", 1e-12),)).error_bound  # relative
+    1e-12
+    """
 
     name: str
     bound: float

@@ -16,7 +16,12 @@ _QUANTITY, _MOUNT, _CHOICE, _FORMED = "inerter quantity", "inerter mount", "iner
 
 @dataclasses.dataclass(frozen=True)
 class Field:
-    """Positive quantity in `unit`; optional with a `default`, and possibly zero if the default is."""
+    """Positive quantity in `unit`; optional with a `default`, and possibly zero if the default is.
+
+    >>> import inerter as it
+    >>> it.Field("pitch", "m", "Travel of the nut in one turn.").unit
+    'm'
+    """
 
     name: str
     unit: str  # SI
@@ -123,7 +128,13 @@ def typed_field(form: str, sentence: str, example: str, *, key: str = "") -> Map
 
 
 def mount(sentence: str) -> Mapping[str, Any]:
-    """Metadata of a dataclass field that is a network, given in the layouts of a file; optional if it may be None."""
+    """Metadata of a dataclass field that is a network, given in the layouts of a file; optional if it may be None.
+
+    >>> import inerter as it
+    >>> from dataclasses import field
+    >>> field(metadata=it.mount("Between body and wheel.")).metadata is not None
+    True
+    """
     return {_MOUNT: sentence}
 
 

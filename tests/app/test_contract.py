@@ -58,6 +58,7 @@ def test_about_tells_the_rows(client: TestClient) -> None:
     assert [row["key"] for row in told["vehicles"]] == list(it.VEHICLES)
     assert [row["key"] for row in told["panels"]] == list(PANELS)
     assert [row["key"] for row in told["work"]] == list(KINDS)
+    assert [row["key"] for row in told["exports"]] == [key for key, kind in it.EXPORTS.items() if kind.is_file]
     assert set(told["kernels"]) == {"ready", "title", "number", "total"}
 
 

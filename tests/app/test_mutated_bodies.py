@@ -49,6 +49,7 @@ BODIES: dict[str, dict[str, Any]] = {
     "panel/tolerance": {**ONE, "index": "J1", "spread": {"c": 0.1}, "samples": 16, "seed": 1, "method": "norm"},
     "panel/budget": {**ONE, "index": "J1", "parameter": "c", "method": "norm"},
     "figure": {"kind": "networks", "format": "svg", "study": DOCUMENT, "designs": [DESIGN]},
+    "export/design": {"kind": "svg", "suffix": ".svg", "study": DOCUMENT, "design": DESIGN, "index": "J1"},
     "export/csv": {"panel": "indices", "request": PANEL},
     "work": {"kind": "optimise", "study": DOCUMENT, "layouts": ["S1"], "indices": ["J1"], "wait": 0.0},
     "work sweep": {"kind": "sweep", "study": DOCUMENT, "layouts": ["S1"], "sweep": {"k": ["10 kN/m", "20 kN/m"]}},

@@ -28,11 +28,25 @@ FREE = {
 SEARCHED = changed(elements={"any": FREE, "c1": "900 N s/m"}, layouts={"S9": "k | any"})
 
 
-def _searched_by_library(index: str) -> Any:
+def _searched_by_library(*indices: str) -> Any:
     """The same search without files and server."""
     place = it.any_network(3, (1e3, 1e7), (10.0, 1e6), (0.01, 1e4))
     car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=it.Spring(20e3, "k") | place)
-    return it.search(car, it.INDICES[index](it.Road(roughness=5e-7, speed=25.0)), it.Norm())
+    asked = [it.INDICES[index](it.Road(roughness=5e-7, speed=25.0)) for index in indices]
+    return it.search(car, asked if len(asked) > 1 else asked[0], it.Norm())
+
+
+def _result(client: TestClient, study: Any, **more: Any) -> Any:
+    number = begin(client, kind="search", study=study, layouts=["S9"], **more)
+    until(client, number, *ENDED)
+    return client.get(f"/api/work/{number}/result").json()
+
+
+def _taken(study: Any, row: Any) -> it.Study:
+    """The study with a network of a search in place of the free one."""
+    assert not set(row["elements"]) & set(study["elements"])
+    elements, layouts = {**study["elements"], **row["elements"]}, {**study["layouts"], "S9": row["entry"]}
+    return study_from({**study, "elements": elements, "layouts": layouts})
 
 
 def _searched(job: Any) -> int:
@@ -40,24 +54,62 @@ def _searched(job: Any) -> int:
     return int(job["done"]) - 1
 
 
+def _ranking(job: Any) -> Any:
+    """The ranking so far."""
+    return job["found"]["searches"][0]["ranking"] if "found" in job else []
+
+
 @pytest.mark.parametrize("index", ["J1", "J3"])
 def test_the_ranking_is_that_of_the_library_and_each_network_is_a_layout(client: TestClient, index: str) -> None:
-    number = begin(client, kind="search", study=SEARCHED, layouts=["S9"], indices=[index])
-    until(client, number, *ENDED)
-    found = client.get(f"/api/work/{number}/result").json()
-    ranking = _searched_by_library(index).ranking[:10]
-    assert [row["value"] for row in found["ranking"]] == [one.value for one in ranking]
-    assert (found["networks"], found["complete"]) == (_searched_by_library(index).n_networks, True)
-    for row in found["ranking"]:
-        assert not set(row["elements"]) & set(SEARCHED["elements"])
-        taken = {
-            **SEARCHED,
-            "elements": {**SEARCHED["elements"], **row["elements"]},
-            "layouts": {**SEARCHED["layouts"], "S9": row["entry"]},
-        }
-        study = study_from(taken)
+    found = _result(client, SEARCHED, indices=[index])
+    (searched,), library = found["searches"], _searched_by_library(index)
+    assert [row["value"] for row in searched["ranking"]] == [one.value for one in library.ranking[:10]]
+    shown = [(row["n_elements"], row["value"]) for row in searched["frontier"]]
+    assert shown == [(one.n_elements, one.value) for one in library.frontier]
+    assert (found["networks"], found["complete"], found["front"]) == (library.n_networks, True, None)
+    for row in searched["ranking"]:
+        study = _taken(SEARCHED, row)
         estimate = it.evaluate(study.design("S9"), study.index(index), it.Norm())
         assert row["value"] == pytest.approx(estimate.value, rel=1e-6), row["network"]
+
+
+def test_the_front_of_two_indices_is_that_of_the_library_and_each_point_is_a_layout(client: TestClient) -> None:
+    found, library = _result(client, SEARCHED, indices=["J1", "J3"]), _searched_by_library("J1", "J3")
+    assert [one["index"] for one in found["searches"]] == ["J1", "J3"]
+    several = {front["elements"]: front["points"] for front in found["front"]["fronts"]}
+    for count, points in several.items():
+        own = library.by_elements[count]
+        assert [tuple(point["indices"].values()) for point in points] == [point.values for point in own]
+    assert several[max(several)]
+    assert len(several) > 1
+    baselines = {one["index"]: one["baseline_value"] for one in found["searches"]}
+    for point in several[max(several)]:
+        study = _taken(SEARCHED, point)
+        for index, value in point["indices"].items():
+            estimate = it.evaluate(study.design("S9"), study.index(index), it.Norm())
+            assert value == pytest.approx(estimate.value, rel=1e-6), point["network"]
+            gain = 100.0 * (1.0 - value / baselines[index])
+            assert point["improvements_percent"][index] == pytest.approx(gain, rel=1e-9)
+
+
+@pytest.mark.campaign
+def test_real_inerters_of_a_study_are_in_its_search_and_each_is_a_layout(client: TestClient) -> None:
+    """Also where the study has names that those of shaft and friction would be."""
+    asked = {"friction": "20 N", "stiffness": "2 MN/m", "best": 1, "methods": ["statistical-linearisation"]}
+    study = changed(
+        elements={"any": {**FREE, "network": 2}, "b1_f": "3 N"},
+        layouts={"S9": "k | any"},
+        study={"real_inerters": asked},
+    )
+    (searched,) = _result(client, study, indices=["J1"])["searches"]
+    assert searched["real_inerters"]
+    for row in searched["real_inerters"]:
+        taken = _taken(study, row)
+        assert sorted(text for text in row["elements"].values() if text.endswith(" N")) == ["20.0 N"]
+        assert "2000000.0 N/m" in row["elements"].values()
+        estimate = it.evaluate(taken.design("S9"), taken.index("J1"), it.StatisticalLinearisation())
+        assert row["value"] == pytest.approx(estimate.value, rel=1e-9)
+        assert row["value"] <= row["same_values"] * (1.0 + 1e-9)
 
 
 def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
@@ -74,10 +126,14 @@ def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
         tried.extend(topologies)
         return network_search.search_group(plan, topologies)
 
+    def note(ranking: Any, groups: Any) -> None:
+        ranked.extend(network for group in groups for network in group.networks)
+        rank(ranking, groups)
+
     monkeypatch.setattr(search_parts, "search_group", search_group)
-    monkeypatch.setattr(searches._Ranking, "add", lambda self, found: (ranked.extend(found), rank(self, found)))
+    monkeypatch.setattr(searches._Ranking, "add", note)
     number = begin(client, kind="search", study=SEARCHED, layouts=["S9"], indices=["J1"])
-    while not (before := client.get(f"/api/work/{number}").json()).get("found", {}).get("ranking"):
+    while not _ranking(before := client.get(f"/api/work/{number}").json()):
         assert before["state"] not in ENDED, before
     assert _searched(before) == len(ranked) == len(tried) < before["found"]["networks"]
     refused = client.post(f"/api/work/{number}/resume")
@@ -87,7 +143,7 @@ def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
     goes_on.set()
     stopped = until(client, number, "stopped")
     assert _searched(before) <= (kept := _searched(stopped)) < stopped["found"]["networks"]
-    assert stopped["found"]["ranking"]
+    assert _ranking(stopped)
     assert client.get(f"/api/work/{number}/result").status_code == 404
     assert client.post(f"/api/work/{number}/resume").json()["state"] in ("waiting", "running")
     until(client, number, "done")
@@ -103,7 +159,7 @@ def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
     ("body", "words"),
     [
         ({"study": DOCUMENT}, "no layout has a free network"),
-        ({"study": SEARCHED, "layouts": ["S9"], "indices": ["J1", "J3"]}, "one layout for one index"),
+        ({"study": SEARCHED, "layouts": ["S9"], "indices": ["J1", "J3", "J5", "J1 "]}, "two or three indices"),
         ({"study": SEARCHED, "layouts": ["S0"]}, "S0"),
     ],
 )

@@ -112,6 +112,25 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
 
 
+def test_a_cache_that_is_deleted_while_a_process_works_is_filled_again(tmp_path: Path) -> None:
+    """A server runs for days, and somebody clears the folder of caches."""
+    (tmp_path / "small.py").write_text(KERNEL, encoding="utf-8")
+    (tmp_path / "__init__.py").touch()
+    lines = """
+import os, pathlib, shutil
+from inerter.kernels.cache import cache_folder
+import small
+folder = cache_folder(pathlib.Path(small.__file__))
+shutil.rmtree(folder.parent)
+print(small.doubled(21.0), [path.suffix for path in sorted(folder.glob("*.*"))])
+"""
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    found = subprocess.run(
+        [sys.executable, "-c", lines], env=environment, capture_output=True, text=True, check=True, timeout=280
+    )
+    assert found.stdout == "42.0 ['.nbc', '.nbi']\n"
+
+
 def test_another_installation_of_the_same_sources_uses_the_cache(tmp_path: Path) -> None:
     """As the two commands of the README make two: for use, and to work on the package."""
     for name, compiles in (("one", True), ("other", False)):

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from inerter.cli.main import call
+from inerter.cli.main import app, call
+from inerter.exports.registry import EXPORTS
+from inerter.figures.plots.kinds import PLOTS
 
 STUDY = Path(__file__).parents[2] / "examples" / "quarter-car.toml"
 
@@ -45,6 +49,10 @@ def test_plots_are_files(kind: str, name: str, begins: bytes, tmp_path: Path) ->
         (["--kind", "bode", "--layout", "S9", "--index", "J1"], "has no layout 'S9'"),
         (["--kind", "bode"], "Choose one with --index"),
         (["--kind", "bode", "-o", "nowhere/a.svg"], "folder not found"),
+        (["--kind", "bode", "--window", "1:2"], "does not use --window; it uses --layout, --index"),
+        (["--kind", "front"], "expected a folder with the results of a study. Run the study: inerter run"),
+        (["--kind", "trajectory"], "expected a simulation file"),
+        (["--kind", "step", "--layout", "S1", "--index", "J1", "--only", "a", "--only", "b"], "Choose one with --only"),
     ],
 )
 def test_what_is_wrong_is_one_sentence(
@@ -61,6 +69,64 @@ def test_what_is_wrong_is_one_sentence(
     assert list(tmp_path.iterdir()) == []
 
 
+MOTION = """
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[elements]
+k = "60 kN/m"
+c = "2 kN s/m"
+f = "40 N"
+[layouts]
+S1 = "k | c | f"
+[signal]
+kind = "cosine"
+amplitude = "2 mm"
+frequency = "2 Hz"
+[simulation]
+duration = "2 s"
+step = "1 ms"
+"""
+
+
+def test_motions_are_plots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of a file or of its results: the same motion; the loop has one output over another."""
+    monkeypatch.chdir(tmp_path)
+    Path("motion.toml").write_text(MOTION, encoding="utf-8")
+    assert call(["plot", "motion.toml", "--kind", "trajectory", "--window", "0.5:", "-o", "file.svg"]) == 0
+    drawn = Path("file.svg").read_text(encoding="utf-8")
+    assert "f sticks" in drawn
+    assert "Sprung acceleration" in drawn
+    assert call(["simulate", "motion.toml"]) == 0
+    again = ["plot", "motion-results", "--kind", "trajectory", "--window", "0.5:", "-o", "folder.svg"]
+    assert call(again) == 0
+    paths = [re.findall(r' d="([^"]+)"', Path(name).read_text(encoding="utf-8")) for name in ("file.svg", "folder.svg")]
+    assert paths[0] == paths[1] != []
+    loop = ["plot", "motion.toml", "--kind", "loop", "--only", "strut_travel", "--only", "strut_force"]
+    assert call(loop) == 0
+    assert "Strut force [N]" in Path("motion-loop.svg").read_text(encoding="utf-8")
+    capsys.readouterr()
+    assert call([*loop[:-2], "-o", "one.svg"]) == 2
+    assert "Name both" in capsys.readouterr().err
+    assert call(["plot", "motion.toml", "--kind", "trajectory", "--window", "5:6", "-o", "late.svg"]) == 2
+    assert "from 5 to 6 s" in capsys.readouterr().err
+    assert not Path("late.svg").exists()
+
+
+def test_results_are_plots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = STUDY.read_text(encoding="utf-8")
+    Path("study.toml").write_text(text, encoding="utf-8")
+    assert call(["run", "study.toml", "-j", "1"]) == 0
+    capsys.readouterr()
+    assert call(["plot", "study-results", "--kind", "improvement"]) == 0
+    assert "S3" in Path("study-results-improvement.svg").read_text(encoding="utf-8")
+    assert call(["plot", "study-results", "--kind", "front"]) == 2
+    assert "they have improvement" in " ".join(capsys.readouterr().err.split())
+
+
 def test_the_documentation_is_opened_or_said_where(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -73,3 +139,11 @@ def test_the_documentation_is_opened_or_said_where(
     (tmp_path / "index.html").write_text("", encoding="utf-8")
     assert call(["docs", str(tmp_path)]) == 0
     assert opened == [(tmp_path / "index.html").resolve().as_uri()]
+
+
+@pytest.mark.parametrize(("command", "option", "kinds"), [("plot", "--kind", PLOTS), ("export", "--to", EXPORTS)])
+def test_help_names_all_kinds(command: str, option: str, kinds: Mapping[str, object]) -> None:
+    """Help is shown without an import of the kinds, so it has their names a second time."""
+    (argument,) = (one for one in app[command].assemble_argument_collection() if option in one.names)
+    files = [key for key, kind in kinds.items() if getattr(kind, "is_file", True)]
+    assert re.findall(rf"\b({'|'.join(files)})\b", argument.parameter.help) == files

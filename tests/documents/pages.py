@@ -70,6 +70,15 @@ def printed(page: str, command: str) -> str:
     return "" if match is None else re.sub(r"^    ", "", match[1], flags=re.MULTILINE).strip("\n")
 
 
+def assert_printed(out: str, page: str, command: str) -> None:
+    """What a command prints is what the page shows, if it shows anything: numbers to two units of their last digits."""
+    shown = printed(page, command)
+    if shown:
+        assert NUMBER.sub("#", out.strip("\n")) == NUMBER.sub("#", shown)
+        for found, expected in zip(NUMBER.findall(out), NUMBER.findall(shown), strict=True):
+            assert rounds_to(float(found), expected, 2.0), f"{page}: {expected}, now {found}"
+
+
 def run(block: Block, page: str, namespace: dict[str, Any]) -> None:
     """Run a block, and compare what its comments and the sentence below say with what it gives."""
     said = comments(block.code)

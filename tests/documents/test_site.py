@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import doctest
+import inspect
 import re
 import sys
 from collections.abc import Iterator
@@ -32,6 +34,30 @@ def test_every_name_has_a_page(reference: Path) -> None:
     listed = (reference / "python.md").read_text(encoding="utf-8")
     assert [name for name in names if f"(python/{name}.rst)" not in listed] == []
     assert [name for name in names if listed.count(f"\npython/{name}\n") != 1] == []
+
+
+def examples_of(name: str) -> list[doctest.Example]:
+    """The examples that the docstring of a name has itself."""
+    thing = getattr(inerter, name)
+    documented = inspect.isclass(thing) or inspect.isroutine(thing)
+    return doctest.DocTestParser().get_examples((inspect.getdoc(thing) or "") if documented else "")
+
+
+def test_every_name_has_an_example(reference: Path) -> None:
+    """One that says what comes out, and is run: those of docstrings with the modules, those of constants here."""
+    constants = sys.modules["reference_pages"].EXAMPLES
+    for name in (name for name in inerter.__all__ if name != "__version__"):
+        found = doctest.DocTestParser().get_examples(constants[name]) if name in constants else examples_of(name)
+        assert any(example.want for example in found), name
+        assert not any(doctest.SKIP in example.options for example in found), name
+        assert not (name in constants and examples_of(name)), name
+
+
+def test_examples_of_constants(reference: Path) -> None:
+    for name, text in sys.modules["reference_pages"].EXAMPLES.items():
+        test = doctest.DocTestParser().get_doctest(text, {"it": inerter}, name, None, 0)
+        assert doctest.DocTestRunner().run(test).failed == 0
+        assert text.split()[-1] in (reference / "python" / f"{name}.rst").read_text(encoding="utf-8")
 
 
 def test_every_command_is_there(reference: Path) -> None:

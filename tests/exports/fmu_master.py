@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from fmpy import extract, read_model_description
-from fmpy.fmi2 import FMU2Slave
+from fmpy import calloc, extract, free, read_model_description
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
 from fmpy.fmi3 import FMU3Slave
 
 _RATES = ("", "_rate", "_rate2", "_rate3")
@@ -17,7 +24,7 @@ _RATES = ("", "_rate", "_rate2", "_rate3")
 class Master:
     """One instance of an FMU at t = 0."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, parameters: Mapping[str, float] | None = None) -> None:
         self.folder = Path(tempfile.mkdtemp())
         extract(str(path), str(self.folder))
         self.description = read_model_description(str(path))
@@ -30,13 +37,29 @@ class Master:
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName="one",
         )
-        self.fmu.instantiate()
-        self.start()
+        self.messages: list[str] = []
+        self._instantiate()
+        self.start(parameters or {})
 
-    def start(self) -> None:
+    def _instantiate(self) -> None:
+        if self.is_3:
+            self.fmu.instantiate(
+                logMessage=lambda of, status, category, message: self.messages.append(message.decode())
+            )
+            return
+        self.callbacks = fmi2CallbackFunctions()
+        told = lambda of, name, status, category, message: self.messages.append(message.decode())  # noqa: E731
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(told)
+        self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        self.fmu.instantiate(callbacks=self.callbacks)
+
+    def start(self, parameters: Mapping[str, float]) -> None:
         if not self.is_3:
             self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
+        for name, value in parameters.items():
+            self.set(name, value)
         self.fmu.exitInitializationMode()
         self.time = 0.0
 
@@ -53,6 +76,13 @@ class Master:
     def get(self, *names: str) -> np.ndarray:
         references = [self.references[name] for name in names]
         return np.array(self.fmu.getFloat64(references) if self.is_3 else self.fmu.getReal(references))
+
+    def slopes(self, unknown: str, known: list[str]) -> np.ndarray:
+        """Directional derivatives of an output by inputs, each alone."""
+        references = [self.references[name] for name in known]
+        return np.array(
+            [self.fmu.getDirectionalDerivative([self.references[unknown]], [one], [1.0])[0] for one in references]
+        )
 
     def step(self, step: float) -> None:
         self.fmu.doStep(currentCommunicationPoint=self.time, communicationStepSize=step)
@@ -83,7 +113,7 @@ class Master:
 
     def reset(self) -> None:
         self.fmu.reset()
-        self.start()
+        self.start({})
 
     def close(self) -> None:
         self.fmu.terminate()

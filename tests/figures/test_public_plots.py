@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import scipy.signal
+import xarray as xr
 
 import inerter as it
 
@@ -137,3 +140,70 @@ def test_a_response_to_several_sources_has_no_phase() -> None:
     inputs = it.state_space(car).inputs
     gain, _ = it.plot_bode(car, (inputs[0], "roll_acceleration"))
     assert len(gain.lines) == 1
+
+
+STUDY = """
+[vehicle]
+model = "quarter-car"
+sprung_mass = "250 kg"
+unsprung_mass = "35 kg"
+tyre_stiffness = "150 kN/m"
+[road]
+roughness = "5e-7 m^3/cycle"
+speed = "25 m/s"
+[elements]
+k = "60 kN/m"
+c = "2 kN s/m"
+b = "50 kg"
+[layouts]
+S1 = "k | c"
+S2 = "k | c | b"
+[study]
+indices = ["J1"]
+evaluate = ["norm"]
+baseline = "S1"
+"""
+
+
+def swept(folder: Path, line: str) -> xr.Dataset:
+    (folder / "study.toml").write_text(f"{STUDY}{line}\n", encoding="utf-8")
+    return it.run_study(it.load_study(folder / "study.toml"), folder / "results").data
+
+
+def test_a_sweep_draws_what_is_evaluated(tmp_path: Path) -> None:
+    results = swept(tmp_path, 'sweep = { c = ["1 kN s/m", "2 kN s/m", "4 kN s/m"] }')
+    left, right = it.plot_sweep(results, "J1")
+    comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+
+    def value(c: float, *more: it.Network) -> float:
+        strut = it.Spring(K) | it.Damper(c)
+        for part in more:
+            strut = strut | part
+        return it.evaluate(it.QuarterCar(MASS, WHEEL, TYRE, strut), comfort, it.Norm()).value
+
+    plain = np.array([value(c) for c in (1e3, 2e3, 4e3)])
+    with_inerter = np.array([value(c, it.Inerter(50.0)) for c in (1e3, 2e3, 4e3)])
+    labels = [line.get_label() for line in left.lines]
+    assert labels == ["S1 (baseline)", "S2"], labels
+    drawn = {line.get_label().split()[0]: line.get_ydata() for line in left.lines}
+    np.testing.assert_allclose(drawn["S1"], plain, rtol=1e-9)
+    np.testing.assert_allclose(drawn["S2"], with_inerter, rtol=1e-9)
+    better = next(line.get_ydata() for line in right.lines if line.get_label() == "S2")
+    np.testing.assert_allclose(better, 100.0 * (1.0 - with_inerter / plain), rtol=1e-6)
+    for wrong in (lambda: it.plot_map(results, "J1"), lambda: it.plot_sweep(results, "J3"),
+                  lambda: it.plot_sweep(results, "J1", axes=[left])):  # fmt: skip
+        with pytest.raises(it.InerterError, match=r"two swept numbers, got 1|no index 'J3', but J1|need 2 axes, got 1"):
+            wrong()
+
+
+def test_a_map_has_axes_for_each_layout(tmp_path: Path) -> None:
+    line = 'sweep = { c = ["1 kN s/m", "2 kN s/m", "4 kN s/m"], k = ["40 kN/m", "80 kN/m"] }'
+    results = swept(tmp_path, line)
+    first, second = it.plot_map(results, "J1")
+    assert (first.get_title(), second.get_title()) == ("S1 (baseline)", "S2")
+    assert first.get_xlabel().replace("\u00a0", " ") == "c [kN s/m]"
+    assert first.get_ylabel() == "k [kN/m]"
+    dots = {(x, y) for line in second.lines for x, y in zip(*line.get_data(), strict=True)}
+    assert dots == {(c, k) for c in (1.0, 2.0, 4.0) for k in (40.0, 80.0)}
+    with pytest.raises(it.InerterError, match="one swept number, got 2"):
+        it.plot_sweep(results, "J1")

@@ -70,7 +70,7 @@ def test_no_random_design_is_better(most):
         one = result.front[int(rng.integers(len(result.front)))]
         topology = one.topology if near else topologies[int(rng.integers(len(topologies)))]
         lower, upper = np.array(plans[0].ends(topology)).T
-        over = [plan.compiled.over(plan.network(topology), lower, upper) for plan in plans]
+        over = [plan.compiled_index.over(plan.network(topology), lower, upper) for plan in plans]
         points = lower * (upper / lower) ** rng.random((50, lower.size))
         if near:
             points = np.array([*one.parameters.values()]) * np.exp(rng.normal(0.0, 0.03, points.shape))
@@ -194,7 +194,7 @@ def test_what_is_refused(indices, points, error, words):
 def test_the_slopes_of_the_excess_are_those_of_differences(number):
     rng = np.random.default_rng([7, number])
     plans = [plan_search(car(4), index, NORM) for index in (COMFORT, LOAD)]
-    joined, criterion = join_indices([plan.compiled for plan in plans])
+    joined, criterion = join_indices([plan.compiled_index for plan in plans])
     damped = [one for one in plans[0].topologies if one.counts["c"]]
     topology = damped[int(rng.integers(len(damped)))]
     lower, upper = np.array(plans[0].ends(topology)).T

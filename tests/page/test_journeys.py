@@ -349,6 +349,37 @@ def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
 
 
 @pytest.mark.campaign
+def test_a_design_is_exported(visitor: Visitor, tmp_path: Path) -> None:
+    """Every kind of file that the library has; what has friction only on purpose, else a message says why."""
+    page = visitor.page
+    page.fill("#network-text", "k | c - b")
+    visitor.settled()
+    study = it.load_study(visitor.download("This design, values fixed", tmp_path))
+    (layout,) = study.layouts
+    kinds = [kind for kind in it.EXPORTS.values() if kind.is_file]
+    page.get_by_text("Export", exact=True).click()
+    offered = page.locator("#export-menu li > span").all_text_contents()
+    assert offered == [f"{kind.description}{f' requires {kind.requires}' if kind.requires else ''}" for kind in kinds]
+    page.keyboard.press("Escape")
+    path = visitor.download("(.m)", tmp_path, menu="Export")
+    assert path.name.endswith(f"-{layout.lower()}.m")
+    own = it.export(study.design(layout), "matlab", tmp_path / "own.m", title=f"{study.title}, {layout}")
+    assert path.read_text() == own.read_text()
+
+    page.get_by_role("button", name="in parallel").click()
+    page.get_by_role("button", name="Add a friction").click()
+    visitor.wait_for_text("k | c - b | f")
+    page.get_by_text("Export", exact=True).click()
+    page.get_by_role("button", name="(.m)").click()
+    page.wait_for_selector(".notice >> text=A linear model has neither friction nor gaps")
+    page.get_by_text("Export", exact=True).click()
+    page.locator("#export-menu [type=checkbox]").check()
+    with page.expect_download():
+        page.get_by_role("button", name="(.m)").click()
+    page.wait_for_selector(".notice", state="detached")
+
+
+@pytest.mark.campaign
 def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
     """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
     study = tmp_path / "study.toml"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
-from browser import Served, Visitor, wait_until
+from browser import Served, Visitor
 from study_text import PAPER_CAR, study_text
 
 ELEMENTS = (
@@ -16,14 +17,25 @@ ELEMENTS = (
     'dampers = { from = "10 N s/m", to = "1 MN s/m" }, inerters = { from = "10 g", to = "100 t" } }'
 )
 LAYOUTS = 'S1 = "k | c"\nany = "k | any"'
-ASK = 'indices = ["J1", "J3"]\noptimise = "norm"\nbaseline = "S1"'
+ASK = """indices = ["J1", "J3", "J5"]
+trade_off = ["J1", "J3"]
+optimise = "norm"
+baseline = "S1"
+real_inerters = { friction = "10 N", best = 1 }"""
+
+
+SHOWS = """values => Object.entries(values).every(([index, value]) =>
+  Math.abs(document.querySelector(`td[data-index=${index}]`)?.dataset.value / value - 1) < 1e-6)"""
 
 
 @pytest.mark.campaign
-def test_a_network_of_a_search_is_taken_into_the_editor(
+def test_networks_of_a_search_are_taken_into_the_editor(
     served: Served, visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:
-    """Its layout replaces the one that was searched, and the page then shows the index of the ranking."""
+    """Of the front over networks, of a ranking, of its frontier and with real inerters.
+
+    The layout of each replaces the one that was searched, and the page then shows its indices.
+    """
     path = tmp_path / "searched.toml"
     path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
     visitor = visitors(served).visit()
@@ -33,15 +45,36 @@ def test_a_network_of_a_search_is_taken_into_the_editor(
     page.click("#tab-work")
     form = page.locator("form.begin", has_text="Search for the best network")
     form.locator("[name=layout]").select_option("any")
-    form.locator("[name=index]").select_option("J3")
+    boxes = form.locator("[name=index]")
+    assert [box.is_checked() for box in boxes.all()] == [True, True, False]  # those of the trade-off
     form.get_by_role("button", name="Begin").click()
-    page.wait_for_selector(".job[data-state=done] [data-network]", timeout=120_000)
+    job_row = page.locator(".job").first
+    page.wait_for_selector(".job[data-state=done]", timeout=120_000)
     (job,) = [job for job in json.loads(served.get("work"))["work"] if job["kind"] == "search"]
     found = json.loads(served.get(f"work/{job['id']}/result"))
-    rows = page.locator(".job [data-network]")
-    assert [row.get_attribute("data-network") for row in rows.all()] == [one["network"] for one in found["ranking"]]
+    front = max(found["front"]["fronts"], key=lambda one: one["elements"])["points"]
+
+    def shows(row: Any, values: dict[str, float]) -> None:
+        visitor.wait_for_text(row["entry"])
+        page.wait_for_function(SHOWS, arg=values)
+
+    assert job_row.locator("circle.point").count() == len(front)
+    for number in (0, len(front) // 2):
+        job_row.locator("circle.point").nth(number).press("Enter")
+        shows(front[number], front[number]["indices"])
+
+    job_row.get_by_role("button", name="J3", exact=True).click()
+    searched = found["searches"][1]
+    rows = job_row.get_by_label("Ranking").locator("[data-network]")
+    assert [row.get_attribute("data-network") for row in rows.all()] == [one["network"] for one in searched["ranking"]]
     for number in (3, 0):  # another network of the ranking comes in place of the first
-        chosen = found["ranking"][number]
+        chosen = searched["ranking"][number]
         rows.nth(number).get_by_role("button", name="Into the editor").click()
-        visitor.wait_for_text(chosen["entry"])
-        wait_until(lambda one=chosen: abs(visitor.values()["J3"] / one["value"] - 1.0) < 1e-6)
+        shows(chosen, {"J3": chosen["value"]})
+    simplest = searched["frontier"][0]
+    job_row.locator("circle.point").first.press("Enter")
+    shows(simplest, {"J3": simplest["value"]})
+    real = searched["real_inerters"][0]
+    page.select_option(".answers select >> nth=0", "statistical-linearisation")
+    job_row.get_by_label("Real inerters").get_by_role("button", name="Into the editor").first.click()
+    shows(real, {"J3": real["value"]})

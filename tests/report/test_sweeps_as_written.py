@@ -57,11 +57,11 @@ def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
     with open(tmp_path / "out" / "tolerances.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     best = min(rows, key=lambda row: float(row["quantile_0.95"]))
-    said = f"Best ride comfort when values scatter, by what 95 % of cases are below: {best['layout']}, "
+    said = f"With tolerances {best['layout']} is best for ride comfort: 95 % of cases are below "
     assert said in text
     told = float(text.partition(said)[2].split(" m/s^2")[0])
     assert told == pytest.approx(float(best["quantile_0.95"]), rel=5e-4)
     nominal = min(rows, key=lambda row: float(row["nominal"]))
-    assert (f"Without scatter {nominal['layout']} is best" in text) == (nominal is not best)
+    assert (f"Without tolerances {nominal['layout']} is best" in text) == (nominal is not best)
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
-    assert "when values scatter, by what 95" in page
+    assert "With tolerances" in page

@@ -117,7 +117,7 @@ def test_an_index_without_compiled_search(tmp_path: Path) -> None:
     study = load_text(
         tmp_path, text(f'{ASK}\nsubject_to = {{ J3 = {{ at_most = "650 N" }} }}', elements, 'S = "k | any"')
     )
-    assert {plan.compiled for plan in search_plans(study).values()} == {None}
+    assert {plan.compiled_index for plan in search_plans(study).values()} == {None}
     one, _ = search_study(study, tmp_path / "out").searches
     assert one.result.n_networks == 4  # c, b, c | b, c - b
     assert [each.layout for each in one.result.frontier][-1] == one.result.ranking[0].layout

@@ -144,7 +144,7 @@ def test_the_same_seed_gives_the_same_admittance():
         ({"starts": 0}, "starts must be a positive integer, got 0"),
         ({"damping": 0.0}, "typical damping must be a positive number of N s/m"),
         ({"omega": float("nan")}, "typical frequency must be a positive number of rad/s"),
-        ({"index": lambda n, d: float("nan")}, "exists for none of"),
+        ({"index": lambda n, d: float("nan")}, "does not exist for any of"),
     ],
 )
 def test_wrong_requests(changes, message):

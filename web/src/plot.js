@@ -5,7 +5,7 @@ import { html, useEffect, useId, useLayoutEffect, useMemo, useRef, useState } fr
 import { indexAt, layoutOf, nearest, valueAt } from "./plots/layout.js";
 import { pngOf, svgOf } from "./plots/saving.js";
 import { csvOf, tableOf, thinned } from "./plots/table.js";
-import { download } from "./remembering.js";
+import { download, fileName } from "./remembering.js";
 import { printed, shown } from "./state/scale.js";
 
 /** @import { Declaration, Layout, Point, Name } from "./plots/layout.js" */
@@ -119,8 +119,10 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
     <${Axes} laid=${laid} />
     ${laid.bars && html`<path class="bars" d=${laid.bars} />`}
     <g clip-path=${`url(#${clip})`}>
-      ${plot.curves.map(({ name, colour, dash, pale, strong }, i) => html`<path key=${i} data-curve=${name}
-        class=${["curve", dash && "dash", pale && "pale", strong && "strong"].filter(Boolean).join(" ")}
+      ${plot.curves.map(({ name, colour, dash, pale, strong, loose, stale }, i) => !loose && html`<path key=${i}
+        data-curve=${name}
+        class=${["curve", dash && "dash", pale && "pale", strong && "strong", stale && "stale"].filter(Boolean)
+          .join(" ")}
         style=${{ stroke: curveColour(colour) }} d=${laid.paths[i]} />`)}
       ${(plot.marks ?? []).map(({ x: at, text }) => html`<g key=${text} class="mark-at">
         <path d=${`M${x.at(at)} ${box.top}V${box.bottom}`} />
@@ -395,7 +397,7 @@ function NumberTable({ plot, table }) {
 /** @param {{plot: Declaration, table?: Numbers, current: boolean, drawn: {current: SVGSVGElement | null},
  * shown: boolean}} props */
 function SaveMenu({ plot, table, current, drawn, shown: isDrawn }) {
-  const name = plot.title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 80) || "plot";
+  const name = fileName(plot.title);
   const picture = () => /** @type {SVGSVGElement} */ (drawn.current);
   const ground = () => getComputedStyle(/** @type {Element} */ (picture().parentElement)).backgroundColor;
   /** @param {string} kind @param {() => Promise<Blob> | Blob} make @param {boolean} possible */

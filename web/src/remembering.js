@@ -110,6 +110,10 @@ export function download(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
+/** A title as the name of a file. @param {string | undefined} title */
+export const fileName = (title) =>
+  (title ?? "study").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 60) || "study";
+
 const KNOWN = "study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat)";
 const RECORDS = /\.(csv|tsv|txt|tdms|mf4|mdf|mat)$/i;
 

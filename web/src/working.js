@@ -5,7 +5,7 @@ import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
-import { nextLayout, textOf } from "./state/document.js";
+import { indicesIn, nextLayout, textOf } from "./state/document.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -23,7 +23,7 @@ export async function optimise(store, api, asked) {
       const title = `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`;
       await begin(store, api, { kind: "optimise", title, ...body });
       store.look({ tab: "work" });
-      return "Under way: see Work.";
+      return "Under way: see Jobs.";
     }
     const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)
@@ -53,6 +53,7 @@ export function takeOptima(store, designs, gesture = null, of = null) {
   }
   const all = Object.fromEntries(taken.map(({ best, values }) => [best.layout, values]));
   store.change({ type: "valuedAll", values: all }, gesture);
+  if (of === study) store.dispatch({ type: "optimised", study, index: taken[0].best.index, values: all });
   return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
     best.layout + atBounds(best)).join(", ")}.`;
 }
@@ -98,15 +99,16 @@ export async function openStudy(store, api, study) {
  * which the page tells. @param {Store} store @param {Api} api @param {string | null} gesture */
 export async function beginAtBest(store, api, gesture = null) {
   const { study } = store.get().history.present;
-  const index = study.study?.indices?.[0];
+  const [index] = indicesIn(study);
   const method = quickMethod(store.get())?.name;
   if (!index || !method) return;
   store.dispatch({ type: "choosing", study });
   try {
     const parts = await api.post("study/parts", { study });
-    if (Object.values(parts.layouts).every((/** @type {any} */ { free }) => free.length === 0)) return;
-    if (!(await isSmall(api, study, Object.keys(study.layouts ?? {})[0]))) return;
-    const body = { study, indices: [index], method, methods: [method] };
+    const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
+    if (layouts.every((name) => parts.layouts[name].free.length === 0)) return;
+    if (!(await isSmall(api, study, layouts[0]))) return;
+    const body = { study, layouts, indices: [index], method, methods: [method] };
     const { designs } = await postNow(api, "panel/optimise", "opening", body);
     const { present } = store.get().history;
     if (present.study !== study || Object.keys(present.values).length > 0) return;
@@ -131,7 +133,7 @@ async function isSmall(api, study, layout) {
 export function takeNetwork(store, found, row) {
   const state = store.get();
   const { elements: known = {}, layouts = {} } = state.history.present.study;
-  const { layout, index, free_networks: free } = found;
+  const { layout, free_networks: free } = found;
   if (!Object.hasOwn(layouts, layout) || free.some((/** @type {string} */ name) => !Object.hasOwn(known, name)))
     return `The study that is open has no layout ${layout} with ${free.join(", ")}; nothing was changed.`;
   const used = Object.keys(row.elements).filter((name) =>
@@ -140,7 +142,7 @@ export function takeNetwork(store, found, row) {
     return `Another layout has elements of the same names (${used.join(", ")}): rename them; nothing was changed.`;
   const { entry, elements, values } = row;
   store.change({ type: "networkTaken", layout, entry, elements, values });
-  const doubts = doubted([{ of: `${index} of ${row.network}`, status: row.status, message: row.message }]);
+  const doubts = doubted([{ of: row.network, status: row.status, message: row.message }]);
   return `${doubts}The layout ${layout} has the network ${row.network}.`;
 }
 

@@ -12,6 +12,7 @@ from typing import Any
 import inerter
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
+from inerter.exports.registry import EXPORTS
 from inerter.field_metadata import Field, fields_of, mounts_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
@@ -52,6 +53,11 @@ def about() -> dict[str, Any]:
         "work": [
             {"key": kind.key, "title": kind.title, "keys": list(kind.keys), "resumes": kind.resumes}
             for kind in KINDS.values()
+        ],
+        "exports": [
+            {"key": key, **{name: getattr(kind, name) for name in ("description", "suffixes", "requires")}}
+            for key, kind in EXPORTS.items()
+            if kind.is_file
         ],
         "models": [*MODELS, CHOOSE],
         "examples": list(examples()),

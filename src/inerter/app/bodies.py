@@ -120,6 +120,7 @@ class PanelRequest(OfDesigns):
     spread: Annotated[dict[Name, Number], Field(description="Relative tolerances of the values.")] = {}
     samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
+    output: Annotated[Name, Field(description="The only one that is wanted; else the first.")] = ""
 
 
 class WorkRequest(OfDesigns):
@@ -148,6 +149,17 @@ class FigureRequest(OfDesigns):
     duration: Annotated[Number, Field(gt=0.0, description="[s] of the motion")] | None = None
     step: Annotated[Number, Field(gt=0.0, description="[s]")] | None = None
     seed: Annotated[int, Field(ge=0)] = 0
+
+
+class DesignExport(Body):
+    """A design that is wanted in the format of another program."""
+
+    kind: Name
+    suffix: Annotated[Name, Field(description="Of the file, where the kind has several.")] = ""
+    study: Document
+    design: DesignRequest
+    index: Annotated[Name | None, Field(description="Whose curves are in tables, by default the first.")] = None
+    linear: Annotated[bool, Field(description="Leave out friction and gaps on purpose.")] = False
 
 
 class ExportRequest(Body):

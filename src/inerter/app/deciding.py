@@ -39,9 +39,17 @@ def decision(study: Study, body: Body) -> Answer:
     method = decisive_method(body.get("methods") or study.evaluate)
     indices = list(body.get("indices") or study.indices)
     goal = body.get("index") or indices[0]
-    compared = _Compared(study, method, baseline, (goal, *(index for index in indices if index != goal)))
+    compared = _DesignComparison(study, method, baseline, (goal, *(index for index in indices if index != goal)))
     results = [compared.result(design) for design in designs]
-    told = decide(results, compared.over, method=brief_words_of(method), remedy=remedy_of(method))
+    left_out = body.get("left_out") or ()
+    told = decide(
+        results,
+        compared.over,
+        method=brief_words_of(method),
+        remedy=remedy_of(method),
+        left_out=[one["layout"] for one in left_out],
+        left_out_baseline=next((one["layout"] for one in left_out if one["is_baseline"]), ""),
+    )
     return {
         "goal": {
             "index": goal,
@@ -106,7 +114,7 @@ def verdict_of(told: Decision) -> Answer:
     }
 
 
-class _Compared:
+class _DesignComparison:
     """Estimates of designs by one method, and their comparison with the baseline."""
 
     def __init__(self, study: Study, method: str, baseline: Design | None, indices: Sequence[str]) -> None:

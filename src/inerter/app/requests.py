@@ -204,6 +204,11 @@ async def _csv(server: Server, request: Request, body: bodies.ExportRequest) -> 
     return Response(decode_json(found), media_type="text/csv; charset=utf-8")
 
 
+async def _export(server: Server, request: Request, body: bodies.DesignExport) -> Response:
+    found = await server.aside("inerter.app.design_exports:export_design", body.model_dump())
+    return Response(found, media_type="application/octet-stream")
+
+
 async def _openapi(server: Server, request: Request) -> dict[str, Any]:
     return openapi(ENDPOINTS)
 
@@ -244,5 +249,13 @@ ENDPOINTS = (
     ),
     Endpoint("DELETE", "/api/records/{id}", "Delete a record", _forget_record),
     Endpoint("POST", "/api/figure", "A picture", _figure, bodies.FigureRequest, media="image/svg+xml"),
+    Endpoint(
+        "POST",
+        "/api/export/design",
+        "A design in the format of another program",
+        _export,
+        bodies.DesignExport,
+        media="application/octet-stream",
+    ),
     Endpoint("POST", "/api/export/csv", "The numbers of a panel as a table", _csv, bodies.ExportRequest, "text/csv"),
 )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -18,36 +18,38 @@ from inerter.figures.search import draw_search
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
-from inerter.files.study.search_parts import GroupResult
-from inerter.files.study.search_tables import RANKED, improvement
-from inerter.files.study.searching import StudySearch, search_study
+from inerter.files.study.search_parts import GroupResult, RealResult
+from inerter.files.study.search_tables import RANKED, improvement, real_gains
+from inerter.files.study.searching import LayoutSearch, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
+from inerter.network_search.front_results import FrontNetwork
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan
-from inerter.network_search.results import rank_networks
-from inerter.networks.elements import ELEMENT_TYPES
+from inerter.network_search.results import FoundNetwork, rank_networks
+from inerter.networks.elements import ELEMENT_TYPES, Element, Inerter, Network
 from inerter.networks.enumeration import Topology
-from inerter.networks.parser import replace_in_expression
+from inerter.networks.parser import format_expression, replace_in_expression
+from inerter.networks.transform import map_elements
 from inerter.report.search import write_search_report
 
 
 def search(body: Body, folder: Path, tell: Tell) -> Any:
-    """The best networks of a layout for an index; while they are searched, `tell` is given the best so far.
+    """The best networks of a layout for each index, their front, and real inerters, as the study asks.
 
-    What an interrupted search left in the folder is not searched again.
+    While they are searched, `tell` is given the best so far. What an interrupted search left in the folder is not
+    searched again.
     """
     document = body["study"]
-    study = _one_search(searched_study_from(document), body)
-    (layout, index), plan = next(iter(search_plans(study).items()))
-    ranking = _Ranking(document, study, layout, index, plan)
+    study = _one_layout(searched_study_from(document), body)
+    ranking = _Ranking(document, study, search_plans(study))
     done = [0]
 
     def on_groups(groups: list[GroupResult]) -> None:
-        ranking.add([network for group in groups for network in group.optima()])
+        ranking.add(groups)
 
     def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
         done[0] = count
-        tell(count, total, f"{ranking.n_searched} of {len(plan.topologies)} networks", ranking.so_far())
+        tell(count, total, ranking.progress(last), ranking.so_far())
 
     def compiling(title: str, number: int, total: int) -> None:
         with suppress(JobStopped):  # other threads tell this too; the next group will stop
@@ -71,97 +73,197 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
     return ranking.final(found)
 
 
-def _one_search(study: Study, body: Body) -> Study:
-    """The study with one layout to search, for one index, and with its baseline if that is a design."""
+def _one_layout(study: Study, body: Body) -> Study:
+    """The study with one layout to search, and with its baseline if that is a design.
+
+    Of several indices the front is searched too.
+    """
     searched = searched_layouts(study)
     layout, *more_layouts = body.get("layouts") or [*searched, *study.layouts][:1]
-    index, *more_indices = body.get("indices") or study.indices[:1]
-    if more_layouts or more_indices:
-        raise StudyError("A search in the workbench is one of one layout for one index; got several. Choose one each.")
+    indices = tuple(dict.fromkeys(body.get("indices") or study.trade_off or study.indices[:1]))
+    if more_layouts:
+        raise StudyError("A search in the workbench is one of one layout; got several. Choose one.")
+    if len(indices) > _MOST_INDICES:
+        raise StudyError(f"A front over networks is one of two or three indices; got {len(indices)}. Choose fewer.")
     study.design(layout)
-    study.index(index)
+    for index in indices:
+        study.index(index)
     baseline = study.baseline if study.baseline not in searched else None
     layouts = {name: one for name, one in study.layouts.items() if name in (layout, baseline)}
-    return replace(study, layouts=layouts, indices=(index,), baseline=baseline, trade_off=(), real_inerters=None)
+    trade_off = indices if len(indices) > 1 else ()
+    return replace(study, layouts=layouts, indices=indices, baseline=baseline, trade_off=trade_off)
 
 
 @dataclass
 class _Ranking:
-    """The best networks so far, as data for an answer."""
+    """The best networks so far for each index, as data for an answer."""
 
     document: Mapping[str, Any]
     study: Study
-    layout: str
-    index: str
-    plan: SearchPlan
-    best: list[SearchedNetwork] = field(default_factory=list)
+    plans: Mapping[tuple[str, str], SearchPlan]
+    best: dict[str, list[SearchedNetwork]] = field(default_factory=dict)
     n_searched: int = 0
 
-    def add(self, networks: list[SearchedNetwork]) -> None:
-        """Rank further networks with the best."""
-        self.n_searched += len(networks)
-        self.best = rank_networks(one for one in (*self.best, *networks) if isfinite(one.value))[:RANKED]
+    @property
+    def layout(self) -> str:
+        """The layout that is searched."""
+        return next(iter(self.plans))[0]
+
+    @property
+    def n_networks(self) -> int:
+        """Number of networks."""
+        return len(next(iter(self.plans.values())).topologies)
+
+    def add(self, groups: Iterable[GroupResult]) -> None:
+        """Rank further networks with the best for the same index."""
+        for group in groups:
+            networks = list(group.optima())
+            self.n_searched += len(networks)
+            known = self.best.get(group.index, [])
+            self.best[group.index] = rank_networks(n for n in (*known, *networks) if isfinite(n.value))[:RANKED]
+
+    def progress(self, last: PartResult | None) -> str:
+        """How many networks are searched; then what follows."""
+        total = self.n_networks * len(self.plans)
+        if self.n_searched < total or last is None:
+            return f"{self.n_searched} of {total} networks"
+        return last.part.name
 
     def so_far(self) -> dict[str, Any]:
         """The best of the networks that are searched."""
-        unit = str(self.plan.index.unit)
-        rows = [
-            self._row(one.topology, one.values, one.others)
-            | _value(one.value, unit, OK if not one.reason else Status(StatusKind.INACCURATE, one.reason))
-            for one in self.best
-        ]
-        return self._answer(rows, complete=False)
+        found = []
+        for (_, index), plan in self.plans.items():
+            rows = []
+            for one in self.best.get(index, []):
+                named = dict(zip(one.topology.names(plan.taken_names), one.values, strict=True))
+                status = Status(StatusKind.INACCURATE, one.reason) if one.reason else OK
+                rows.append(self._row(plan, one.topology, {**named, **one.others}) | _value(one.value, status))
+            found.append(self._of_index(index, rows))
+        return self._answer(found, complete=False)
 
     def final(self, found: StudySearch) -> dict[str, Any]:
         """The best of all networks, whose values are verified, compared with the baseline."""
-        (one,) = found.searches
-        rows = []
-        for network in one.result.ranking[:RANKED]:
-            own = network.topology.names(self.plan.taken_names)
-            values = [network.parameters[name] for name in own]
-            others = {name: value for name, value in network.parameters.items() if name not in own}
-            rows.append(
-                self._row(network.topology, values, others)
-                | _value(network.value, network.unit, network.status)
-                | {"improvement_percent": improvement(network.value, one.baseline)}
-            )
-        return self._answer(rows, complete=True)
+        searches = []
+        for one in found.searches:
+            ranking = [self._of_network(one, network) for network in one.result.ranking[:RANKED]]
+            frontier = [self._of_network(one, network) for network in one.result.frontier]
+            real = [self._of_real(one, each) for each in one.real if each.network]
+            searches.append(self._of_index(one.index, ranking, frontier, real, one.baseline))
+        return self._answer(searches, self._front(found), complete=True)
 
-    def _answer(self, rows: list[dict[str, Any]], *, complete: bool) -> dict[str, Any]:
+    def _answer(
+        self, searches: list[dict[str, Any]], front: dict[str, Any] | None = None, *, complete: bool
+    ) -> dict[str, Any]:
         return {
             "layout": self.layout,
-            "index": self.index,
-            "title": self.study.index(self.index).title,
             "free_networks": searched_layouts(self.study)[self.layout],
             "baseline": self.study.baseline,
-            "networks": len(self.plan.topologies),
+            "networks": self.n_networks,
             "complete": complete,
-            "ranking": rows,
+            "searches": searches,
+            "front": front,
         }
 
-    def _row(self, topology: Topology, values: Sequence[float], others: Mapping[str, float]) -> dict[str, Any]:
-        """A network with its values, and the entries of a study document that has it in place of the free one."""
-        names = topology.names(self.plan.taken_names | set(self.document["elements"]))
-        new_names = dict(zip(topology.names(self.plan.taken_names), names, strict=True))
-        expression = topology.format_expression(names)
+    def _of_index(
+        self,
+        index: str,
+        ranking: list[dict[str, Any]],
+        frontier: Sequence[dict[str, Any]] = (),
+        real: Sequence[dict[str, Any]] = (),
+        baseline: float = nan,
+    ) -> dict[str, Any]:
+        rows = {"ranking": ranking, "frontier": frontier, "real_inerters": real}
+        return {**self._describe_index(index), "baseline_value": baseline, **rows}
+
+    def _describe_index(self, index: str) -> dict[str, str]:
+        return {"index": index, "title": self.study.index(index).title, "unit": self.study.unit(index)}
+
+    def _of_network(self, one: LayoutSearch, network: FoundNetwork) -> dict[str, Any]:
+        return self._row(self.plans[self.layout, one.index], network.topology, network.parameters) | {
+            **_value(network.value, network.status),
+            "improvement_percent": improvement(network.value, one.baseline),
+        }
+
+    def _of_real(self, one: LayoutSearch, each: RealResult) -> dict[str, Any]:
+        """A network with real inerters; one without a result has its best ideal values."""
+        assert self.study.real_inerters is not None
+        shaft, friction = self.study.real_inerters.shaft, self.study.real_inerters.friction
+        ideal = next(network for network in one.result.ranking if network.layout == each.network)
+        before, after = real_gains(one, each)
+
+        def change(element: Element) -> Network:
+            return shaft.network(element, friction) if isinstance(element, Inerter) else element
+
+        parameters = each.parameters or ideal.parameters
+        return self._row(self.plans[self.layout, one.index], ideal.topology, parameters, change) | {
+            **_value(each.value, Status(StatusKind(each.status), each.message)),
+            "method": each.method,
+            "standard_error": each.standard_error,
+            "ideal": ideal.value,
+            "same_values": each.kept,
+            "ideal_improvement_percent": before,
+            "improvement_percent": after,
+        }
+
+    def _front(self, found: StudySearch) -> dict[str, Any] | None:
+        """Fronts of the networks of up to each number of elements, those apart that differ; None for one index."""
+        if not found.fronts:
+            return None
+        (one,) = found.fronts
+        several = list(one.result.by_elements.items())
+        fronts = [
+            {"elements": count, "points": [self._of_point(found, point) for point in front]}
+            for (count, front), (_, before) in zip(several, [(0, ()), *several[:-1]], strict=True)
+            if front != before
+        ]
+        return {"indices": [self._describe_index(index) for index in found.study.trade_off], "fronts": fronts}
+
+    def _of_point(self, found: StudySearch, point: FrontNetwork) -> dict[str, Any]:
+        plan = next(iter(self.plans.values()))
+        baselines = {one.index: one.baseline for one in found.searches}
+        values = dict(zip(found.study.trade_off, point.values, strict=True))
+        return self._row(plan, point.topology, point.parameters) | {
+            "indices": values,
+            "improvements_percent": {index: improvement(value, baselines[index]) for index, value in values.items()},
+            "status": point.status.kind.value,
+            "message": point.status.message,
+        }
+
+    def _row(
+        self,
+        plan: SearchPlan,
+        topology: Topology,
+        parameters: Mapping[str, float],
+        change: Callable[[Element], Network] = lambda element: element,
+    ) -> dict[str, Any]:
+        """A network with its values, and the entries of a study document that has it in place of the free one.
+
+        `change` gives the network that takes the place of each of its elements.
+        """
+        own, known = topology.names(plan.taken_names), self.document["elements"]
+        names = topology.names(plan.taken_names | {*known, *(name.rpartition("_")[0] for name in known)})
+        new_names, values = dict(zip(own, names, strict=True)), [parameters[name] for name in own]
+        ideal = [_KINDS[kind].of(value, name) for kind, value, name in zip(topology.kinds, values, names, strict=True)]
+        network = map_elements(topology.network(ideal), change)
+        elements = {element.label: element for element in network.elements()}
+        expression = replace_in_expression(format_expression(network, elements), {})  # without needless brackets
         chosen = dict.fromkeys(searched_layouts(self.study)[self.layout], expression)
         entry = self.document["layouts"][self.layout]
         return {
             "network": expression,
-            "elements": {
-                name: f"{value!r} {_UNITS[symbol]}"
-                for name, value, symbol in zip(names, values, topology.kinds, strict=True)
-            },
-            "active_bounds": {new_names[name]: end for name, end in self.plan.active_bounds(topology, values).items()},
-            "values": texts_of(self.study, others),
+            "n_elements": topology.size,
+            "elements": {name: f"{element.value!r} {element.unit}" for name, element in elements.items()},
+            "active_bounds": {new_names[name]: end for name, end in plan.active_bounds(topology, values).items()},
+            "values": texts_of(self.study, {name: value for name, value in parameters.items() if name not in own}),
             "entry": {mount: replace_in_expression(text, chosen) for mount, text in entry.items()}
             if isinstance(entry, Mapping)
             else replace_in_expression(entry, chosen),
         }
 
 
-_UNITS = {kind.symbol: kind.unit for kind in ELEMENT_TYPES}
+_KINDS = {kind.symbol: kind for kind in ELEMENT_TYPES}
+_MOST_INDICES = 3  # of a front
 
 
-def _value(value: float, unit: str, status: Status) -> dict[str, Any]:
-    return {"value": value, "unit": unit, "status": status.kind.value, "message": status.message}
+def _value(value: float, status: Status) -> dict[str, Any]:
+    return {"value": value, "status": status.kind.value, "message": status.message}

@@ -35,6 +35,13 @@ def serve(
 
     Raises `StudyError` for a study file that cannot be read, for a port that is not free, and where the extra `web` is
     not installed.
+
+    >>> import inerter as it
+    >>> try:
+    ...     it.serve("no-such-study.toml", port=8000, browser=False)
+    ... except it.InerterError as error:
+    ...     print(error)
+    no-such-study.toml: cannot be read (No such file or directory). Check the path.
     """
     try:
         running = import_module("inerter.app.running")

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from inerter.cli.interrupts import interruptible
+from inerter.cli.quantity_options import positive_option
 from inerter.errors import StudyError
 from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
@@ -25,6 +26,8 @@ def export(
     only: tuple[str, ...],
     output: Path | None,
     *,
+    part: str,
+    speed: str | None,
     linear: bool,
     force: bool,
 ) -> None:
@@ -42,15 +45,18 @@ def export(
     with interruptible():
         design = chosen_design(source, layout, index, point)
         stem = source.stem if source.is_file() else source.resolve().name
-        path = output or Path(f"{stem}-{design.name}{kind.suffixes[0]}")
+        name = "-".join([stem, design.name, *([part] if part else [])])
+        path = output or Path(f"{name}{kind.suffixes[0]}")
         check_single(path, by=_BY, inputs=design.inputs, force=force)
-        title = f"{' '.join(design.study.title.split())}, {design.case.name}"
+        title = ", ".join([" ".join(design.study.title.split()), design.case.name, *([part] if part else [])])
         indices = {design.case.index: design.study.index(design.case.index)}
         request = ExportSpec(
             design.vehicle(),
             to,
             outputs=only or None,
             linear=linear,
+            part=part,
+            speed=None if speed is None else positive_option("speed", speed, "m/s"),
             indices=indices,
             conventions=design.study.conventions,
             title=title,

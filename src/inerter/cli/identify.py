@@ -13,6 +13,8 @@ from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
+from inerter.cli.quantity_options import positive_option
+from inerter.cli.reading import time_interval
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, WriteMode, open_results
 from inerter.files.common.toml import check_measurements
@@ -25,7 +27,6 @@ from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import identification_text
 from inerter.report.options import as_options
 from inerter.statements import Statement
-from inerter.units import parse_quantity
 
 _CHANNELS = {"displacement": "displacement", "force_channel": "force", "time": "time"}  # by the option
 _QUANTITIES = {
@@ -128,11 +129,11 @@ def _record(asked: RecordRequest, options: Mapping[str, Any]) -> RecordRequest:
     changes["units"] = {**asked.units, **_units(given.get("unit", ()))}
     for name, unit in _QUANTITIES.items():
         if name in given:
-            changes[name] = _positive(name, given[name], unit)
+            changes[name] = positive_option(name, given[name], unit)
     if "fixture_mass" in given:
         changes["fixture_mass"] = _uncertain("fixture_mass", given["fixture_mass"], "kg")
     if "trim" in given:
-        changes["start"], changes["stop"] = _times(given["trim"])
+        changes["start"], changes["stop"] = time_interval("--trim", given["trim"])
     if "gaps" in given:
         try:
             changes["gaps"] = gap_treatment(given["gaps"])
@@ -159,25 +160,3 @@ def _uncertain(name: str, text: object, unit: str = "") -> Uncertain:
         return parse_uncertain(text, unit)
     except UnitError as error:
         raise StudyError(f"--{name.replace('_', '-')}: {error}") from None
-
-
-def _positive(name: str, text: str, unit: str) -> float:
-    option = f"--{name.replace('_', '-')}"
-    try:
-        value = parse_quantity(text, unit)
-    except UnitError as error:
-        raise StudyError(f"{option}: {error}") from None
-    if value <= 0.0:
-        raise StudyError(f'{option}: Got "{text}": not positive; expected more than 0 {unit}.')
-    return value
-
-
-def _times(text: str) -> tuple[float | None, float | None]:
-    begin, colon, end = text.partition(":")
-    try:
-        times = tuple(float(part) if part.strip() else None for part in (begin, end))
-    except ValueError:
-        colon = ""
-    if not colon:
-        raise StudyError(f'Got --trim "{text}"; expected FROM:TO in seconds, such as --trim 0.5:4.')
-    return times[0], times[1]

@@ -302,7 +302,9 @@ def rig(
     help_epilogue="""Examples:
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
-  inerter export my-car.toml --layout real --to spice --linear"""
+  inerter export my-car.toml --layout real --to spice --linear
+  inerter export examples/quarter-car.toml --layout S3 --index J1 --to fmu --part strut
+  inerter export examples/half-car.toml --layout S1 --index J1 --to fmu --speed "25 m/s\""""
 )
 def export(
     source: Path,
@@ -316,6 +318,10 @@ def export(
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
     ] = (),
+    part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
+    speed: Annotated[
+        str | None, Parameter(help='Speed of an FMU with one road for all axles, such as "25 m/s"; it is a parameter.')
+    ] = None,
     linear: Annotated[
         bool, Parameter(negative="", show_default=False, help="Leave out friction and gaps on purpose.")
     ] = False,
@@ -337,40 +343,57 @@ def export(
     """
     from inerter.cli.export import export as command
 
-    command(source, to, layout, index, point, only, output, linear=linear, force=force)
+    command(source, to, layout, index, point, only, output, part=part, speed=speed, linear=linear, force=force)
 
 
 @app.command(
     help_epilogue="""Examples:
   inerter plot examples/quarter-car.toml --kind bode --index J1
-  inerter plot quarter-car-results --kind poles --index J1 -o poles.pdf"""
+  inerter plot quarter-car-results --kind poles --index J1 -o poles.pdf
+  inerter plot examples/stick_slip.toml --kind trajectory --window 1:3
+  inerter plot trade_off-results --kind front"""
 )
 def plot(
     source: Path,
     /,
     *,
-    kind: Annotated[str, Parameter(help="What is drawn: bode, nyquist, poles, admittance or network.")],
+    kind: Annotated[
+        str,
+        Parameter(
+            help="Of designs: bode, nyquist, poles, step, admittance, network; of a motion: trajectory, loop; "
+            "of results: improvement, front, sweep, map."
+        ),
+    ],
     layout: Annotated[
         tuple[str, ...], Parameter(negative="", show_default=False, help="Layout; repeatable. Default: all.")
     ] = (),
     index: BestFor = None,
     point: SweepPoint = None,
+    input: Annotated[
+        str | None, Parameter(help="Input of a response, such as road; default: that of the index.")
+    ] = None,
+    only: Annotated[
+        tuple[str, ...],
+        Parameter(negative="", show_default=False, help="Output to draw; repeatable. Default: those of the index."),
+    ] = (),
+    window: Annotated[str | None, Parameter(help="Time of a motion to draw, FROM:TO in seconds.")] = None,
     output: Annotated[Path | None, Parameter(name=["--output", "-o"], help="Output file: .svg, .pdf or .png.")] = None,
     force: ForceFile = False,
 ) -> None:
-    """Plot designs: frequency responses, poles, admittances of struts, or drawings of networks.
+    """Plot designs, motions or results: responses, poles, drawings, time histories, fronts, maps.
 
     Free values are those of the best design for the index: read from a folder
-    of results, or found anew from a study file.
+    of results, or found anew from a study file. A motion is simulated anew.
 
     Parameters
     ----------
     source
-        A study file (TOML), or a folder with its results.
+        A study file or a simulation file (TOML), or a folder with its results.
     """
+    from inerter.cli.plot import PlotOptions
     from inerter.cli.plot import plot as command
 
-    command(source, kind, layout, index, point, output, force=force)
+    command(source, kind, PlotOptions(layout, index, point, input, only, window), output, force=force)
 
 
 @app.command(

@@ -3,54 +3,64 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from matplotlib.figure import Figure
+import xarray as xr
 
 from inerter.cli.interrupts import interruptible
+from inerter.cli.progress import fraction
+from inerter.cli.reading import time_interval
 from inerter.errors import StudyError
-from inerter.figures.plots import plot_admittance, plot_bode, plot_network, plot_nyquist, plot_poles
+from inerter.figures.plots.kinds import PLOTS, DesignsToPlot, MotionToPlot, PlotKind, PlotSource, ResultsToPlot
 from inerter.figures.style import style_context
 from inerter.files.common.folder import check_single, single
 from inerter.files.common.suggest import some
-from inerter.files.study.chosen_design import ChosenDesign, chosen_design
+from inerter.files.simulation import running as simulations
+from inerter.files.simulation.loading import load_simulation
+from inerter.files.study import running as studies
+from inerter.files.study.chosen_design import chosen_design
 from inerter.files.study.loading import load_study
-from inerter.files.study.running import RESOLVED
-from inerter.indices.definition import Index
-from inerter.networks.elements.algebra import Network
-from inerter.vehicle.vehicle import Vehicle
 
 _BY = "plot"
 _SUFFIXES = (".svg", ".pdf", ".png")
 
-Designs = Mapping[str, Vehicle]
 
-PLOTS: Mapping[str, Callable[[Designs, Index], Figure]] = {
-    "bode": lambda designs, index: _of(plot_bode(designs, index)[0].figure),
-    "nyquist": lambda designs, index: _of(plot_nyquist(designs, index).figure),
-    "poles": lambda designs, index: _of(plot_poles(designs).figure),
-    "admittance": lambda designs, index: _of(plot_admittance(_networks(designs))[0].figure),
-    "network": lambda designs, index: plot_network(_networks(designs), values=True),
+@dataclass(frozen=True)
+class PlotOptions:
+    """Options of the command; those that a kind does not use are refused."""
+
+    layout: tuple[str, ...] = ()
+    index: str | None = None
+    point: int | None = None
+    input: str | None = None
+    only: tuple[str, ...] = ()
+    window: str | None = None
+
+    def check(self, kind: PlotKind) -> None:
+        """Raises `StudyError` for an option that a kind of plot does not use."""
+        given = [name for name, value in vars(self).items() if value not in (None, ())]
+        if unused := [f"--{name}" for name in given if name not in _USED[kind.of]]:
+            used = some([f"--{name}" for name in _USED[kind.of]])
+            raise StudyError(f"A plot of the kind {kind.key} does not use {some(unused)}; it uses {used}.")
+
+
+_USED: Mapping[PlotSource, tuple[str, ...]] = {
+    PlotSource.DESIGNS: ("layout", "index", "point", "input", "only"),
+    PlotSource.MOTION: ("only", "window"),
+    PlotSource.RESULTS: ("index",),
 }
 
 
-def plot(
-    source: Path,
-    kind: str,
-    layouts: tuple[str, ...],
-    index: str | None,
-    point: int | None,
-    output: Path | None,
-    *,
-    force: bool,
-) -> None:
-    """Plot designs of a study file or of a folder of results into a file.
+def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, force: bool) -> None:
+    """Plot designs, a motion or results into a file.
 
-    Raises `StudyError` for an unknown kind or suffix, and as `chosen_design`; what the plot raises.
+    Raises `StudyError` for an unknown kind or suffix, for an option that the kind does not use, and for a source that
+    has nothing of the kind; what the plot raises.
     """
-    if kind not in PLOTS:
-        raise StudyError(f"Unknown kind of plot {kind!r}; expected {some(list(PLOTS))}.")
+    row = PLOTS[kind]
+    options.check(row)
     stem = source.stem if source.is_file() else source.resolve().name
     path = output or Path(f"{stem}-{kind}.svg")
     if path.suffix.lower() not in _SUFFIXES:
@@ -58,33 +68,42 @@ def plot(
     if not path.parent.is_dir():
         raise StudyError(f"{path.parent}: folder not found. Create it, or choose another with -o.")
     check_single(path, by=_BY, inputs=(), force=force)
+    load = {PlotSource.DESIGNS: _designs, PlotSource.MOTION: _motion, PlotSource.RESULTS: _results}[row.of]
     with interruptible():
-        chosen = _designs(source, layouts, index, point)
-        inputs = next(iter(chosen.values())).inputs
-        one = next(iter(chosen.values()))
-        vehicles = {name: design.vehicle() for name, design in chosen.items()}
-        figure = PLOTS[kind](vehicles, one.study.index(one.case.index))
-        with single(path, by=_BY, inputs=inputs, force=force) as draft, style_context():
-            figure.savefig(draft, dpi=200)
-    print(f"inerter: plot of {', '.join(chosen)}: {path}", file=sys.stderr)
+        content, inputs = load(source, options)
+        with style_context():
+            figure = row.draw(content)
+            with single(path, by=_BY, inputs=inputs, force=force) as draft:
+                figure.savefig(draft, dpi=200)
+    print(f"inerter: {row.description}: {path}", file=sys.stderr)
 
 
-def _designs(source: Path, layouts: tuple[str, ...], index: str | None, point: int | None) -> dict[str, ChosenDesign]:
+def _designs(source: Path, options: PlotOptions) -> tuple[DesignsToPlot, tuple[Path, ...]]:
     """The layouts that were named, or all, with their best values for an index."""
-    known = list(load_study(source / RESOLVED if source.is_dir() else source).layouts)
-    return {layout: chosen_design(source, layout, index, point) for layout in layouts or known}
+    known = list(load_study(source / studies.RESOLVED if source.is_dir() else source).layouts)
+    chosen = {name: chosen_design(source, name, options.index, options.point) for name in options.layout or known}
+    first = next(iter(chosen.values()))
+    vehicles = {name: design.vehicle() for name, design in chosen.items()}
+    return DesignsToPlot(vehicles, first.study.index(first.case.index), options.input, options.only), first.inputs
 
 
-def _networks(designs: Designs) -> dict[str, Network]:
-    """The network of each strut, by the names of layout and strut."""
-    found = {name: vehicle.mechanism().struts for name, vehicle in designs.items()}
-    return {
-        name if len(struts) == 1 else f"{name} {strut.name}": strut.network
-        for name, struts in found.items()
-        for strut in struts
-    }
+def _motion(source: Path, options: PlotOptions) -> tuple[MotionToPlot, tuple[Path, ...]]:
+    """The motion of a simulation file, simulated again where it is that of a folder of results."""
+    request = load_simulation(source / simulations.RESOLVED if source.is_dir() else source)
+    begin, end = time_interval("--window", options.window or ":")
+    with fraction("simulation") as callback:
+        result = simulations.SimulationResult(request, request.run(callback))
+    time = result.run.time
+    window = (time[0] if begin is None else begin, time[-1] if end is None else end)
+    return MotionToPlot(result.run, options.only or result.main_outputs, window), request.inputs
 
 
-def _of(figure: object) -> Figure:
-    assert isinstance(figure, Figure)
-    return figure
+def _results(source: Path, options: PlotOptions) -> tuple[ResultsToPlot, tuple[Path, ...]]:
+    path = source / studies.DATASET
+    if not source.is_dir():
+        raise StudyError(f"{source}: expected {PlotSource.RESULTS.value}. Run the study: inerter run {source}")
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as data:
+            return ResultsToPlot(data.load(), options.index), (path,)
+    except (OSError, KeyError, ValueError) as error:
+        raise StudyError(f"{path}: cannot be read as results ({error}).") from None

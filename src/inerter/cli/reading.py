@@ -7,6 +7,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from inerter.errors import StudyError
+
 
 @dataclass(frozen=True)
 class ReadingOptions:
@@ -71,3 +73,15 @@ class SearchOptions:
 
 
 AS_USUAL = SearchOptions()
+
+
+def time_interval(option: str, text: str) -> tuple[float | None, float | None]:
+    """Ends of a time interval FROM:TO in seconds, None for an open one; raises `StudyError` for another text."""
+    begin, colon, end = text.partition(":")
+    try:
+        times = tuple(float(part) if part.strip() else None for part in (begin, end))
+    except ValueError:
+        colon = ""
+    if not colon:
+        raise StudyError(f'Got {option} "{text}"; expected FROM:TO in seconds, such as {option} 0.5:4.')
+    return times[0], times[1]

@@ -21,6 +21,7 @@ class CaveatKind(StrEnum):
 
     WORSE = "worse"  # another index gets worse
     STATUS = "status"  # a value is unreliable, infinite or missing
+    LEFT_OUT = "left-out"  # a design is not valid
     TIE = "tie"  # a difference is not significant
     LIMIT = "limit"  # a limit is broken, or its quantity not known
     NEGLECTED = "neglected"  # friction or backlash that the method neglects
@@ -56,6 +57,8 @@ class Contest:
     over: Over
     method: str = ""  # in words
     remedy: str = ""  # method that models friction and backlash
+    left_out: Sequence[str] = ()  # names of designs that are not valid
+    left_out_baseline: str = ""  # of these the baseline
 
     @property
     def baseline(self) -> DesignResult | None:
@@ -63,7 +66,7 @@ class Contest:
         return next((one for one in self.designs if one.is_baseline), None)
 
     @property
-    def chosen(self) -> list[DesignResult]:
+    def complete(self) -> list[DesignResult]:
         """Designs with a value for every design variable."""
         return [one for one in self.designs if not one.unchosen]
 
@@ -73,6 +76,7 @@ def caveats_of(contest: Contest) -> list[Caveat]:
     found = [
         *_worse(contest),
         *_statuses(contest),
+        *_left_out(contest),
         *_ties(contest),
         *_limits(contest),
         *_neglect_caveats(contest),
@@ -102,7 +106,7 @@ def _worse(contest: Contest) -> Iterator[Caveat]:
 
 def _statuses(contest: Contest) -> Iterator[Caveat]:
     shown = [*contest.winners, *filter(None, [contest.baseline])]
-    values = [(one.name, one.goal) for one in contest.chosen if one.goal.status.kind is not StatusKind.INFEASIBLE]
+    values = [(one.name, one.goal) for one in contest.complete if one.goal.status.kind is not StatusKind.INFEASIBLE]
     values += [(one.name, other) for one in shown if not one.unchosen for other in one.others]
     by_reason: dict[tuple[str, str], list[tuple[str, IndexResult]]] = {}
     for name, result in values:
@@ -111,6 +115,15 @@ def _statuses(contest: Contest) -> Iterator[Caveat]:
     for several in by_reason.values():
         names = list(dict.fromkeys(name for name, _ in several))
         yield Caveat(CaveatKind.STATUS, several[0][1].doubt(format_list(names)))
+
+
+def _left_out(contest: Contest) -> Iterator[Caveat]:
+    if contest.left_out_baseline:
+        text = f"The baseline {contest.left_out_baseline} is not valid: nothing is compared with it."
+        yield Caveat(CaveatKind.LEFT_OUT, text)
+    if others := [name for name in contest.left_out if name != contest.left_out_baseline]:
+        be, rank = ("is", "it is") if len(others) == 1 else ("are", "they are")
+        yield Caveat(CaveatKind.LEFT_OUT, f"{format_list(others)} {be} not valid; {rank} not ranked.")
 
 
 def _ties(contest: Contest) -> Iterator[Caveat]:
@@ -135,7 +148,7 @@ def _ties(contest: Contest) -> Iterator[Caveat]:
 
 def _limits(contest: Contest) -> Iterator[Caveat]:
     best = min((one.goal.value for one in contest.winners), default=-1.0)
-    for design in contest.chosen:
+    for design in contest.complete:
         broken = [f"{one.words} ({one.value})" for one in design.limits if one.kept is False]
         if broken:
             lower = isfinite(design.goal.value) and design.goal.value < best
@@ -158,7 +171,7 @@ def unknown_limits(design: DesignResult) -> list[LimitResult]:
 
 
 def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
-    for what, names in _names_by(contest.chosen, lambda one: one.neglected).items():
+    for what, names in _names_by(contest.complete, lambda one: one.neglected).items():
         remedy = f"; {contest.remedy} models it" if contest.remedy else ""
         by = f" by {contest.method}" if contest.method else ""
         yield Caveat(CaveatKind.NEGLECTED, f"{capital(what)} of {format_list(names)} is neglected{by}{remedy}.")

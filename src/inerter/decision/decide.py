@@ -54,18 +54,27 @@ class Decision:
     verdict: DecisionVerdict
 
 
-def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", remedy: str = "") -> Decision:
+def decide(
+    designs: Sequence[DesignResult],
+    over: Over,
+    *,
+    method: str = "",
+    remedy: str = "",
+    left_out: Sequence[str] = (),
+    left_out_baseline: str = "",
+) -> Decision:
     """Rank designs by the goal, and state the verdict.
 
     A design with a broken limit, an infinite or missing value, or a value that nobody has chosen is not ranked. `over`
     gives the improvement of one design over another, or None; it is called for the best one only. `method` is the
-    method in words, `remedy` the name of one that models what it neglects.
+    method in words, `remedy` the name of one that models what it neglects; `left_out` are names of designs that are not
+    valid, with the baseline if it is one of them.
     """
     ranked = sorted((one for one in designs if one.is_ranked), key=lambda one: one.goal.value)
     winners = _winners(designs, ranked, over)
     rest = [one for one in ranked if one not in winners]
     others = sorted((one for one in designs if one not in ranked), key=_order)
-    contest = Contest(designs, winners, over, method, remedy)
+    contest = Contest(designs, winners, over, method, remedy, left_out, left_out_baseline)
     ranks = [*[1] * len(winners), *range(len(winners) + 1, len(ranked) + 1), *[None] * len(others)]
     return Decision((*winners, *rest, *others), tuple(ranks), tuple(winners), _verdict(contest, rest))
 
@@ -88,7 +97,7 @@ def _order(design: DesignResult) -> tuple[bool, bool, float]:
 
 def _verdict(contest: Contest, rest: Sequence[DesignResult]) -> DecisionVerdict:
     text, is_answer = _sentence(contest, rest)
-    doubts = [one for one in contest.chosen if one.goal.is_doubtful and not one.breaks_limit]
+    doubts = [one for one in contest.complete if one.goal.is_doubtful and not one.breaks_limit]
     unsure = doubts or any(map(unknown_limits, contest.winners))
     answer = VerdictKind.NONE if not is_answer else VerdictKind.DOUBT if unsure else VerdictKind.ANSWER
     return DecisionVerdict(text, answer, tuple(caveats_of(contest)))
@@ -127,7 +136,7 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
 
 def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
     """Sentence where no design is ranked."""
-    broken = [one for one in contest.chosen if one.breaks_limit]
+    broken = [one for one in contest.complete if one.breaks_limit]
     if broken:
         closest = min(broken, key=lambda one: one.excess)
         worst = max((one for one in closest.limits if one.kept is False), key=lambda one: one.excess, default=None)
@@ -159,7 +168,7 @@ def _sentence_on_baseline(
         by = rest[0].goal.improvement
         worse = f"; {rest[0].name}, the next, is {by.words}" if by is not None and isfinite(by.percent) else ""
         return f"No strut is better than {base.name} in {goal}{worse}.", True
-    if broken := [one.name for one in contest.chosen if one.breaks_limit]:
+    if broken := [one.name for one in contest.complete if one.breaks_limit]:
         verb = "does" if len(broken) == 1 else "do"
         return f"{base.name} is the only strut that keeps the limits; {format_list(broken)} {verb} not.", True
     if unchosen:

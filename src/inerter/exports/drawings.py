@@ -77,6 +77,6 @@ def _short(number: float) -> str:
     return repr(round(number, 4))
 
 
-SVG = ExportKind("svg", "drawing of the networks", (".svg",), _figure)
-PDF = ExportKind("pdf", "drawing of the networks", (".pdf",), _figure)
-LATEX = ExportKind("latex", "drawing of the networks in TikZ", (".tex",), _tikz)
+SVG = ExportKind("svg", "drawing of the networks", (".svg",), _figure, takes=("part",))
+PDF = ExportKind("pdf", "drawing of the networks", (".pdf",), _figure, takes=("part",))
+LATEX = ExportKind("latex", "drawing of the networks in TikZ", (".tex",), _tikz, takes=("part",))

@@ -27,15 +27,18 @@ def export(
     frequencies: Sequence[float] | None = None,
     indices: Mapping[str, Index] | None = None,
     title: str = "",
+    part: str = "",
+    speed: float | None = None,
     overwrite: bool = False,
 ) -> Any:
     """A design in the format of another program; `inerter.EXPORTS` lists the kinds.
 
-    `of` is a vehicle without free values, or what the kind takes besides: a network (drawings, `spice`), a
+    `of` is a vehicle without free values, or what the kind takes besides: a network (drawings, `spice`, FMUs), a
     `LinearSystem` (linear models), a `Trajectory` (tables). Returns the object of Python for `control` and `scipy`; the
     path for a file that was written to `path`, or without `path` what it would hold, text or bytes. `inputs` and
     `outputs` choose among those of the linear model, `form` is "state-space" or "descriptor"; `frequencies` [Hz] and
-    `indices` by name are for tables.
+    `indices` by name are for tables. `part` is the name of a strut that is exported alone (FMUs, `spice`, drawings);
+    with `speed` [m/s] an FMU has one road, which reaches each axle distance / speed later.
 
     A file is written whole or not at all, and an existing one replaced with `overwrite` only.
 
@@ -48,9 +51,11 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
-    request = ExportSpec(of, to, inputs, outputs, linear, form, frequencies, indices, title=title)
+    request = ExportSpec(
+        of, to, inputs, outputs, linear, form, frequencies, indices, title=title, part=part, speed=speed
+    )
     if path is None:
-        return kind.make(request, kind.suffixes[0] if kind.is_file else "")
+        return kind.contents(request, kind.suffixes[0] if kind.is_file else "")
     contents = export_contents(kind, request, path)
     with atomic_export(path, ExportError, overwrite=overwrite) as draft:
         draft.write_bytes(contents)
@@ -60,7 +65,7 @@ def export(
 def export_contents(kind: ExportKind, request: ExportSpec, path: str | os.PathLike[str]) -> bytes:
     """The contents of a file of that name; raises `ExportError` for a suffix that the kind does not have."""
     check_suffix(kind, path)
-    made: str | bytes = kind.make(request, Path(path).suffix.lower())
+    made: str | bytes = kind.contents(request, Path(path).suffix.lower())
     return made.encode() if isinstance(made, str) else made
 
 

@@ -49,7 +49,14 @@ Quantities = tuple[NamedQuantity, ...]
 
 @dataclass(frozen=True, eq=False)
 class NamedSystem:
-    """E x' = A x + B u, y = C x + D u, with names and units; without `E`, x' = A x + B u."""
+    """E x' = A x + B u, y = C x + D u, with names and units; without `E`, x' = A x + B u.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> model = it.named_system(car, "road", ["tyre_load"])
+    >>> model.A.shape, [each.label for each in model.outputs]
+    ((4, 4), ['tyre_load [N]'])
+    """
 
     A: Matrix
     B: Matrix
@@ -125,6 +132,12 @@ def named_system(
 
     Raises `ExportError` for friction or gaps without `linear`, or for a system with delays; `DesignError` if a value is
     free, `MechanismError` or `LinearSystemError` as `state_space` does.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> system = it.named_system(car, "road", ["sprung_acceleration"])
+    >>> [each.label for each in (*system.inputs, *system.outputs)]
+    ['road_velocity [m/s]', 'sprung_acceleration [m/s^2]']
     """
     if form not in FORMS:
         raise ExportError(f"Unknown form {form!r}; available: {', '.join(FORMS)}.")

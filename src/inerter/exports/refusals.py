@@ -1,4 +1,4 @@
-"""What a format cannot say: refused in one sentence, or told in a note beside the model."""
+"""Refusals and notes: properties of a design that the format of an export has no means to state."""
 
 from __future__ import annotations
 

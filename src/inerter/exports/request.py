@@ -1,4 +1,4 @@
-"""What is exported, and the options with which it is: each kind of export takes of it what its format can say."""
+"""Requests for an export: an object, a kind and options; each kind reads the options that its format has."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from inerter.networks.transform import linearise
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.linear import LinearSystem
 from inerter.validation import is_number
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, Strut
 from inerter.vehicle.vehicle import Vehicle
 
 Exportable = Vehicle | Network | LinearSystem | Trajectory
@@ -27,7 +27,13 @@ Exportable = Vehicle | Network | LinearSystem | Trajectory
 
 @dataclass(frozen=True, eq=False)
 class ExportSpec:
-    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted."""
+    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted.
+
+    >>> import inerter as it
+    >>> spec = it.ExportSpec(it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), to="spice")
+    >>> list(spec.networks)
+    ['strut']
+    """
 
     of: Exportable
     to: str
@@ -39,6 +45,8 @@ class ExportSpec:
     indices: Mapping[str, Index] | None = None  # by name, whose responses are wanted too
     conventions: str = "exact"  # of those
     title: str = ""
+    part: str = ""  # the strut that is exported alone
+    speed: float | None = None  # of a vehicle whose axles have one road [m/s]
 
     def system(self, form: str = "") -> NamedSystem:
         """The linear model, in the form that was asked for, or else in `form`."""
@@ -74,8 +82,17 @@ class ExportSpec:
         """The network of every mount, or the network itself, by name; raises `ExportError` if there is none."""
         if isinstance(self.of, Network):
             return {"strut": self.of}
-        mechanism = self._vehicle("a network or a vehicle").mechanism()
-        return {mount.name: mount.network for mount in mechanism.struts}
+        struts = self._vehicle("a network or a vehicle").mechanism().struts
+        return {strut.name: strut.network for strut in ((self.strut,) if self.part else struts)}
+
+    @cached_property
+    def strut(self) -> Strut:
+        """The strut that is exported alone; raises `ExportError` for a name that none has."""
+        struts = self._vehicle("a vehicle").mechanism().struts
+        for strut in struts:
+            if strut.name == self.part:
+                return strut
+        raise ExportError(f"Unknown part {self.part!r}; available: {', '.join(one.name for one in struts)}.")
 
     def linear_networks(self) -> tuple[dict[str, Network], list[str]]:
         """The networks without friction and gaps, and what was left out, in words.
@@ -106,7 +123,7 @@ class ExportSpec:
         return np.asarray(given, dtype=float)
 
     def _vehicle(self, wanted: str) -> Vehicle:
-        """What is exported, as a vehicle; raises `ExportError` if it is none."""
+        """The exported object as a vehicle; raises `ExportError` if it is none."""
         if isinstance(self.of, type) or not callable(getattr(self.of, "mechanism", None)):
             raise ExportError(f"An export to {self.to} is one of {wanted}, got {type(self.of).__name__}.")
         found: Any = self.of

@@ -93,4 +93,4 @@ def admittance_netlist(text: str, name: str, frequencies: Mapping[str, float]) -
     return "\n".join([text, f"xs upper 0 {name}", "iforce 0 upper dc 0 ac 1", ".options noopac", sweep, ".end", ""])
 
 
-SPICE = ExportKind("spice", "netlists of the struts, force as current", (".cir", ".sp"), _make)
+SPICE = ExportKind("spice", "netlists of the struts, force as current", (".cir", ".sp"), _make, takes=("part",))

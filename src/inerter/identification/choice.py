@@ -59,7 +59,14 @@ class Candidate:
 
 @dataclass(frozen=True, eq=False)
 class ModelSelection:
-    """The result of `select_model`."""
+    """The result of `select_model`.
+
+    >>> import inerter as it
+    >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), sampling=500.0)
+    >>> chosen = it.select_model(rig.run(it.cosine(1e-3, 3.0), 2.0), ["ideal", "friction"], starts=8)
+    >>> chosen.name, sorted(chosen.fits)
+    ('friction', ['friction', 'ideal'])
+    """
 
     name: str
     fits: dict[str, Fit]
@@ -104,6 +111,12 @@ def select_model(
 
     Raises `IdentificationError` if no candidate can be fitted or there are no validation data; a candidate that fails
     among others is reported in `findings`.
+
+    >>> import inerter as it
+    >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), sampling=500.0)
+    >>> record = rig.run(it.cosine(1e-3, 3.0), 2.0)  # m, Hz, s
+    >>> it.select_model(record, ["ideal", "friction"], starts=8).name
+    'friction'
     """
     asked = options.replace(**changes)
     given = _models_by_name(models)

@@ -164,7 +164,15 @@ class Localisation(Statement):
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """The result of `identify`."""
+    """The result of `identify`.
+
+    >>> import inerter as it
+    >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), sampling=500.0)
+    >>> fit = it.identify(rig.run(it.cosine(1e-3, 3.0), 2.0), "friction", starts=8)
+    >>> b, f = fit.parameters["b"], fit.parameters["f"]
+    >>> fit.status.ok, abs(b.value - 113.0) < 1.0, abs(f.value - 10.0) < 0.1  # kg, N
+    (True, True, True)
+    """
 
     _repr_html_ = shown_by("inerter.report.notebook:fit_html")
 

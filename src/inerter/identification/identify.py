@@ -59,6 +59,13 @@ def identify(
 
     Raises `IdentificationError` for a model without free values or invalid options, and `RecordError` for records that
     cannot be used.
+
+    >>> import inerter as it
+    >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), sampling=500.0)
+    >>> record = rig.run(it.cosine(1e-3, 3.0), 2.0)  # m, Hz, s
+    >>> fit = it.identify(record, it.Inerter(it.free(10, 500, name="b")) | it.Friction(10.0), starts=8)
+    >>> fit.status.ok, abs(fit.parameters["b"].value - 113.0) < 1.0  # kg
+    (True, True)
     """
     asked = options.replace(**changes)
     with running_on(executor) as pool:

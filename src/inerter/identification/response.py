@@ -99,6 +99,12 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     With a load cell of `cell_bandwidth` [Hz], if that is given.
 
     Raises `DesignError` if a value is free, `LinearSystemError` unless omega holds positive frequencies [rad/s].
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> response = it.linear_response(it.Inerter(100.0), [1.0, 10.0])  # rad/s
+    >>> np.allclose(response.value, [-100.0, -10000.0])  # force over displacement [N/m]: -omega^2 b
+    True
     """
     device = model.device if isinstance(model, Rig) else model
     try:

@@ -94,7 +94,17 @@ class ResponseCheck:
 
 @dataclass(frozen=True, eq=False)
 class StagedIdentification:
-    """The result of `identify_staged`."""
+    """The result of `identify_staged`.
+
+    >>> import inerter as it
+    >>> shaft = it.Spring(1e6) | it.Damper(3200.0)
+    >>> bare, whole = (it.VirtualRig(shaft - (it.Inerter(b) | it.Friction(10.0)), sampling=500.0) for b in (1.0, 113.0))
+    >>> slow = bare.run(it.cosine(0.01, 0.5), 4.0)  # without the flywheel: m, Hz, s
+    >>> fast = whole.run(it.cosine(1e-3, 3.0), 2.0)
+    >>> found = it.identify_staged(slow, fast, starts=8)
+    >>> [element.label for element in found.device.elements()]
+    ['ks', 'cs', 'gap', 'b', 'f']
+    """
 
     parameters: dict[str, Parameter]
     identifiable: dict[str, Identifiability]
@@ -146,6 +156,16 @@ def identify_staged(
 
     Raises `IdentificationError` where the friction is not identifiable or the model does not fit; `RecordError` and
     `IdentificationError` as `identify` does. Source: Wang and Su (2008), section 4.
+
+    >>> import inerter as it
+    >>> shaft = it.Spring(1e6) | it.Damper(3200.0)
+    >>> bare, whole = (it.VirtualRig(shaft - (it.Inerter(b) | it.Friction(10.0)), sampling=500.0) for b in (1.0, 113.0))
+    >>> slow = bare.run(it.cosine(0.01, 0.5), 4.0)  # without the flywheel: m, Hz, s
+    >>> fast = whole.run(it.cosine(1e-3, 3.0), 2.0)
+    >>> found = it.identify_staged(slow, fast, starts=8)
+    >>> b, f = found.parameters["b"], found.parameters["f"]
+    >>> found.status.ok, abs(b.value - 113.0) < 1.0, abs(f.value - 10.0) < 0.1  # kg, N
+    (True, True, True)
     """
     device = _validate_model(MODELS["ball-screw"] if model is None else model, inertance, shaft_inertance)
     law = friction_law(friction, shaft_inertance or 0.0)

@@ -60,6 +60,12 @@ class VirtualRig:
     0.02 kg, an encoder of 1 um; values that the paper does not print are assumptions.
 
     Raises `IdentificationError` for invalid sensor values, `DesignError` if a value of the device is free.
+
+    >>> import inerter as it
+    >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=0, sampling=500.0)  # Hz
+    >>> record = rig.run(it.cosine(1e-3, 3.0), 1.0)  # m, Hz, s
+    >>> record.duration, record.interval
+    (1.0, 0.002)
     """
 
     device: Network

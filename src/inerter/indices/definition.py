@@ -26,7 +26,13 @@ Given = Filter | LinearSystem | None
 
 
 class Combination(Enum):
-    """Combination of the outputs into one number."""
+    """Combination of the outputs into one number.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0))
+    >>> it.LoadCarrying().definition(car.mechanism()).combination is it.Combination.PEAK_GAIN
+    True
+    """
 
     SUM_OF_RMS = auto()  # r.m.s. values of the weighted outputs, added up
     ROOT_OF_SQUARES = auto()  # the root of the sum of their squares
@@ -41,6 +47,12 @@ class IndexDefinition:
 
     Raises `PerformanceIndexError` if filters are not as many as outputs, if an output is named twice, or for what is no
     excitation; `LinearSystemError` for what is no filter.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> definition = it.TyreLoad(it.Road(5e-7, 25.0)).definition(car.mechanism())
+    >>> definition.unit, [each.output for each in definition.outputs]
+    ('N', ['tyre_load'])
     """
 
     outputs: tuple[OutputWeight, ...]
@@ -171,6 +183,12 @@ def on_road(
     """Definition of an index of r.m.s. values on a road; the values are summed by default.
 
     Raises `PerformanceIndexError` if there is no road, or if `outputs`, which the mechanism gives at `where`, are none.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)).mechanism()
+    >>> index = it.SuspensionTravel(it.Road(5e-7, 25.0))
+    >>> it.on_road(index, car, (it.OutputWeight("strut_travel"),), "struts").unit
+    'm'
     """
     if isinstance(index.road, type) or not (isinstance(index.road, Road) or getattr(index.road, "is_random", False)):
         raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")

@@ -20,6 +20,15 @@ class DynamicLoadCoefficient:
 
     The static load follows from masses and levers. A tyre whose coefficient is 1/3 or more leaves the road now and
     then: the linear model, which lets tyres pull, is then no longer the whole truth.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> road = it.Road(5e-7, 25.0)
+    >>> load, coefficient = (
+    ...     it.evaluate(car, index(road), it.Norm()).value for index in (it.TyreLoad, it.DynamicLoadCoefficient)
+    ... )
+    >>> round(load / coefficient, 3) == round((250.0 + 35.0) * 9.80665, 3)  # the static load [N]
+    True
     """
 
     road: Road | Excitation

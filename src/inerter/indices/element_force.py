@@ -18,6 +18,13 @@ class ElementForce:
     """R.m.s. force of an element on a road [N]; `element` is its name, or its label where it has none.
 
     Raises `PerformanceIndexError`, where it is used, if there is no such element.
+
+    >>> import inerter as it
+    >>> car, road = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3, "coil") | it.Damper(1500.0)), it.Road(5e-7, 25.0)
+    >>> force = it.evaluate(car, it.ElementForce(road, "coil"), it.Norm()).value  # N
+    >>> stroke = it.evaluate(car, it.ElementStroke(road, "coil"), it.Norm()).value  # m
+    >>> round(force / stroke)
+    20000
     """
 
     road: Road | Excitation

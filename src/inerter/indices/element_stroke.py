@@ -18,6 +18,13 @@ class ElementStroke:
     """R.m.s. stroke of an element on a road [m]; `element` is its name, or its label where it has none.
 
     Raises `PerformanceIndexError`, where it is used, if there is no such element.
+
+    >>> import inerter as it
+    >>> car, road = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), it.Road(5e-7, 25.0)
+    >>> stroke = it.evaluate(car, it.ElementStroke(road, "c"), it.Norm())
+    >>> travel = it.evaluate(car, it.SuspensionTravel(road), it.Norm())
+    >>> round(stroke.value / travel.value, 9)  # the damper is as long as the strut
+    1.0
     """
 
     road: Road | Excitation

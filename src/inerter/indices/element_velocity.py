@@ -18,6 +18,13 @@ class ElementVelocity:
     """R.m.s. velocity across an element on a road [m/s]; `element` is its name, or its label where it has none.
 
     Raises `PerformanceIndexError`, where it is used, if there is no such element.
+
+    >>> import inerter as it
+    >>> car, road = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), it.Road(5e-7, 25.0)
+    >>> force = it.evaluate(car, it.ElementForce(road, "c"), it.Norm()).value  # N
+    >>> velocity = it.evaluate(car, it.ElementVelocity(road, "c"), it.Norm()).value  # m/s
+    >>> round(force / velocity, 6)
+    1500.0
     """
 
     road: Road | Excitation

@@ -35,7 +35,13 @@ class FormerNames:
 
 
 class Excitation(Protocol):
-    """Excitation of a mechanism by one or more sources."""
+    """Excitation of a mechanism by one or more sources.
+
+    >>> import inerter as it
+    >>> push = it.WhiteForce("push", intensity=4.0)  # N^2/Hz
+    >>> push.amplitude_density, push.is_random  # N/sqrt(Hz); what every excitation has
+    (2.0, True)
+    """
 
     @property
     def amplitude_density(self) -> float:
@@ -110,6 +116,10 @@ class WhiteForce(FormerNames):
     For a moment it is in (N m)^2/Hz.
 
     Raises `PerformanceIndexError` unless the intensity is positive and finite.
+
+    >>> import inerter as it
+    >>> it.WhiteForce("push", intensity=4.0).amplitude_density  # root of 4 N^2/Hz, a two-sided density
+    2.0
     """
 
     name: str
@@ -144,6 +154,13 @@ class GroundAcceleration(FormerNames):
     and what follows from them; a `<coordinate>_acceleration` is the absolute one.
 
     Raises `PerformanceIndexError` unless the intensity is positive and finite.
+
+    >>> import inerter as it
+    >>> strut = it.Strut("columns", it.Spring(100.0) | it.Damper(7.0), upper={"floor": 1.0}, lower=it.GROUND)
+    >>> floor = it.Mechanism(coordinates=(it.Coordinate("floor", 3.0),), struts=(strut,))
+    >>> sway = it.RandomResponse({"floor_relative_displacement": 1.0}, it.GroundAcceleration(2.0))  # (m/s^2)^2/Hz
+    >>> round(it.evaluate(floor, sway, it.Norm()).value ** 2, 9) == round(2.0 * 3.0**2 / (2 * 7.0 * 100.0), 9)
+    True
     """
 
     intensity: float
@@ -176,6 +193,12 @@ class FilteredExcitation(FormerNames):
     `filter` is a `Filter`, or a `LinearSystem` with one input and one output.
 
     Raises `PerformanceIndexError` for what is no random excitation, `LinearSystemError` for what is no filter.
+
+    >>> import inerter as it
+    >>> low_pass = it.Filter((1.0,), (0.5, 1.0))  # 1 / (0.5 s + 1)
+    >>> soft = it.FilteredExcitation(it.WhiteForce("push", intensity=4.0), low_pass)
+    >>> soft.is_random
+    True
     """
 
     excitation: Road | Excitation
@@ -230,7 +253,13 @@ class FilteredExcitation(FormerNames):
 
 @dataclass(frozen=True)
 class SingleInput(FormerNames):
-    """Single input, for gains: a force, a road's displacement, or `<road>_velocity`."""
+    """Single input, for gains: a force, a road's displacement, or `<road>_velocity`.
+
+    >>> import inerter as it
+    >>> push = it.SingleInput("sprung_force")  # of size one, at each frequency
+    >>> push.amplitude_density, push.is_random
+    (1.0, False)
+    """
 
     name: str
     amplitude_density = 1.0

@@ -21,6 +21,12 @@ class LoadCarrying:
     friction or gaps does depends on it, what a linear one does not. Source: Wang and Su (2008), eq. (6).
 
     Raises `PerformanceIndexError` unless the amplitude is positive.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(20e3) | it.Damper(6000.0)  # overdamped: the largest gain is the static one
+    >>> found = it.evaluate(it.QuarterCar(250.0, 35.0, 180e3, strut), it.LoadCarrying(), it.Norm())
+    >>> round(found.value, 9) == round(1 / 20e3 + 1 / 180e3, 9)  # m/N
+    True
     """
 
     amplitude: float | None = field(

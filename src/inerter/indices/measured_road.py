@@ -89,6 +89,14 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     on each side, or more, the road has a waviness of 2. Source: Oustaloup et al. (2000).
 
     Raises `PerformanceIndexError` unless `speed` is positive and the waviness lies between 0 and 4.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> rng, step = np.random.default_rng(0), 0.1  # m
+    >>> heights = np.cumsum(rng.normal(0.0, 1e-3, 4096))  # a random walk: waviness 2
+    >>> spectrum = it.road_spectrum(it.Profile(step * np.arange(4096), heights))
+    >>> it.measured_road(spectrum, speed=25.0).is_random
+    True
     """
     if not isinstance(spectrum, RoadSpectrum):
         raise PerformanceIndexError(f"A measured road is that of road_spectrum(profile), got {spectrum!r}.")

@@ -30,6 +30,11 @@ class RideComfort:
     of the squares. With "Wf" (motion sickness) rotations do not count.
 
     Raises `PerformanceIndexError` for another weighting.
+
+    >>> import inerter as it
+    >>> comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+    >>> comfort.symbol, comfort.unit
+    ('J1', 'm/s^2')
     """
 
     road: Road | Excitation

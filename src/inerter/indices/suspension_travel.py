@@ -18,6 +18,12 @@ class SuspensionTravel:
 
     These are the struts at one wheel each, that is, at one coordinate that a tyre carries, so that what joins two
     wheels does not count, nor does a seat; where there are none, all struts.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> slow, fast = (it.evaluate(car, it.SuspensionTravel(it.Road(5e-7, v)), it.Norm()) for v in (10.0, 40.0))  # m/s
+    >>> slow.unit, round(fast.value / slow.value, 9)
+    ('m', 2.0)
     """
 
     road: Road | Excitation

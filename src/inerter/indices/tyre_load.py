@@ -21,6 +21,11 @@ class TyreLoad:
 
     `high_pass` puts a filter s/(s + high_pass), in rad/s, on every tyre force; the paper does so for the half car.
     Source: Wang and Su (2008), eq. (5).
+
+    >>> import inerter as it
+    >>> load = it.TyreLoad(it.Road(roughness=5e-7, speed=25.0))
+    >>> load.symbol, load.unit
+    ('J3', 'N')
     """
 
     road: Road | Excitation

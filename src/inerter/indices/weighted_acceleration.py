@@ -24,6 +24,13 @@ class WeightedAcceleration:
     """A frequency-weighted acceleration and the values that ISO 2631-1:1997 makes of it.
 
     For a rotation read rad for m.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> time = np.arange(0.0, 20.0, 1e-3)  # s
+    >>> shaken = it.frequency_weight(time, np.sin(2 * np.pi * 6.0 * time), "Wk")  # 1 m/s^2 at 6 Hz
+    >>> shaken.mtvv >= shaken.rms > 0.7  # m/s^2; the weighting is nearly 1 there
+    True
     """
 
     rms: float  # [m/s^2], 6.1

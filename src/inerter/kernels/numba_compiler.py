@@ -43,7 +43,7 @@ def compile_tuned(
 ) -> Callable[..., Any]:
     """Compile a function at once for a given signature, and keep it in a cache that may fail."""
     settings: Any = numba.config
-    empty = folder is not None and not any(folder.iterdir())
+    empty = folder is not None and not any(folder.glob("*"))  # nor is there anything if somebody has deleted it
     kept = _cache_in(folder, function)
     if empty and kept:
         announce()

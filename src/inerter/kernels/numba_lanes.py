@@ -29,7 +29,7 @@ _LINE = 64  # bytes of a line of the processor's cache
 
 
 class LanesType(types.Type):  # type: ignore[misc]
-    """As many numbers as there are lanes; a number alone is one that is equal in all of them."""
+    """A vector of one number for each lane; a scalar stands for a vector of equal numbers."""
 
     def __init__(self, width: int) -> None:
         super().__init__(name=f"Lanes({width})")

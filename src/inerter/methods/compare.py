@@ -42,7 +42,14 @@ class Difference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two designs by one index: `difference` is first less second, so negative where the first is better."""
+    """Two designs by one index: `difference` is first less second, so negative where the first is better.
+
+    >>> import inerter as it
+    >>> softer, plain = (it.QuarterCar(250.0, 35.0, 180e3, it.Spring(k) | it.Damper(1500.0)) for k in (10e3, 20e3))
+    >>> two = it.compare(softer, plain, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> two.percent < 0, two.is_tie  # per cent of the second; negative where the first is better
+    (True, False)
+    """
 
     _repr_html_ = shown_by("inerter.report.notebook:comparison_html")
 

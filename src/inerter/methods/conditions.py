@@ -40,6 +40,11 @@ class Condition:
     vehicle need not have all that is named, as one of several designs that are compared.
 
     Raises `PerformanceIndexError` for a share that is not positive, or what is neither a road nor numbers of one.
+
+    >>> import inerter as it
+    >>> loaded = it.Condition(share=0.7, vehicle={"sprung_mass": 320.0}, road={"speed": 30.0}, name="loaded")  # kg, m/s
+    >>> loaded.share
+    0.7
     """
 
     share: float = 1.0

@@ -32,6 +32,10 @@ class MultisineExcitation:
     1 / `lowest` seconds. `rms` is in m for a road and in N for a force; None stands for that of Wang and Su (2008).
 
     Raises `PerformanceIndexError` unless all are positive and lowest < highest.
+
+    >>> import inerter as it
+    >>> it.MultisineExcitation(rms=2e-3, lowest=0.5, highest=20.0).highest  # m, Hz, Hz
+    20.0
     """
 
     rms: float | None = None
@@ -77,6 +81,10 @@ class NoiseExcitation:
     the paper, 3.162 mm for a road.
 
     Raises `PerformanceIndexError` unless all are positive and the period is a whole number, four or more, of intervals.
+
+    >>> import inerter as it
+    >>> it.NoiseExcitation(rms=2e-3, interval=1e-3).is_held  # m, s
+    True
     """
 
     rms: float | None = None

@@ -45,6 +45,12 @@ class Estimate:
     """Value of an index, with its uncertainty and status.
 
     What random inputs make of it is its `standard_error`; all other errors are among `error_sources`.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> found = it.evaluate(car, it.LoadCarrying(), it.Norm())
+    >>> found.unit, found.status.ok, found.standard_error, found.value == found.peaks[0].gain
+    ('m/N', True, None, True)
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:estimate_html")
@@ -124,7 +130,14 @@ class MethodWithKernels(Protocol):
 
 
 class NonlinearitySupport(Enum):
-    """Nonlinearities that a method models, in ascending order."""
+    """Nonlinearities that a method models, in ascending order.
+
+    >>> import inerter as it
+    >>> it.Norm().nonlinearity_support is it.NonlinearitySupport.NEITHER
+    True
+    >>> it.ExpectedValue().nonlinearity_support is it.NonlinearitySupport.BOTH
+    True
+    """
 
     NEITHER = auto()  # friction is left out, gaps are closed
     FRICTION = auto()  # gaps are refused
@@ -223,6 +236,13 @@ def evaluate_many(
 
     Raises `DesignError` if a free value is missing, unknown, not positive or not finite, or if lengths differ; and
     what `evaluate` raises.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
+    >>> road = it.Road(5e-7, 25.0)
+    >>> values = it.evaluate_many(car, [it.RideComfort(road), it.TyreLoad(road)], {"c": [1e3, 2e3, 4e3]}, it.Norm())
+    >>> values.shape  # designs x indices
+    (3, 2)
     """
     several = [indices] if not isinstance(indices, Sequence) else list(indices)
     for index in several:

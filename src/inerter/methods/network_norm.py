@@ -189,7 +189,7 @@ class NetworkIndex:
             return None
         numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
         variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
-        assert lower.size == upper.size == len(names), "each free value has a name of its own"
+        assert lower.size == upper.size == len(names), "names of free values are unique"
         is_regular = port.weights.size == len(self.functions)
         return IndexOverNetwork(self.definition, variables, program.program, port, (lower, upper), is_regular)
 

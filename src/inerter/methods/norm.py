@@ -29,6 +29,12 @@ class Norm(FormerMethodNames):
     Pade approximant of the wheelbase delay, and tyre loads over s + 2 pi rad/s where the road arrives at two axles.
 
     Raises `PerformanceIndexError` for other conventions.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(181.75, 25.0, 120e3, it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52))
+    >>> found = it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.Norm())
+    >>> round(found.value, 4), found.unit  # Wang and Su (2008), Table 1
+    (2.4281, 'm/s^2')
     """
 
     conventions: str = "exact"

@@ -43,6 +43,14 @@ class StatisticalLinearisation(FormerMethodNames):
 
     Raises `PerformanceIndexError` for other conventions; where it is used, for a gap with play, and for a peak gain
     with friction whose index says no amplitude.
+
+    >>> import inerter as it
+    >>> strut = it.Strut("strut", it.Damper(1.0) | it.Friction(3.0), upper={"mass": 1.0}, lower=it.GROUND)
+    >>> mass = it.Mechanism((it.Coordinate("mass", 1.0),), (strut,), forces=(it.Force("push", {"mass": 1.0}),))
+    >>> index = it.RandomResponse({"mass_velocity": 1.0}, it.WhiteForce("push", intensity=50.0))
+    >>> sigma = it.evaluate(mass, index, it.StatisticalLinearisation()).value  # m/s
+    >>> round(2 * sigma**2 * (1.0 + (2 / 3.141592653589793) ** 0.5 * 3.0 / sigma), 6)  # 2 m c sigma^2 = S
+    50.0
     """
 
     conventions: str = "exact"

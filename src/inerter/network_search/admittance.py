@@ -44,6 +44,13 @@ class AdmittanceResult:
 
     `n_converged` of `n_starts` searches at the highest degree ended at this value; it is the best one found, which is
     not proved to be the lowest.
+
+    >>> import inerter as it
+    >>> place = it.Spring(60e3) | it.any_network(1, dampers=(10, 1e6))
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, strut=place)
+    >>> best = it.optimise_admittance(car, it.RideComfort(it.Road(5e-7, 25.0)), degree=0)  # a damper [N s/m]
+    >>> round(best.numerator[0] / best.denominator[0], 6) == round(best.network().damping, 6)
+    True
     """
 
     value: float
@@ -135,13 +142,13 @@ def optimise_admittance(
     except SynthesisError:  # the one that a valid request can have
         raise DesignError(
             f"{plan.index.symbol} is infinite for all admittances up to degree {degree} that were tried. Evaluate the "
-            f"design with a damper in the place of the free network, which says why, or give another index."
+            f"design with a damper instead of the free network to see the reason, or give another index."
         ) from None
     numerator, denominator = np.array(found.numerator), np.array(found.denominator)
     for factor, limit in _LIMITS.items():
         if objective.value(factor * numerator, denominator) <= found.value * (1.0 + _SAME):
             raise DesignError(
-                f"No admittance is the best one: {plan.index.symbol} is at least as low with {limit} in the place of "
+                f"No admittance is the best one: {plan.index.symbol} is at least as low with {limit} instead of "
                 f"the free network. Give another index, or use search(...), whose bounds exclude that."
             )
     return AdmittanceResult(
@@ -166,15 +173,15 @@ def _compile_index(plan: SearchPlan) -> NetworkIndex:
         reason = f"the design has other free values ({', '.join(sorted(others))}); give them as numbers"
     elif is_composite(plan.index):
         reason = f"{plan.index.symbol} is computed from several indices; give one of them"
-    elif plan.compiled is None:
+    elif plan.compiled_index is None:
         reason = (
             f"{plan.index.symbol} has a road spectrum that is no fraction in s, or a road that reaches several axles "
             f"one after the other; give a standard road and a vehicle with one axle"
         )
-    elif plan.compiled.definition.is_peak:
+    elif plan.compiled_index.definition.is_peak:
         reason = f"{plan.index.symbol} is a peak gain; give an index of r.m.s. values"
     else:
-        return plan.compiled
+        return plan.compiled_index
     raise DesignError(f"The best admittance cannot be searched: {reason}, or use search(...).")
 
 
@@ -182,7 +189,7 @@ class _AdmittanceIndex:
     """An index over numerator and denominator of an admittance, highest power of s first."""
 
     def __init__(self, compiled: NetworkIndex) -> None:
-        self.compiled = compiled
+        self.compiled_index = compiled
         self._prepared: dict[tuple[int, int, int], tuple[Program, Port | None]] = {}
 
     def value(self, numerator: Array, denominator: Array) -> float:
@@ -211,7 +218,7 @@ class _AdmittanceIndex:
     def _prepare(self, *sizes: int) -> tuple[Program, Port | None]:
         if sizes not in self._prepared:
             program = admittance_program(*sizes)
-            self._prepared[sizes] = program.program, self.compiled.port(program)  # type: ignore[index]
+            self._prepared[sizes] = program.program, self.compiled_index.port(program)  # type: ignore[index]
         return self._prepared[sizes]  # type: ignore[index]
 
     def scales(self) -> tuple[float, float]:
@@ -220,7 +227,7 @@ class _AdmittanceIndex:
         best = int(np.argmin(values)) if np.isfinite(values).any() else _DAMPERS.size // 2
         damping = float(_DAMPERS[best])
         sizes = []
-        for function in self.compiled.functions:
+        for function in self.compiled_index.functions:
             high, _ = function.rounded_coefficients
             sizes += [abs(root) for root in np.roots((high[0] + damping * high[1])[::-1]) if root != 0.0]
         return damping, float(np.exp(np.mean(np.log(sizes)))) if sizes else 1.0

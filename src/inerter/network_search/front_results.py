@@ -36,7 +36,15 @@ class FrontDesign:
 
 @dataclass(frozen=True, eq=False)
 class FrontNetwork:
-    """A point of a front: a network with its values, and the values of the indices."""
+    """A point of a front: a network with its values, and the values of the indices.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.any_network(1, dampers=(100, 1e5)))
+    >>> road = it.Road(5e-7, 25.0)
+    >>> point = it.search(car, (it.RideComfort(road), it.TyreLoad(road)), it.Norm(), points=3).front[0]
+    >>> point.layout, len(point.values)
+    ('c1', 2)
+    """
 
     topology: Topology
     layout: str
@@ -82,6 +90,13 @@ class NetworkFront:
     is on them where it gains more than 1e-4 of the range of the indices on all of fewer elements. `searches` are the
     rankings for each index. `n_bounded` networks were not searched between their single optima, since even the best
     values in each index, taken together, are no better than the front.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.any_network(1, dampers=(100, 1e5)))
+    >>> road = it.Road(5e-7, 25.0)
+    >>> front = it.search(car, (it.RideComfort(road), it.TyreLoad(road)), it.Norm(), points=3)
+    >>> front.symbols, front.units, front.networks
+    (('J1', 'J3'), ('m/s^2', 'N'), ('c1',))
     """
 
     symbols: tuple[str, ...]

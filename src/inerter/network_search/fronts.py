@@ -54,16 +54,16 @@ class FrontPlan:
         return self.plans[0].topologies
 
     @cached_property
-    def compiled(self) -> tuple[NetworkIndex, NDArray[np.int64]] | None:
+    def compiled_index(self) -> tuple[NetworkIndex, NDArray[np.int64]] | None:
         """The indices as one, and the index to which each group belongs; None where the search is not compiled."""
-        several = [plan.compiled for plan in self.plans if plan.compiled is not None]
+        several = [plan.compiled_index for plan in self.plans if plan.compiled_index is not None]
         if len(several) < len(self.plans) or any(one.is_peak for one in several):
             return None
         return join_indices(several)
 
     def kernels(self) -> list[Any]:
         """Compiled code that the search calls."""
-        more = [] if self.compiled is None else [indices]
+        more = [] if self.compiled_index is None else [indices]
         return list(dict.fromkeys([*(kernel for plan in self.plans for kernel in plan.kernels()), *more]))
 
 
@@ -151,13 +151,13 @@ def front_group(plan: FrontPlan, scale: FrontScale, group: Iterable[FrontTask]) 
 
 
 def _points_compiled(plan: FrontPlan, scale: FrontScale, task: FrontTask) -> NetworkPoints:
-    assert plan.compiled is not None
-    joined, criterion = plan.compiled
+    assert plan.compiled_index is not None
+    joined, criterion = plan.compiled_index
     first, size = plan.plans[0], task.topology.size
     network, names = first.network(task.topology), task.topology.names(first.taken_names)
     lower, upper = np.array(first.ends(task.topology)).T
     over = joined.over(network, lower, upper)
-    each = [one.compiled.over(network, lower, upper) for one in plan.plans if one.compiled is not None]
+    each = [one.compiled_index.over(network, lower, upper) for one in plan.plans if one.compiled_index is not None]
     if over is None or any(one is None for one in each):
         return NetworkPoints(task.topology, reason="an index is infinite for all values")
     spread = np.log(upper / lower)
@@ -289,12 +289,12 @@ def _single_optima(plan: FrontPlan, searches: Sequence[SearchResult]) -> list[_S
 
 def _all_values(plan: FrontPlan, own: Sequence[FoundNetwork]) -> Array:
     """Values of all indices at the best values in each (optima, indices)."""
-    if plan.compiled is not None:
+    if plan.compiled_index is not None:
         first = plan.plans[0]
         network, (lower, upper) = first.network(own[0].topology), np.array(first.ends(own[0].topology)).T
         names = own[0].topology.names(first.taken_names)
         points = np.array([[one.parameters[name] for name in names] for one in own])
-        over = [one.compiled.over(network, lower, upper) for one in plan.plans if one.compiled is not None]
+        over = [one.compiled_index.over(network, lower, upper) for one in plan.plans if one.compiled_index is not None]
         return np.column_stack([np.full(len(own), np.inf) if one is None else one.values(points) for one in over])
     asked = [one.index for one in plan.plans]
     return np.array([[estimate_of(one.design, index, one.plan.method).value for index in asked] for one in own])
@@ -311,7 +311,7 @@ def _scale(plan: FrontPlan, ends: Sequence[_SingleOptima]) -> FrontScale | None:
     if not traded.any():
         return None
     size = np.where(traded, size, np.abs(ideal))
-    scale = FrontScale(ideal, size, np.zeros((0, count)), plan.compiled is not None)
+    scale = FrontScale(ideal, size, np.zeros((0, count)), plan.compiled_index is not None)
     if count == 3:
         steps = int(np.ceil(0.5 * (np.sqrt(8.0 * plan.points + 1.0) - 3.0)))
         shares = [one for one in product(range(steps + 1), repeat=3) if sum(one) == steps]

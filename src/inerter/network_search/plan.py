@@ -48,7 +48,7 @@ class SearchPlan:
     seed: int
     starts: int | None
     place: FreeNetwork
-    compiled: NetworkIndex | None  # None: by `optimise`
+    compiled_index: NetworkIndex | None  # None: by `optimise`
 
     @cached_property
     def topologies(self) -> list[Topology]:
@@ -58,7 +58,7 @@ class SearchPlan:
     def groups(self) -> list[tuple[Topology, ...]]:
         """The networks in groups, those with the most elements first, since they take longest."""
         several = self.topologies[::-1]
-        size = _GROUP if self.compiled is not None else 1
+        size = _GROUP if self.compiled_index is not None else 1
         return [tuple(several[i : i + size]) for i in range(0, len(several), size)]
 
     @cached_property
@@ -98,7 +98,7 @@ class SearchPlan:
 
     def kernels(self) -> list[Any]:
         """Compiled code that the search calls."""
-        return [] if self.compiled is None else [network_kernel(self.compiled.definition)]
+        return [] if self.compiled_index is None else [network_kernel(self.compiled_index.definition)]
 
 
 def plan_search(
@@ -138,7 +138,7 @@ def plan_search(
         definition, other = (index.definition(m) for m in (mechanism, sprung.mechanism()))  # type: ignore[union-attr]
         if definition.outputs != other.outputs:  # the index depends on which networks carry weight
             return plan
-        return replace(plan, compiled=network_index(mechanism, definition, PLACE))
+        return replace(plan, compiled_index=network_index(mechanism, definition, PLACE))
     except InerterError:  # `optimise` says which networks have no index
         return plan
 
@@ -167,7 +167,9 @@ def _probe(place: FreeNetwork) -> Element:
 
 def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:
     """Optima of some networks; a network that fails says why."""
-    one: Callable[[SearchPlan, Topology], SearchedNetwork] = _search_compiled if plan.compiled else _search_by_optimise
+    one: Callable[[SearchPlan, Topology], SearchedNetwork] = (
+        _search_compiled if plan.compiled_index else _search_by_optimise
+    )
     found = []
     for topology in group:
         try:
@@ -183,16 +185,18 @@ def start_samples(count: int, size: int, seed: int) -> Array:
 
 
 def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
-    assert plan.compiled is not None
+    assert plan.compiled_index is not None
     network = plan.network(topology)
     lower, upper = np.array(plan.ends(topology)).T
     starts = plan.starts or _STARTS * topology.size
-    found = plan.compiled.search(network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed))
+    found = plan.compiled_index.search(network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed))
     if found is None:  # for an index that is infinite, or zero, whatever the values
         return _search_by_optimise(plan, topology)
     if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
         starts *= _MORE
-        found = plan.compiled.search(network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed))
+        found = plan.compiled_index.search(
+            network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed)
+        )
         assert found is not None
     values, points = found.values, found.points
     if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
@@ -201,7 +205,7 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
         if np.isfinite(estimate.value):
             return _search_by_optimise(plan, topology)
         return SearchedNetwork(topology, starts, reason=_infinite_reason(topology, estimate.status))
-    best = _first_confirmed(plan, topology, values, points) if plan.compiled.is_peak else int(np.argmin(values))
+    best = _first_confirmed(plan, topology, values, points) if plan.compiled_index.is_peak else int(np.argmin(values))
     if best is None:
         return _search_by_optimise(plan, topology)
     agree = int(np.sum(np.abs(values - values[best]) <= values[best] * AGREEMENT))

@@ -22,6 +22,11 @@ class RealInerter:
 
     Source: Wang and Su (2008), Figure 6b, without backlash. The default values are those of the soft shaft of their
     Table 2, which their rig has too.
+
+    >>> import inerter as it
+    >>> device = it.RealInerter(stiffness=1e6, damping=3200.0)  # N/m and N s/m of the shaft
+    >>> device.stiffness / device.damping  # 1/s
+    312.5
     """
 
     stiffness: float = 1e6
@@ -36,7 +41,15 @@ class RealInerter:
 
 @dataclass(frozen=True, eq=False)
 class RealNetwork:
-    """Values of a network with its best values: ideal, elastic, and with friction [N] in every inerter."""
+    """Values of a network with its best values: ideal, elastic, and with friction [N] in every inerter.
+
+    >>> import inerter as it
+    >>> place = it.Spring(60e3) | it.any_network(1, inerters=(1, 1e3)) | it.Damper(2000.0)
+    >>> found = it.search(it.QuarterCar(250.0, 35.0, 180e3, place), it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> real = it.with_friction_and_elasticity(found.ranking[:1], it.StatisticalLinearisation(), frictions=[10.0])
+    >>> list(real[0].with_friction), real[0].ideal == found.ranking[0].value  # N; m/s^2
+    ([10.0], True)
+    """
 
     found: FoundNetwork
     elastic: Estimate
@@ -78,6 +91,13 @@ def optimise_with_real_inerters(
     `StatisticalLinearisation`, finds the values; their bounds are those of the search.
 
     Raises what `optimise` raises, such as `DesignError` for a negative friction.
+
+    >>> import inerter as it
+    >>> place = it.Spring(60e3) | it.any_network(1, inerters=(1, 1e3)) | it.Damper(2000.0)
+    >>> found = it.search(it.QuarterCar(250.0, 35.0, 180e3, place), it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> real = it.optimise_with_real_inerters(found.ranking[0], it.StatisticalLinearisation(), friction=10.0, starts=1)
+    >>> sorted(real.parameters), real.unit
+    (['b1'], 'm/s^2')
     """
     plan = found.plan
     design = _with_real_inerters(plan.design(found.topology), found, real or RealInerter(), friction)
@@ -98,6 +118,14 @@ def with_friction_and_elasticity(
     `method` evaluates the designs with friction [N], the method of the search those without.
 
     Raises what `evaluate` raises, such as `DesignError` for a negative friction.
+
+    >>> import inerter as it
+    >>> place = it.Spring(60e3) | it.any_network(1, inerters=(1, 1e3)) | it.Damper(2000.0)
+    >>> found = it.search(it.QuarterCar(250.0, 35.0, 180e3, place), it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> method = it.StatisticalLinearisation()
+    >>> real = it.with_friction_and_elasticity(found.ranking[:1], method, frictions=[10.0, 100.0])
+    >>> [sorted(each.with_friction) for each in real]  # N
+    [[10.0, 100.0]]
     """
     shaft = real or RealInerter()
     return [

@@ -34,6 +34,13 @@ class FoundNetwork:
 
     `simpler` is the layout of a smaller network that does as well, within 0.1 %: one of equal admittance, or what is
     left without the elements at their bounds. `like` are all networks of equal admittance.
+
+    >>> import inerter as it
+    >>> place = it.any_network(1, springs=(1e3, 1e6), dampers=(100, 1e5))  # N/m, N s/m
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | place)
+    >>> best = it.search(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm()).ranking[0]
+    >>> best.layout, best.n_elements, best.unit, list(best.parameters)
+    ('c1', 1, 'm/s^2', ['c1'])
     """
 
     topology: Topology
@@ -71,6 +78,13 @@ class SearchResult:
 
     Networks whose values differ by less than 1e-8 are ranked by number of elements, then by layout. `failed` are
     networks without a value, each with the reason.
+
+    >>> import inerter as it
+    >>> place = it.any_network(1, springs=(1e3, 1e6), dampers=(100, 1e5))  # N/m, N s/m
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | place)
+    >>> found = it.search(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> found.n_networks, found.ranking[0].value <= found.ranking[-1].value, found.unit
+    (2, True, 'm/s^2')
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:search_html")
@@ -165,7 +179,7 @@ def _share_within_classes(
         for topology in members:
             like[topology] = tuple(other for other in members if other != topology)
             own = known[topology]
-            if plan.compiled is None or known[best].value >= own.value * (1.0 - TIED):
+            if plan.compiled_index is None or known[best].value >= own.value * (1.0 - TIED):
                 continue
             try:
                 values = transform_values(best, known[best].values, topology)

@@ -40,6 +40,11 @@ class FreeNetwork(Network):
     vehicle with a free network.
 
     Raises `NetworkError` for bounds or numbers that are not valid.
+
+    >>> import inerter as it
+    >>> place = it.any_network(2, dampers=(10, 1e6), inerters=(1, 1e3))  # N s/m, kg
+    >>> isinstance(place, it.FreeNetwork), len(list(place.topologies()))  # c, b, c | b, c - b
+    (True, 4)
     """
 
     max_elements: int

@@ -53,6 +53,11 @@ def hinf_norm(system: LinearSystem) -> HInfinity:
     rounding hides the damping of the highest resonance, the value is nan.
 
     Raises `LinearSystemError` if inputs of one source arrive at different times.
+
+    >>> import inerter as it
+    >>> lag = it.LinearSystem(A=[[-2.0]], B=[[1.0]], C=[[1.0]], D=[[0.0]])  # 1 / (s + 2)
+    >>> round(it.hinf_norm(lag).value, 12), it.hinf_norm(lag).peaks[0].omega
+    (0.5, 0.0)
     """
     check_system(system)
     merged = _merge(system)

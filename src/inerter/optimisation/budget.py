@@ -57,6 +57,14 @@ class BreakEven:
     nan, with the reason in `status`, where the design is better (or worse) at every value between `bounds`. All are in
     SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
     nan for a method that models friction and has none. `status` is no better than the worst of the compared estimates.
+
+    >>> import inerter as it
+    >>> good = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0, name="valve"))
+    >>> poor = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(800.0))
+    >>> load = it.TyreLoad(it.Road(5e-7, 25.0))
+    >>> found = it.break_even(good, poor, load, parameter="valve", method=it.Norm(), bounds=(200.0, 2600.0))
+    >>> round(found.value, 3), found.unit  # there both are the same
+    (800.0, 'N s/m')
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:break_even_html")

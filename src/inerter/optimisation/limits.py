@@ -33,7 +33,13 @@ class Sense(Enum):
 
 @dataclass(frozen=True)
 class Limit:
-    """A constraint of an optimisation: `of` is an index, `value` is in its SI unit."""
+    """A constraint of an optimisation: `of` is an index, `value` is in its SI unit.
+
+    >>> import inerter as it
+    >>> limit = it.at_most(it.TyreLoad(it.Road(5e-7, 25.0)), 500.0)
+    >>> isinstance(limit, it.Limit), str(limit)
+    (True, 'dynamic tyre load at most 500 N')
+    """
 
     of: IndexLike
     sense: Sense
@@ -54,17 +60,32 @@ class Limit:
 
 
 def at_most(index: IndexLike, value: float) -> Limit:
-    """Constraint that an index is at most `value` [its SI unit], separately for each of several struts or tyres."""
+    """Constraint that an index is at most `value` [its SI unit], separately for each of several struts or tyres.
+
+    >>> import inerter as it
+    >>> str(it.at_most(it.SuspensionTravel(it.Road(5e-7, 25.0)), 0.01))  # m
+    'suspension travel at most 10 mm'
+    """
     return Limit(index, Sense.AT_MOST, value)
 
 
 def at_least(index: IndexLike, value: float) -> Limit:
-    """Constraint that an index is at least `value` [its SI unit], separately for each of several struts or tyres."""
+    """Constraint that an index is at least `value` [its SI unit], separately for each of several struts or tyres.
+
+    >>> import inerter as it
+    >>> str(it.at_least(it.TyreLoad(it.Road(5e-7, 25.0)), 300.0))
+    'dynamic tyre load at least 300 N'
+    """
     return Limit(index, Sense.AT_LEAST, value)
 
 
 def equal(index: IndexLike, value: float) -> Limit:
-    """Constraint that an index equals `value` [its SI unit], separately for each of several struts or tyres."""
+    """Constraint that an index equals `value` [its SI unit], separately for each of several struts or tyres.
+
+    >>> import inerter as it
+    >>> str(it.equal(it.TyreLoad(it.Road(5e-7, 25.0)), 300.0))
+    'dynamic tyre load equal to 300 N'
+    """
     return Limit(index, Sense.EQUAL, value)
 
 

@@ -67,6 +67,14 @@ class Optimum:
     `gain_over_linear`, for methods other than `Norm`: comparison of the optimum with the best linear design, by the
     same method on the same roads (a negative difference is an improvement); None where linear analysis does not
     determine all values.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
+    >>> best = it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> list(best.parameters), best.unit, best.n_converged <= best.n_starts
+    (['c'], 'm/s^2', True)
+    >>> best.design.free_values()
+    {}
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:optimum_html")
@@ -144,6 +152,12 @@ def optimise(
 
     Raises `PerformanceIndexError` for an invalid constraint, `DesignError` without free values, for a free value
     without effect in the method, or if `starts` is not a positive integer; and the errors of `evaluate`.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(181.75, 25.0, 120e3, it.Spring(120e3) | it.Damper(it.free(100, 1e5, name="c")))
+    >>> best = it.optimise(car, it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.Norm())
+    >>> round(best.value, 3), round(best.parameters["c"])  # m/s^2, N s/m: Wang and Su (2008), Table 1
+    (2.988, 4981)
     """
     check_request(vehicle, index, method)
     free = check_free(vehicle)

@@ -28,6 +28,11 @@ class Paper:
 
     `recompute`, `write`, `data` and `text` name functions, as "package.module:function", of the module concerned, so
     that the registry entry itself imports nothing.
+
+    >>> import inerter as it
+    >>> paper = it.PAPERS["wang-su-2008"]
+    >>> isinstance(paper, it.Paper), "linear" in paper.parts, len(paper.claims)
+    (True, True, 13)
     """
 
     name: str

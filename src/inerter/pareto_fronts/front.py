@@ -26,6 +26,13 @@ class ParetoFront:
     `values` (points, criteria) are the indices of the designs, `parameters` their free values, `statuses` those of the
     points. `jumps` are pairs of neighbours between which the front is discontinuous (for two criteria). `limits` has
     the constraints at each point. `status` gives the reason for a front without points.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
+    >>> road = it.Road(5e-7, 25.0)
+    >>> front = it.pareto_front(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=3)
+    >>> bool((front.ideal <= front.values).all()), front.values.shape  # designs x indices
+    (True, (3, 2))
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:front_html")

@@ -60,7 +60,7 @@ def read_record(
     progress: Progress | None = None,
     **named: Unpack[Roles],
 ) -> Record:
-    """The record in a file of measurements: .csv, .tsv, .txt, .tdms, .mf4, .mdf or .mat.
+    r"""The record in a file of measurements: .csv, .tsv, .txt, .tdms, .mf4, .mdf or .mat.
 
     The channels are the keywords `displacement`, `force`, `time`, `velocity` and `acceleration`. One is named as in the
     file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name in English, German or French
@@ -76,6 +76,16 @@ def read_record(
     `progress` is called with the fraction read so far.
 
     Raises `RecordError` for a file, channel or unit that cannot be used, with a remedy.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     table = Path(folder) / "bench.csv"
+    ...     _ = table.write_text("time [s],Weg [mm],Kraft [kN]\n" + "".join(f"{i / 100},{i},{i}\n" for i in range(9)))
+    ...     record = it.read_record(table)
+    >>> float(record.displacement[1]), float(record.force[1])  # m, N
+    (0.001, 1000.0)
     """
     asked, units = checked_roles(named), check_units(units)
     name = _checked_path(path)

@@ -30,6 +30,13 @@ class Record:
 
     Raises `RecordError` for channels that are not finite real vectors of one length of at least 4, or times that do not
     increase.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> time = np.arange(5) * 0.01  # s
+    >>> record = it.Record(time, displacement=1e-3 * time, force=2.0 * time)  # m, N
+    >>> round(record.duration, 9), round(record.interval, 9)
+    (0.04, 0.01)
     """
 
     time: Matrix  # (n,) [s]

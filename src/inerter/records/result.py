@@ -42,6 +42,11 @@ class Response:
     Only frequencies of the displacement are included. The bands are 95 % confidence intervals at each frequency, for
     random scatter; a response without scatter, such as that of a model, has infinite averages and bands of zero width.
     A phase of pi is that of an inerter, pi/2 that of a damper, 0 that of a spring.
+
+    >>> import inerter as it
+    >>> response = it.linear_response(it.Spring(1e6) - it.Inerter(100.0), [10.0])  # rad/s
+    >>> round(response.gain[0]) == round(1 / (1 / (100.0 * 10.0**2) - 1 / 1e6))  # force over displacement [N/m]
+    True
     """
 
     omega: Matrix  # (n,) [rad/s], increasing

@@ -27,6 +27,17 @@ def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: boo
 
     Raises `RecordError` for an existing file, an unsupported suffix, a missing folder, or a library that is not
     installed; `WorkError` if the disk is full.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> time = 0.01 * np.arange(8)  # s
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "bench.csv"
+    ...     it.write_record(it.Record(time, 1e-3 * time, 2.0 * time), path)
+    ...     bool((it.read_record(path).force == 2.0 * time).all())
+    True
     """
     if not isinstance(record, Record):
         raise RecordError(f"write_record requires a Record, got {type(record).__name__}.")

@@ -29,6 +29,12 @@ def iri(profile: Profile) -> float:
 
     Raises `RecordError` for a profile of less than 11 m, or with points more than 0.61 m apart, which the procedure
     excludes.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> distance = np.arange(0.0, 100.0, 0.1)  # m
+    >>> it.iri(it.Profile(distance, 0.02 * distance)) < 1e-9  # an even slope; m/km
+    True
     """
     if not isinstance(profile, Profile):
         raise RecordError(f"iri requires a Profile, such as read_profile(...), got {profile!r}.")

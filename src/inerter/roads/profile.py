@@ -25,6 +25,11 @@ class Profile:
     """Heights [m] over the distance [m] along a road; with `right` for two tracks, of which `height` is the left.
 
     Raises `RecordError` unless all are finite vectors of one length of at least two, and the distances increase.
+
+    >>> import inerter as it
+    >>> road = it.Profile([0.0, 0.5, 1.0], [0.0, 0.01, 0.0])  # distance and height [m]
+    >>> road.length, road.interval
+    (1.0, 0.5)
     """
 
     distance: Matrix  # (n,) [m]

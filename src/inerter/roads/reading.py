@@ -56,7 +56,7 @@ def read_profile(
     lateral: Sequence[float] | None = None,
     **named: Unpack[Columns],
 ) -> Profile:
-    """The profile of a table (.csv, .tsv, .txt, .dat) or of an OpenCRG file (.crg).
+    r"""The profile of a table (.csv, .tsv, .txt, .dat) or of an OpenCRG file (.crg).
 
     A table has columns of distances and heights, in any order, with any separator, decimal point or comma, and with a
     header or without: `distance`, `height` (of the left track, where there are two) and `right` are named as in the
@@ -68,6 +68,16 @@ def read_profile(
     those of the left and the right track; default: (0,). Requires PyOpenCRG (`pip install "inerter[roads]"`).
 
     Raises `RecordError` for a file, column or unit that cannot be used, with a remedy.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     table = Path(folder) / "road.csv"
+    ...     _ = table.write_text("distance [m],height [mm]\n" + "".join(f"{x},{x % 2}\n" for x in range(9)))
+    ...     road = it.read_profile(table)
+    >>> float(road.height[1])  # m
+    0.001
     """
     name = _check_path(path, named)
     source, suffix = Path(name).name, Path(name).suffix.lower()
@@ -82,11 +92,21 @@ def read_profile(
 
 @renamed_keywords(track="side")
 def profile(path: str | os.PathLike[str], speed: float, side: str = "") -> SampledSignal:
-    """A measured road of one track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
+    r"""A measured road of one track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
     `path` is a file that `read_profile` reads without further arguments; for two tracks, `side` is "left" or "right".
 
     Raises `SignalError` for a file that cannot be read in this way, or an unknown side.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     table = Path(folder) / "road.csv"
+    ...     _ = table.write_text("distance [m],height [mm]\n" + "".join(f"{x},{x % 2}\n" for x in range(9)))
+    ...     signal = it.profile(table, speed=4.0)  # m/s
+    >>> signal.duration  # s for 8 m
+    2.0
     """
     try:
         return read_profile(path).to_signal(speed, side)

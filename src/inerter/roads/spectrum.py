@@ -81,6 +81,13 @@ def road_spectrum(
     the line is corrected for aliasing of waves shorter than two intervals; or "filtered", without such waves.
 
     Raises `RecordError` for a profile that is too short, or spaced too widely, for three bands of the fit.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> heights = np.cumsum(np.random.default_rng(0).normal(0.0, 1e-3, 8192))  # a random walk: waviness 2
+    >>> spectrum = it.road_spectrum(it.Profile(0.1 * np.arange(8192), heights))
+    >>> abs(spectrum.waviness - 2.0) < 0.2
+    True
     """
     if not isinstance(profile, Profile):
         raise RecordError(f"road_spectrum requires a Profile, such as read_profile(...), got {profile!r}.")

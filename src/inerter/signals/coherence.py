@@ -37,6 +37,10 @@ class Coherence:
     difference, which are independent, then have (1 + coherence) / 2 and (1 - coherence) / 2 of the spectrum.
 
     Raises `PerformanceIndexError` unless it is between -1 and 1 at every wavenumber.
+
+    >>> import inerter as it
+    >>> float(it.Coherence.first_order(wavenumber=0.2)(0.2))  # cycle/m
+    0.5
     """
 
     numerator: Sequence[float]

@@ -144,6 +144,12 @@ def two_tracks(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000
     coherence both tracks are the multisine of `seed`.
 
     Raises `SignalError` as `multisine` does.
+
+    >>> import inerter as it
+    >>> road = it.Road(5e-7, 25.0, coherence=it.Coherence.isotropic(track=1.5))  # m
+    >>> tracks = it.two_tracks(road, seed=0)
+    >>> sorted(tracks)
+    ['left', 'right']
     """
     own = multisine(road, seed, lowest, highest)
     if road.coherence is None:
@@ -176,6 +182,11 @@ def flat_multisine(seed: int, rms: float, lowest: float, highest: float, speed: 
     `rms` is that of the whole, in the unit of the signal. Repeats after 1 / lowest seconds.
 
     Raises `SignalError` unless `rms` is positive, 0 < lowest <= highest, and `seed` is a non-negative integer.
+
+    >>> import inerter as it
+    >>> motion = it.flat_multisine(0, 3e-4, 0.5, 20.0)  # seed, r.m.s. [m], Hz, Hz
+    >>> motion.highest_frequency
+    20.0
     """
     size = positive_number("The r.m.s. value of a multisine", rms, "its unit")
     low, high = frequency_band("multisine", lowest, highest)
@@ -199,6 +210,11 @@ def cosine(amplitude: float, frequency: float, phase: float = 0.0, speed: float 
     """`amplitude` cos(2 pi `frequency` t + `phase`), with the frequency in Hz and the phase in rad.
 
     Raises `SignalError` unless the frequency is positive and all are finite numbers.
+
+    >>> import inerter as it
+    >>> motion = it.cosine(1e-3, frequency=4.0)  # m, Hz
+    >>> motion.period, float(motion.sample(0.0)[0])  # s, m
+    (0.25, 0.001)
     """
     return _single("cosine", 1.0 + 0j, amplitude, frequency, phase, speed)
 

@@ -30,6 +30,11 @@ def held_noise(
 
     Raises `SignalError` unless `power` is positive, `duration` is a whole number of intervals and `seed` is a
     non-negative integer.
+
+    >>> import inerter as it
+    >>> noise = it.held_noise(0, 3.162e-3, duration=1.0)  # seed, r.m.s. [m], s
+    >>> noise.hold
+    'zero'
     """
     power = positive_number("The power of a noise", power, "its unit squared per Hz")
     interval = positive_number("The interval of a noise", interval, "s")

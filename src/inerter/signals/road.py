@@ -80,6 +80,13 @@ class Road:
     are identical, or have the given `coherence`.
 
     Raises `PerformanceIndexError` unless both are positive and finite.
+
+    >>> import inerter as it
+    >>> it.Road.iso8608("B", speed=25.0).iso8608_class.letter
+    'B'
+    >>> slow, fast = (it.Road(roughness=5e-7, speed=speed) for speed in (10.0, 40.0))  # m^3/cycle, m/s
+    >>> round(fast.velocity_intensity / slow.velocity_intensity, 9)
+    2.0
     """
 
     roughness: float = field(

@@ -38,6 +38,11 @@ class Signal:
     At a jump, value and derivative are the limits from the right. Before its beginning, a signal has its first value
     unless it is periodic. `multisine`, `sine`, `step` and similar functions create signals, and `Signal.sampled`
     creates one from a table.
+
+    >>> import inerter as it
+    >>> ramp = it.Signal.sampled([0.0, 1.0], [0.0, 0.2], "linear")  # s, m
+    >>> isinstance(ramp, it.Signal), ramp.duration
+    (True, 1.0)
     """
 
     label: str  # one line of text

@@ -76,6 +76,11 @@ def chirp(amplitude: float, lowest: float, highest: float, duration: float, spee
     """A linear sweep from `lowest` to `highest` [Hz] in `duration` [s], at which it ends; zero before t = 0.
 
     Raises `SignalError` unless 0 < lowest <= highest, `duration` > 0 and `amplitude` is a finite number.
+
+    >>> import inerter as it
+    >>> sweep = it.chirp(1e-3, lowest=1.0, highest=10.0, duration=2.0)  # m, Hz, Hz, s
+    >>> sweep.highest_frequency
+    10.0
     """
     low, high = frequency_band("chirp", lowest, highest)
     size = finite_number("The amplitude of a chirp", amplitude, "its unit")
@@ -94,6 +99,11 @@ def step(height: float, time: float = 0.0, speed: float | None = None) -> StepSi
     """A step from zero to `height` at `time` [s].
 
     Raises `SignalError` unless both are finite numbers.
+
+    >>> import inerter as it
+    >>> kerb = it.step(0.05, time=0.1)  # m, s
+    >>> kerb.height, kerb.time
+    (0.05, 0.1)
     """
     size, begin = (
         finite_number("The height of a step", height, "its unit"),

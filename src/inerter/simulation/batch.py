@@ -47,7 +47,16 @@ _TOGETHER = 16  # designs on the same signal in one item of work, which is laid 
 
 @dataclass(frozen=True, eq=False)
 class Batch:
-    """Mean squares over time of every design on every signal; nan where a run could not go to its end."""
+    """Mean squares over time of every design on every signal; nan where a run could not go to its end.
+
+    >>> import inerter as it
+    >>> devices = [it.Rig(it.Damper(c)) for c in (100.0, 300.0)]
+    >>> both = it.simulate_many(devices, outputs=["device_force"], duration=1.0, displacement=[it.sine(0.01, 1.0)])
+    >>> both.mean_square.shape  # designs x signals x outputs; [N^2] here
+    (2, 1, 1)
+    >>> round(float(both.rms[1, 0, 0] / both.rms[0, 0, 0]), 9)
+    3.0
+    """
 
     outputs: tuple[str, ...]
     units: tuple[str, ...]
@@ -94,6 +103,12 @@ def simulate_many(
     with the part that is done, never twice at the same time. See `simulate` for the rest.
 
     Raises `SimulationError` as `simulate` does, and for an output that some vehicle does not have.
+
+    >>> import inerter as it
+    >>> devices = [it.Rig(it.Damper(c)) for c in (100.0, 300.0)]
+    >>> signals = [it.sine(0.01, 1.0), it.sine(0.02, 1.0), it.sine(0.03, 1.0)]  # m, Hz
+    >>> it.simulate_many(devices, outputs=["device_force"], duration=1.0, displacement=signals).rms.shape
+    (2, 3, 1)
     """
     cars = as_list("vehicles", vehicles)
     names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)

@@ -42,6 +42,16 @@ def simulate_to_files(
 
     Raises `SimulationError` as `simulate_many` does, and if the folder holds something or cannot be written;
     `WorkError` if what was written elsewhere is not seen here, or the disk is full.
+
+    >>> import inerter as it
+    >>> from tempfile import TemporaryDirectory
+    >>> devices, motion = [it.Rig(it.Damper(100.0))], it.sine(0.01, 1.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     written = it.simulate_to_files(
+    ...         devices, folder, outputs=["device_force"], duration=0.1, displacement=[motion]
+    ...     )
+    >>> written[0][0].name
+    'design-00000-signal-000.nc'
     """
     cars = as_list("vehicles", vehicles)
     names = [outputs] if isinstance(outputs, str) else as_list("outputs", outputs)

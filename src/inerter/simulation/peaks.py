@@ -15,7 +15,14 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Peak:
-    """The sample of an output that is farthest from zero, with its sign, and when it was."""
+    """The sample of an output that is farthest from zero, with its sign, and when it was.
+
+    >>> import inerter as it
+    >>> run = it.simulate(it.Rig(it.Spring(1e5)), displacement=it.sine(0.01, 1.0), duration=0.5)
+    >>> peak = run.peak("device_force")
+    >>> round(peak.value, 3), round(peak.time, 3)  # N, s
+    (1000.0, 0.25)
+    """
 
     value: float
     time: float  # [s]
@@ -26,6 +33,12 @@ class LiftOff:
     """A span in which a tyre pulls by more than its static load, as no real one does: it would have lifted off.
 
     `beyond` is the largest force beyond the static load.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> first = it.simulate(car, road=it.bump(0.15, 1.0, speed=10.0), duration=1.0).lift_offs[0]
+    >>> first.tyre, first.begin < first.end  # s
+    ('tyre', True)
     """
 
     tyre: str

@@ -100,6 +100,12 @@ def simulate(
     Raises `SimulationError` for inputs that are missing, end too early or do not fit the step, and for a run that
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and
     vehicles do. An integration that cannot go on ends in the trajectory's `status`.
+
+    >>> import inerter as it
+    >>> stuck = it.Rig(it.Spring(1e5) - it.Friction(10.0))
+    >>> run = it.simulate(stuck, displacement=it.sine(0.01, 1.0), duration=0.25)  # m, Hz, s
+    >>> float(run["device_force"][-1]), len(run.events) > 0  # N
+    (10.0, True)
     """
     check_keywords("simulate", driven)
     plan = _plan(vehicle, driven, RunSettings(duration, step, integrator, every, energy, memory_limit))

@@ -100,6 +100,13 @@ class Trajectory:
     """A simulated motion; `run["name"]` is an output along `time`.
 
     `outputs` lists all names with units. If the integration had to stop, `status` says why and `time` ends there.
+
+    >>> import inerter as it
+    >>> run = it.simulate(it.Rig(it.Damper(100.0)), displacement=it.sine(0.01, 1.0), duration=2.0)
+    >>> run.status.ok, run.unit("device_force"), run["device_force"].shape == run.time.shape
+    (True, 'N', True)
+    >>> round(run.rms("device_force"), 2) == round(100.0 * 0.01 * 2 * 3.141592653589793 / 2**0.5, 2)
+    True
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:trajectory_html")

@@ -97,7 +97,7 @@ def best_admittance(
     least = min(each.value for each in found)
     if not np.isfinite(least):
         raise SynthesisError(
-            f"The index exists for none of {len(found) * _SAMPLES} admittances up to degree {degree} around "
+            f"The index does not exist for any of {len(found) * _SAMPLES} admittances up to degree {degree} around "
             f"{format_quantity(damping, 'N s/m')} and {format_quantity(omega, 'rad/s')}. Give other typical values, "
             "or a higher degree."
         )

@@ -24,6 +24,11 @@ def state_space(
 
     Raises `DesignError` if a value is free, `MechanismError` if the mechanism is ill-posed, `LinearSystemError` for
     an input or output that is not there, or where rounding leaves nothing of the matrices.
+
+    >>> import inerter as it
+    >>> system = it.state_space(it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3)), "road", "sprung_acceleration")
+    >>> system.A.shape, system.inputs, system.outputs
+    ((4, 4), ('road',), ('sprung_acceleration',))
     """
     check_vehicle(vehicle)
     mechanism = vehicle.mechanism()

@@ -204,6 +204,22 @@ def describe(
     return _describe(mechanism, linear_graph(mechanism), *chosen)
 
 
+def describe_with_parameters(
+    mechanism: Mechanism, inputs: Sequence[str], outputs: Sequence[str]
+) -> tuple[Descriptor, dict[str, float]] | None:
+    """The descriptor in which the value of every element and inertia is free, and those values by their names there.
+
+    None where the structure depends on values, as for elements of other laws.
+
+    Raises as `describe`.
+    """
+    structure = structure_of(mechanism)
+    if structure is None:
+        return None
+    found = _describe(*structure.parametrise(), tuple(inputs), tuple(outputs))
+    return found, {name: structure.parameters[name] for name in found.free}  # type: ignore[misc]
+
+
 def _describe(mechanism: Mechanism, graph: Graph, inputs: Names, outputs: Names) -> Descriptor:
     names = input_names(mechanism)
     beside = [force_of(branch.label) for branch in graph.branches]

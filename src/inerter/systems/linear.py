@@ -65,6 +65,11 @@ class LinearSystem:
     every input is a source of its own and arrives at once.
 
     Raises `LinearSystemError` if shapes or names do not fit, if a number is not finite, or if a delay is negative.
+
+    >>> import inerter as it
+    >>> lag = it.LinearSystem(A=[[-1.0]], B=[[1.0]], C=[[1.0]], D=[[0.0]])
+    >>> round(it.h2_norm(lag) ** 2, 12), lag.order
+    (0.5, 1)
     """
 
     A: Matrix

@@ -339,7 +339,9 @@ def _scatter(asked: MarginRequest) -> tuple[ScatterMargin | None, list[MarginCav
     caveats = []
     if gaps:  # a sample of simulations takes too long for a panel
         spread = {name: part for name, part in spread.items() if name not in gaps}
-        caveats.append(MarginCaveat(f"The tolerance of {format_list(gaps)} is left out: only simulation models it."))
+        caveats.append(
+            MarginCaveat(f"The tolerance of {format_list(gaps)} is not included, since only simulation models it.")
+        )
     if not spread:
         return None, caveats
     has_friction = any(name in own and own[name].acts for name in spread)

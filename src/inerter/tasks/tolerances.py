@@ -181,15 +181,15 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
     compared = ""
     if base is not None and base is not best and base.numbers["quantile"] > 0.0:
         part = 1.0 - best.numbers["quantile"] / base.numbers["quantile"]
-        compared = f", {format_share(part)} better than {base.layout}, which scatters too"
+        compared = f", {format_decimals(100.0 * part, 1)} % better than {base.layout} with its tolerances"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"
     due = f", mostly due to {_shares(best)[0][1]}" if _shares(best) else ""
-    order = f" Without scatter {nominal.layout} is best." if nominal is not best else ""
+    order = f" Without tolerances {nominal.layout} is best." if nominal is not best else ""
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
     return (
-        f"{certain}Best {title} when values scatter, by what {format_share(SHARE)} of cases are below: {best.layout}, "
+        f"{certain}With tolerances {best.layout} is best for {title}: {format_share(SHARE)} of cases are below "
         f"{quantile}{compared}; standard deviation {deviation}{due}, worst {worst}.{order}"
     )
 

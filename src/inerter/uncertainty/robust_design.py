@@ -45,6 +45,13 @@ class Quantile(OfIndex):
     Only element values may have tolerances here. The quantile is a mean of all `samples` weighted by their ranks
     (Harrell and Davis 1982), which changes smoothly with the design; all designs of a search use the same sample. Its
     optimum is slightly overfitted to that sample: `apart` is an independent sample for its evaluation.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
+    >>> robust = it.optimise_robust(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm(), spread={"c": 0.1}, samples=16)
+    >>> nominal = it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
+    >>> robust.value > nominal.value  # the 95th percentile, above the value without scatter
+    True
     """
 
     index: IndexLike

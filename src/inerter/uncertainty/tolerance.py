@@ -49,6 +49,13 @@ class Tolerance:
     slightly exceed the range 0 to 1), nan for values that the method neglects. `worst` is the largest value found, at
     the `worst_values`, in the sample and at the corners of the tolerances. All are nan, with a status, where the index
     has no value for some of the sample, or where the method neglects all values with tolerances.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0))
+    >>> comfort = it.RideComfort(it.Road(5e-7, 25.0))
+    >>> found = it.tolerance_analysis(car, comfort, it.Norm(), spread={"k": 0.05}, samples=16)
+    >>> found.quantile(0.5) <= found.quantile(0.95) <= found.worst, found.unit
+    (True, 'm/s^2')
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:tolerance_html")

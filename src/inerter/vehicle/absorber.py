@@ -23,6 +23,14 @@ class Absorber(VehicleModel):
 
     Raises `MechanismError` unless masses and stiffness are positive and the damping is not negative, `NetworkError` if
     `mount` or `ground` is not a network.
+
+    >>> import inerter as it
+    >>> import numpy as np
+    >>> damper = it.Absorber(1000.0, 40e3, mass=50.0, mount=it.Spring(2e3))  # kg, N/m; tuned: 2e3 / 50 = 40e3 / 1000
+    >>> system = it.state_space(damper, "primary_force", "primary_acceleration")
+    >>> still = it.frequency_response(system, [np.sqrt(40.0)])  # [rad/s]; the primary mass stands still
+    >>> bool(abs(still[0, 0, 0]) < 1e-9)
+    True
     """
 
     primary_mass: float | Free = field(

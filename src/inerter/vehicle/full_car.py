@@ -36,6 +36,13 @@ class FullCar(VehicleModel):
     `unsprung_rear_right`.
 
     Raises `MechanismError` unless masses, stiffnesses and lengths are positive.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(20e3) | it.Damper(1500.0)
+    >>> car = it.FullCar(1000.0, 1500.0, 400.0, 40.0, 45.0, 180e3, 180e3, 1.2, 1.4, 1.5, 1.5, front=strut, rear=strut)
+    >>> mechanism = car.mechanism()
+    >>> len(mechanism.coordinates), [road.name for road in mechanism.roads][:2]
+    (7, ['road_front_left', 'road_front_right'])
     """
 
     sprung_mass: float | Free = field(

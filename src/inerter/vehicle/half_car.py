@@ -29,6 +29,12 @@ class HalfCar(VehicleModel):
     bounce + distance_front x pitch. Coordinates `sprung`, `pitch`, `unsprung_front`, `unsprung_rear`.
 
     Raises `MechanismError` unless masses, stiffnesses and distances are positive.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(4000.0)
+    >>> car = it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front=strut, rear=strut)
+    >>> [round(road.distance, 3) for road in car.mechanism().roads]  # m behind the first
+    [0.0, 2.04]
     """
 
     sprung_mass: float | Free = field(

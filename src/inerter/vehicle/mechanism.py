@@ -30,6 +30,11 @@ class Coordinate:
 
     Either may be free. 0 is a node without mass, at which networks meet: its displacement and velocity follow from the
     balance of their forces, and its acceleration is no output.
+
+    >>> import inerter as it
+    >>> body, pitch = it.Coordinate("body", 900.0), it.Coordinate("pitch", 1400.0, angle=True)
+    >>> body.unit, pitch.unit
+    ('kg', 'kg m^2')
     """
 
     name: str
@@ -59,7 +64,13 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Strut:
-    """A network mounted between two ports of coordinates and roads; `GROUND` is the fixed port."""
+    """A network mounted between two ports of coordinates and roads; `GROUND` is the fixed port.
+
+    >>> import inerter as it
+    >>> front = it.Strut("front", it.Spring(20e3), upper={"body": 1.0, "pitch": 1.2}, lower={"wheel": 1.0})
+    >>> front.upper["pitch"]  # lever arm [m]
+    1.2
+    """
 
     name: str
     network: Network
@@ -69,7 +80,13 @@ class Strut:
 
 @dataclass(frozen=True)
 class Tyre:
-    """A network between a port above and a road below."""
+    """A network between a port above and a road below.
+
+    >>> import inerter as it
+    >>> tyre = it.Tyre("tyre", it.Spring(180e3), port={"wheel": 1.0}, road="road")
+    >>> tyre.network.stiffness  # N/m
+    180000.0
+    """
 
     name: str
     network: Network
@@ -83,6 +100,11 @@ class RoadInput:
 
     It acts `distance` [m] behind the first one, with a delay of distance / speed, on the `side` "left" or "right", or
     "" for a single track.
+
+    >>> import inerter as it
+    >>> rear = it.RoadInput("road_rear", distance=2.7, side="left")  # m behind the first
+    >>> rear.distance / 27.0  # s later at 27 m/s
+    0.1
     """
 
     name: str
@@ -96,7 +118,12 @@ RoadInput.__init__ = renamed_keywords(track="side")(RoadInput.__init__)  # type:
 
 @dataclass(frozen=True)
 class Force:
-    """An external force [N] on a port, positive upwards (a moment [N m] if the port is an angle)."""
+    """An external force [N] on a port, positive upwards (a moment [N m] if the port is an angle).
+
+    >>> import inerter as it
+    >>> it.Force("gust", {"body": 1.0, "pitch": 0.4}).port["pitch"]  # 0.4 m ahead of the centre of mass
+    0.4
+    """
 
     name: str
     port: Port
@@ -104,7 +131,13 @@ class Force:
 
 @dataclass(frozen=True)
 class TrackedPoint:
-    """A tracked point that moves with a port, with its own outputs; an angle if `angle` is true."""
+    """A tracked point that moves with a port, with its own outputs; an angle if `angle` is true.
+
+    >>> import inerter as it
+    >>> nose = it.TrackedPoint("nose", {"body": 1.0, "pitch": 2.1})  # output nose_acceleration
+    >>> nose.port["pitch"]
+    2.1
+    """
 
     name: str
     port: Port
@@ -113,7 +146,12 @@ class TrackedPoint:
 
 @dataclass(frozen=True)
 class OutputWeight:
-    """An output of the mechanism with a weight that converts it to the unit of an index."""
+    """An output of the mechanism with a weight that converts it to the unit of an index.
+
+    >>> import inerter as it
+    >>> it.OutputWeight("pitch_acceleration", weight=1.02)  # m: the acceleration 1.02 m from the centre
+    OutputWeight(output='pitch_acceleration', weight=1.02)
+    """
 
     output: str
     weight: float = 1.0
@@ -121,7 +159,13 @@ class OutputWeight:
 
 @dataclass(frozen=True)
 class PerformanceOutputs:
-    """Performance outputs of each index; empty where the mechanism has none."""
+    """Performance outputs of each index; empty where the mechanism has none.
+
+    >>> import inerter as it
+    >>> outputs = it.PerformanceOutputs(comfort=(it.OutputWeight("cab_acceleration"),))
+    >>> outputs.tyre_load  # none: TyreLoad is refused
+    ()
+    """
 
     comfort: tuple[OutputWeight, ...] = ()  # body accelerations [m/s^2 after weighting]
     tyre_load: tuple[OutputWeight, ...] = ()  # dynamic tyre forces [N]
@@ -139,6 +183,14 @@ class Mechanism:
 
     Raises `MechanismError` for unknown coordinates or roads, negative masses, duplicate names, and unconstrained
     coordinates; `DesignError` where one free name has two ranges.
+
+    >>> import inerter as it
+    >>> strut = it.Strut("strut", it.Spring(400.0) | it.Damper(4.0), upper={"mass": 1.0}, lower=it.GROUND)
+    >>> oscillator = it.Mechanism(
+    ...     coordinates=(it.Coordinate("mass", 1.0),), struts=(strut,), forces=(it.Force("push", {"mass": 1.0}),)
+    ... )
+    >>> it.state_space(oscillator).outputs
+    ('mass_displacement', 'mass_velocity', 'mass_acceleration', 'strut_force', 'strut_travel')
     """
 
     coordinates: tuple[Coordinate, ...]

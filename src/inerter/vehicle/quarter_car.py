@@ -29,6 +29,11 @@ class QuarterCar(VehicleModel):
     `sprung_force` on the body.
 
     Raises `MechanismError` unless masses and tyre stiffness are positive, `NetworkError` if `strut` is not a network.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=180e3, strut=it.Spring(20e3))
+    >>> it.state_space(car).inputs
+    ('road', 'sprung_force')
     """
 
     sprung_mass: float | Free = field(

@@ -26,6 +26,11 @@ class Rig(VehicleModel):
     order, Butterworth) is a mass on a very stiff spring; its reading is `reading_force`.
 
     Raises `NetworkError` if `device` is not a network, `MechanismError` if the bandwidth is not positive.
+
+    >>> import inerter as it
+    >>> run = it.simulate(it.Rig(it.Spring(1e5)), displacement=it.step(0.01), duration=0.1)
+    >>> float(run["device_force"][-1])  # N, positive in tension
+    1000.0
     """
 
     device: Network = field(metadata=mount("Between table and load cell."))

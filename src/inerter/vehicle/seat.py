@@ -22,6 +22,12 @@ class Seat(Stage):
 
     Raises `DesignError` if `vehicle` is not a vehicle, `MechanismError` unless the mass is positive and the place is a
     port of the vehicle, `NetworkError` if `network` is not a network.
+
+    >>> import inerter as it
+    >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+    >>> seated = it.Seat(car, mass=60.0, network=it.Spring(10e3) | it.Damper(300.0))  # kg
+    >>> [coordinate.name for coordinate in seated.mechanism().coordinates]
+    ['sprung', 'unsprung', 'occupant']
     """
 
     vehicle: Vehicle

@@ -46,6 +46,10 @@ class VehicleModel:
 
     Raises `MechanismError` unless all quantities are positive (or zero, if that is their default) or, where allowed,
     free; `NetworkError` if a mount is not a network.
+
+    >>> import inerter as it
+    >>> issubclass(it.QuarterCar, it.VehicleModel), it.QuarterCar.key
+    (True, 'quarter-car')
     """
 
     key: ClassVar[str]

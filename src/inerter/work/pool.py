@@ -244,7 +244,13 @@ def _persistent(work: Callable[[Item], Result], lost: Callable[[Item], Result] |
 
 @contextmanager
 def worker_pool(jobs: int = 1, executor: Executor | Pool | None = None) -> Iterator[Pool]:
-    """The given pool, or a new one of `jobs` processes or of the executor, which ends with this context."""
+    """The given pool, or a new one of `jobs` processes or of the executor, which ends with this context.
+
+    >>> import inerter as it
+    >>> with it.worker_pool(jobs=1) as pool:
+    ...     pool is not None
+    True
+    """
     if isinstance(executor, Pool):
         yield executor
     else:

@@ -30,6 +30,11 @@ class ProgressStep:
     `within` names the enclosing computations, such as a design, outermost first; `best` is the lowest value of an index
     so far, in its SI unit; `evaluations` are those of the running search. `share` is the completed share of the design,
     if known, and `seconds` is the time since the start of the listener.
+
+    >>> import inerter as it
+    >>> step = it.ProgressStep("search: starts", done=2, total=16)
+    >>> step.done / step.total
+    0.125
     """
 
     what: str

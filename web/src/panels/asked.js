@@ -4,7 +4,7 @@ import { numbersOf } from "../library.js";
 import { Chip, Select, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { answerOf } from "../questions.js";
-import { entryAt } from "../state/document.js";
+import { entryAt, indicesIn } from "../state/document.js";
 import { Entry } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -19,7 +19,7 @@ const STIFFNESS = "static-stiffness"; // of a strut, beside the indices
 export function AskedPanel({ store }) {
   const state = store.get();
   const { study } = state.history.present;
-  const asked = study.study?.indices ?? [];
+  const asked = indicesIn(study);
   const limits = limitsOf(state);
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
@@ -61,7 +61,7 @@ function indexNames(state) {
   const { study } = state.history.present;
   const known = state.about?.indices ?? [];
   const own = [...Object.keys(study.indices ?? {}),
-    ...(study.study?.indices ?? [])].filter((symbol) =>
+    ...indicesIn(study)].filter((symbol) =>
       !known.some((/** @type {any} */ each) => each.symbol === symbol));
   return [...known, ...[...new Set(own)].map((symbol) => ({ symbol, title: symbol }))];
 }

@@ -1,4 +1,4 @@
-// A trade-off front: its points in a plot, each of which can be taken into the editor, and a card of the one looked at.
+// Trade-off fronts: points in a plot, each of which can be taken into the editor, and a card of the one looked at.
 
 import { Doubts, isOk } from "../parts/doubts.js";
 import { Select, Table, useChoice } from "../parts/controls.js";
@@ -6,23 +6,26 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
+import { own } from "../state/document.js";
 import { printed, rounded, shown, withUnit } from "../state/scale.js";
 import { takeAndTell } from "../working.js";
-import { indexChoices, indicesOf } from "./answers.js";
+import { indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 /** @import { Declaration, Point as Place } from "../plots/layout.js" */
 /** @typedef {{status: string, message?: string}} Outcome */
-/** @typedef {Outcome & {values: {[index: string]: any}, texts: {[name: string]: string}}} Point */
+/** `improvements`: per cent below the best of the baseline, by index; `network`: where the points have several.
+ * @typedef {Outcome & {values: {[index: string]: any}, texts: {[name: string]: string}, network?: string,
+ * improvements?: {[index: string]: number | null}}} Point */
 /** `knee`: the place of the knee among the points.
  * @typedef {Outcome & {layout: string, knee: number | null, points: Point[]}} Front */
 /** An index with its title and unit. @typedef {{index: string, title: string, unit: string}} Index */
 /** A point among all: `number` among those of its front, from 1 on.
  * @typedef {{front: Front, point: Point, number: number, isKnee: boolean}} Entry */
 
-const ALL = ""; // layouts
+const ALL = "all fronts";
 const WORD = /^[a-z]+(-[a-z]+)*$/; // an index that is named by words
 
 /** The indices of which a front can be: those of the study, first those of its trade-off; else all that there are.
@@ -40,84 +43,123 @@ function frontIndices(state) {
 export function FrontForm({ state }) {
   const indices = frontIndices(state);
   if (indices.length < 2) return html`<span class="quiet">No two indices are known.</span>`;
-  /** @param {string} name @param {number} chosen */
-  const choice = (name, chosen) => html`<${Select} name=${name} aria-label=${`${name} index`}
-    choices=${indexChoices(indices)} selected=${indices[chosen].symbol} />`;
-  return html`${choice("first", 0)} against ${choice("second", 1)}
-    ${" "}<label>points <input name="points" type="number" min="2" max="200" defaultValue="15" /></label>`;
+  const third = (state.history.present.study.study?.trade_off ?? []).length > 2 ? indices[2].symbol : "";
+  /** @param {string} selected @param {(string | string[])[]} [more] */
+  const choice = (selected, more = []) => html`<${Select} name="index" aria-label="Index"
+    choices=${[...more, ...indexChoices(indices)]} selected=${selected} />`;
+  return html`${choice(indices[0].symbol)} and ${choice(indices[1].symbol)} and ${choice(third, [["", "no other"]])}
+    ${" "}<label>points <input name="points" type="number" min="3" max="200" defaultValue="15" /></label>`;
 }
 
+/** @param {FormData} form */
+const chosenIndices = (form) => form.getAll("index").filter((index) => index !== "").map(String);
+
 /** @param {State} _ @param {FormData} form */
-export const frontBody = (_, form) =>
-  ({ indices: [form.get("first"), form.get("second")], points: Number(form.get("points")) });
+export const frontBody = (_, form) => ({ indices: chosenIndices(form), points: Number(form.get("points")) });
 
 /** @param {FormData} form */
-export const frontTitle = (form) => `Trade-off front of ${form.get("first")} and ${form.get("second")}`;
+export const frontTitle = (form) => `Trade-off front of ${listed(chosenIndices(form))}`;
+
+/** @param {string[]} names */
+const listed = (names) => `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
 
 /** @param {{store: Store, api: Api, job: Job}} props */
 export function FrontResult({ store, api, job }) {
   const { result } = job;
-  const baseline = result.baseline ?? baselineOf(store.get().history.present).layout;
+  /** @type {Index[]} */
+  const indices = result.indices;
   /** @type {Front[]} */
-  const every = result.fronts;
-  const [only, setOnly] = useChoice([ALL, ...every.map(({ layout }) => layout)]);
+  const fronts = result.fronts;
+  /** @param {Entry} entry */
+  const take = ({ front: { layout }, point: { texts, status, message } }) => {
+    takeAndTell(store, { layout, index: indices.map(({ index }) => index).join(" against "), texts, status, message });
+    if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout });
+  };
+  return html`<${FrontView} indices=${indices} fronts=${fronts} take=${take}
+      baseline=${result.baseline ?? baselineOf(store.get().history.present).layout} />
+    <${Files} api=${api} job=${job} />`;
+}
+
+/** Fronts in a plot, with a card of the point that is looked at. Of three indices two are drawn, which can be chosen.
+ * At first all fronts are drawn, or the first of them `alone`.
+ * @param {{indices: Index[], fronts: Front[], baseline: string, take: (entry: Entry) => void, alone?: boolean}}
+ * props */
+export function FrontView({ indices, fronts: every, baseline, take, alone = false }) {
+  const names = every.map(({ layout }) => layout);
+  const [only, setOnly] = useChoice(alone ? [...names, ALL] : [ALL, ...names]);
+  const symbols = indices.map(({ index }) => index);
+  const [across, setAcross] = useChoice(symbols);
+  const [up, setUp] = useChoice(symbols.filter((symbol) => symbol !== across));
   const fronts = useMemo(() => every.filter(({ layout }) => only === ALL || layout === only), [every, only]);
-  const plot = useMemo(() => declared(result.indices, fronts, coloursOf(every.map(({ layout }) => layout), baseline)),
-    [fronts, baseline]);
+  const plot = useMemo(() => declared(indices, [String(across), String(up)], fronts,
+    coloursOf(names, baseline)), [indices, across, up, fronts, baseline]);
   const knee = plot.points.findIndex(({ big, of }) => big && of.front.layout !== baseline);
   const [picked, look] = useState(/** @type {number | null} */ (null));
-  const [first, second] = result.indices.map((/** @type {Index} */ { index }) => index);
-  const here = plot.points[picked ?? Math.max(0, knee)];
-  /** @param {Place} place */
-  const take = ({ of: { front: { layout }, point: { texts, status, message } } }) => {
-    takeAndTell(store, { layout, index: `${first} against ${second}`, texts, status, message });
-    if (layout in (store.get().history.present.study.layouts ?? {})) store.change({ type: "selected", layout });
-  };
+  const here = plot.points[picked ?? knee] ?? plot.points[0];
+  /** @param {string} label @param {string | undefined} value @param {(index: string) => void} set */
+  const axis = (label, value, set) => html`<${Select} label=${label} value=${value} set=${set}
+    choices=${label === "across" ? symbols : symbols.filter((symbol) => symbol !== across)} />`;
   return html`<${Doubts} members=${every.flatMap(({ layout, status, message, points }) => [
       { of: `the front of ${layout}`, status, message },
       ...points.map((point, i) => ({ ...point, of: `point ${i + 1} of ${layout}` })),
     ])} />
     ${here === undefined && html`<p class="quiet">There is no point.</p>`}
     ${here && html`<div class="front-result">
-      <${Plot} plot=${plot} table=${tableOf(plot, result.indices)} picked=${picked} look=${look} take=${take}
-        switches=${["x", "y"]}>${every.length > 1 && html`<${Select} aria-label="Layouts that are drawn" value=${only}
-          choices=${[[ALL, "all layouts"], ...every.map(({ layout }) => layout)]} set=${setOnly} />`}<//>
-      <${Card} entry=${here.of} fronts=${every} indices=${result.indices} baseline=${baseline}
-        take=${() => take(here)} /></div>
+      <${Plot} plot=${plot} table=${tableOf(plot, indices)} picked=${picked} look=${look}
+        take=${(/** @type {Place} */ { of }) => take(of)} switches=${["x", "y"]}>
+        ${symbols.length > 2 && [axis("across", across, setAcross), axis("up", up, setUp)]}
+        ${every.length > 1 && html`<${Select} aria-label="Fronts that are drawn" value=${only}
+          choices=${[ALL, ...names]} set=${setOnly} />`}<//>
+      <${Card} entry=${here.of} fronts=${every} indices=${indices} baseline=${baseline}
+        take=${() => take(here.of)} /></div>
     <p class="quiet">${every.flatMap(({ layout, status, message }) => (message && isOk(status)
-      ? [`${layout}: ${message}`] : [])).join(" ")} Lower left is better. Click a point to take it into the editor, or
-      with the keyboard: left and right for the next point, up and down for another layout, K for the knee, Enter to
-      take.</p>`}
-    <${Files} api=${api} job=${job} />`;
+      ? [`${layout}: ${message}`] : [])).join(" ")} Lower left is better${symbols.length > 2
+        ? `; in the plane of ${across} and ${up} a point may be above others, if it is better in the third index` : ""}.
+      Click a point to take it into the editor, or with the keyboard: left and right for the next point, up and down for
+      another front, K for the knee, Enter to take.</p>`}`;
 }
 
-/** @param {Index[]} indices @param {Front[]} fronts @param {{[layout: string]: string}} colours
+/** Points of fronts over two of the indices; those of three do not lie on a line.
+ * @param {Index[]} indices @param {string[]} drawn @param {Front[]} fronts @param {{[layout: string]: string}} colours
  * @returns {Declaration & {points: Place[]}} */
-function declared(indices, fronts, colours) {
-  const [first, second] = indices;
-  /** @param {Index} index */
-  const axis = ({ index, title, unit }) =>
-    ({ what: WORD.test(index) ? title : `${title} ${index}`, unit, padded: true });
+function declared(indices, drawn, fronts, colours) {
+  const [first, second] = drawn;
+  /** @param {string} symbol */
+  const axis = (symbol) => {
+    const { title = "", unit = "" } = indices.find(({ index }) => index === symbol) ?? {};
+    return { what: WORD.test(symbol) ? title : `${title} ${symbol}`, unit, padded: true };
+  };
   const all = fronts.map((front) => entriesOf(front).filter(({ point: { values } }) =>
-    [first, second].every(({ index }) => typeof values[index] === "number")));
+    drawn.every((index) => typeof values[index] === "number")));
   return {
-    title: `${second.index} against ${first.index}`,
+    title: `${second} against ${first}`,
     x: axis(first),
     y: axis(second),
     curves: fronts.map(({ layout }, i) => ({ name: layout, colour: colours[layout], dash: colours[layout] === "s1",
-      x: all[i].map(({ point }) => point.values[first.index]),
-      y: all[i].map(({ point }) => point.values[second.index]) })),
+      loose: indices.length > 2, ...lineThrough(all[i], first, second) })),
     points: all.flatMap((entries, curve) => entries.map((entry) => {
-      const { front: { layout }, point: { status, values }, isKnee } = entry;
-      const [x, y] = [first, second].map(({ index }) => values[index]);
+      const { front: { layout }, point: { status, values, texts, network }, isKnee } = entry;
+      const [x, y] = drawn.map((index) => values[index]);
       const name = `${isOk(status) ? "" : `${status}: `}${layout}${isKnee ? ", the knee" : ""}`;
-      const both = [first, second].map(({ index, unit }) => `${shown(values[index], 4)} ${printed(unit)}`.trim());
-      return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry, lines: [name, both.join(",  "),
-        Object.entries(entry.point.texts).map(([key, text]) => `${key} = ${rounded(text)}`).join(", ")],
-        label: `${name}: ${first.index} ${shown(x)}, ${second.index} ${shown(y)}; take it into the editor` };
+      const read = indices.map(({ index, unit }) => `${index} ${shown(values[index], 4)} ${printed(unit)}`.trim());
+      return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry,
+        lines: [name, read.join(",  "), network ?? "", valuesIn(texts)].filter(Boolean),
+        label: `${[name, network].filter(Boolean).join(", ")}: ${read.join(", ")}; take it into the editor` };
     })),
   };
 }
+
+/** The line through points, broken between two networks, where there is no design.
+ * @param {Entry[]} entries @param {string} first @param {string} second */
+function lineThrough(entries, first, second) {
+  const places = entries.flatMap(({ point }, i) =>
+    (i > 0 && point.network !== entries[i - 1].point.network ? [{ x: point.values[first], y: null }] : [])
+      .concat({ x: point.values[first], y: point.values[second] }));
+  return { x: places.map(({ x }) => x), y: places.map(({ y }) => y) };
+}
+
+/** Values of a design in few digits. @param {{[name: string]: string}} texts */
+export const valuesIn = (texts) => Object.entries(texts).map(([key, text]) => `${key} = ${rounded(text)}`).join(", ");
 
 /** @param {Front} front @returns {Entry[]} */
 const entriesOf = (front) => front.points.map((point, i) => ({ front, point, number: i + 1,
@@ -126,11 +168,13 @@ const entriesOf = (front) => front.points.map((point, i) => ({ front, point, num
 /** @param {{points: Place[]}} plot @param {Index[]} indices */
 function tableOf({ points }, indices) {
   const names = [...new Set(points.flatMap(({ of }) => Object.keys(of.point.texts)))];
+  const networks = points.some(({ of }) => of.point.network) ? ["network"] : [];
   return {
-    heads: ["layout", "point", ...indices.map(({ index, unit }) => withUnit(index, unit)), "status", ...names],
+    heads: ["layout", "point", ...networks, ...indices.map(({ index, unit }) => withUnit(index, unit)), "status",
+      ...names],
     rows: points.map(({ of: { front, point, number } }) => [front.layout, number,
-      ...indices.map(({ index }) => point.values[index]), point.status, ...names.map((name) =>
-        point.texts[name] ?? "")]),
+      ...networks.map(() => point.network ?? ""), ...indices.map(({ index }) => point.values[index]), point.status,
+      ...names.map((name) => point.texts[name] ?? "")]),
   };
 }
 
@@ -138,17 +182,21 @@ function tableOf({ points }, indices) {
  * @param {{entry: Entry, fronts: Front[], indices: Index[], baseline: string, take: () => void}} props */
 function Card({ entry, fronts, indices, baseline, take }) {
   const { front, point, number, isKnee } = entry;
-  const other = referenceOf(entry, fronts, baseline);
+  const { improvements } = point;
+  const other = improvements ? null : referenceOf(entry, fronts, baseline);
   return html`<section class="front-card" aria-live="polite" aria-label="Point">
     <h4>${front.layout}, point ${number} of ${front.points.length}${isKnee ? ", the knee" : ""}</h4>
+    ${point.network && html`<p><code>${point.network}</code></p>`}
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
-    <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : [])]}>
+    <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : []),
+        ...(improvements ? [[`below ${baseline}`, `relative to the lowest value of ${baseline}`]] : [])]}>
       ${indices.map(({ index, title, unit }) => html`<tr key=${index}><th scope="row" title=${title}>${index}</th>
         <td class="number" data-value=${point.values[index]}>${shown(point.values[index], 4)}
           ${" "}<span class="unit">${printed(unit)}</span></td>
-        ${other && html`<td class="number">${shown(other.point.values[index], 4)}</td>`}</tr>`)}
+        ${other && html`<td class="number">${shown(other.point.values[index], 4)}</td>`}
+        ${improvements && html`<td class="number">${signed(improvements[index])}</td>`}</tr>`)}
     <//>
-    <p>${Object.entries(point.texts).map(([name, text]) => `${name} = ${rounded(text)}`).join(", ")}</p>
+    <p>${valuesIn(point.texts)}</p>
     ${other && html`<p>${sentenceOf(point, other, indices)}</p>`}
     <button type="button" onClick=${take}>Take this point</button>
   </section>`;

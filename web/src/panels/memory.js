@@ -1,10 +1,11 @@
 // Opening, undoing, sharing and downloading.
 
 import { indicesOf } from "./answers.js";
+import { ExportMenu } from "./exports.js";
 import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
 import { DropDown, Select, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { download, linkTo, open } from "../remembering.js";
+import { download, fileName, linkTo, open } from "../remembering.js";
 import { begin, ended, openStudy } from "../working.js";
 
 /** @import { Store } from "../state/store.js" */
@@ -59,6 +60,7 @@ export function Menu({ store, api }) {
       <button type="button" onClick=${page}>Report of these designs (HTML)</button>
       <button type="button" onClick=${whole}>Report: run the study</button>
     <//>
+    <${ExportMenu} store=${store} api=${api} />
     <${Share} store=${store} />`}
   </div>`;
 }
@@ -82,10 +84,6 @@ async function saveReport(store, api, called) {
   if (!job?.result) throw new Error(job?.sentence || "The report was stopped.");
   download(await api.blob(`work/${job.id}/files/${job.result.file}`), called);
 }
-
-/** @param {string | undefined} title */
-const fileName = (title) =>
-  (title ?? "study").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 60) || "study";
 
 /** @param {{store: Store, api: Api}} props */
 function Open({ store, api }) {

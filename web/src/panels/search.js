@@ -1,58 +1,143 @@
-// A search for the best network: its ranking, which fills while it goes on; each network can be taken into the editor.
+// A search for the best network: rankings, which fill while it goes on, the best for each number of elements, the front
+// over all networks, and real inerters; each network can be taken into the editor.
 
-import { Select, Table } from "../parts/controls.js";
+import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
-import { html } from "../parts/html.js";
+import { html, useMemo, useState } from "../parts/html.js";
 import { searchedLayouts } from "../library.js";
-import { printed, rounded, shown } from "../state/scale.js";
+import { Plot } from "../plot.js";
+import { goalOf } from "../questions.js";
+import { estimated, printed, rounded, shown } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
-import { indexChoices, indicesOf, percent } from "./answers.js";
+import { indicesOf, percent } from "./answers.js";
 import { Files } from "./files.js";
+import { FrontView, valuesIn } from "./front.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
+/** @import { Declaration, Point } from "../plots/layout.js" */
+/** A network with its elements and the entry of a layout, as in a study document. @typedef {any} Row */
+
+const FRONT = "Front";
 
 /** @param {{state: State}} props */
 export function SearchForm({ state }) {
   const layouts = searchedLayouts(state);
   if (layouts.length === 0) return html`<span class="quiet">No layout has a free network.</span>`;
+  const wanted = state.history.present.study.study?.trade_off ?? [goalOf(state)];
   return html`<${Select} label="layout" name="layout" choices=${layouts} />
-    ${" "}<${Select} label="index" name="index" choices=${indexChoices(indicesOf(state))} />`;
+    <fieldset class="row"><legend class="visually-hidden">Indices</legend>
+      ${indicesOf(state).map(({ symbol, title }) => html`<label key=${symbol} title=${title}><input type="checkbox"
+        name="index" value=${symbol} defaultChecked=${wanted.includes(symbol)} /> ${symbol}</label>`)}</fieldset>`;
 }
 
 /** @param {State} _ @param {FormData} form */
-export const searchBody = (_, form) => ({ layouts: chosen(form, "layout"), indices: chosen(form, "index") });
-
-/** @param {FormData} form @param {string} name */
-const chosen = (form, name) => [form.get(name) ?? []].flat();
+export const searchBody = (_, form) => ({ layouts: form.getAll("layout"), indices: form.getAll("index") });
 
 /** The best networks, also of a search that goes on or was stopped.
  * @param {{store: Store, api: Api, job: Job}} props */
 export function SearchResult({ store, api, job }) {
   const found = job.result ?? job.found;
-  const { index, baseline, complete, networks } = found;
   /** @type {any[]} */
-  const ranking = found.ranking;
-  const compared = complete && baseline !== null;
-  const heads = ["", "network", index, ...(compared ? [["better by", `than ${baseline}`]] : []), "values", ""];
-  return html`<${Doubts} members=${ranking.map(({ network, status, message }) => ({ of: network, status, message }))} />
-    <p class="quiet">The best ${ranking.length} ${complete ? `of ${networks} networks` : "so far"} (* at a bound)</p>
-    <${Table} label="Ranking" heads=${heads}>
-      ${ranking.map((row, i) => html`<tr key=${row.network} data-network=${row.network}>
-        <td class="number">${i + 1}</td>
-        <td><code>${row.network}</code></td>
-        <td class="number">${!isOk(row.status) && html`<div class="doubt">${row.status}</div>`}
-          ${shown(row.value)} <span class="unit">${printed(row.unit)}</span></td>
-        ${compared && html`<td class="number">${percent(row.improvement_percent)}</td>`}
-        <td>${valuesOf(row)}</td>
-        <td><button type="button"
-          onClick=${() => store.say(takeNetwork(store, found, row), "taken")}>Into the editor</button></td>
-      </tr>`)}
-    <//>
+  const searches = found.searches;
+  const views = [...(found.front ? [FRONT] : []), ...searches.map(({ index }) => index)];
+  const [view, setView] = useChoice(views);
+  const one = searches.find(({ index }) => index === view);
+  /** @param {Row} row */
+  const take = (row) => store.say(takeNetwork(store, found, row), "taken");
+  return html`${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
+    ${one ? html`<${Ranking} key=${view} found=${found} one=${one} take=${take} />`
+      : html`<${NetworkFront} found=${found} take=${take} />`}
     ${job.result && html`<${Files} api=${api} job=${job} />`}`;
 }
 
-/** The values of a network, and those of what else is free. @param {any} row */
+/** The front over all networks, and over those of fewer elements.
+ * @param {{found: any, take: (row: Row) => void}} props */
+function NetworkFront({ found: { front, baseline }, take }) {
+  const fronts = useMemo(() => front.fronts.toReversed().map((/** @type {any} */ { elements, points }) =>
+    ({ layout: `up to ${elements} element${elements === 1 ? "" : "s"}`, status: "ok", knee: null,
+      points: points.map((/** @type {Row} */ row) => ({ ...row, values: row.indices, row,
+        texts: { ...row.elements, ...row.values }, improvements: baseline && row.improvements_percent })) })), [front]);
+  return html`<${FrontView} indices=${front.indices} fronts=${fronts} baseline=${baseline ?? ""} alone
+    take=${(/** @type {any} */ { point }) => take(point.row)} />`;
+}
+
+/** The best networks for an index. @param {{found: any, one: any, take: (row: Row) => void}} props */
+function Ranking({ found: { baseline, complete, networks }, one, take }) {
+  const { index, unit, ranking, frontier, real_inerters: real } = one;
+  const compared = complete && baseline !== null;
+  const better = compared ? [["better by", `than ${baseline}`]] : [];
+  /** @type {string[]} */
+  const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
+  return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
+      ({ of: network, status, message }))} />
+    ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} take=${take} />`}
+    <p class="quiet">The best ${ranking.length} ${complete ? `of ${networks} networks` : "so far"} (* at a bound)</p>
+    <${Table} label="Ranking" heads=${["", "network", index, ...better, ""]}>
+      ${ranking.map((/** @type {Row} */ row, /** @type {number} */ i) => html`<${NetworkRow} key=${row.network}
+        row=${row} take=${take} rank=${i + 1} text=${shown(row.value)} unit=${unit} compared=${compared} />`)}
+    <//>
+    ${methods.map((method) => html`<p class="quiet" key=${method}>With real inerters, elastic and with friction:
+        optimised by ${method}</p>
+      <${Table} key=${`${method} table`} label=${`Real inerters by ${method}`}
+        heads=${["network", index, ...better, ""]}>
+        ${real.filter((/** @type {Row} */ row) => row.method === method).map((/** @type {Row} */ row) =>
+          html`<${NetworkRow} key=${row.network} row=${row} take=${take} text=${optimised(row)} unit=${unit}
+            compared=${compared} />`)}
+      <//>`)}`;
+}
+
+/** The best value with its standard uncertainty. @param {Row} row */
+const optimised = ({ value, standard_error: error }) =>
+  (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
+
+/** @param {{row: Row, rank?: number, text: string, unit: string, compared: boolean, take: (row: Row) => void}}
+ * props */
+function NetworkRow({ row, rank, text, unit, compared, take }) {
+  const { network, status, improvement_percent: part, ideal, same_values: same } = row;
+  return html`<tr data-network=${network}>
+    ${rank !== undefined && html`<td class="number">${rank}</td>`}
+    <td><code>${network}</code><div class="scatter">${valuesOf(row)}</div></td>
+    <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
+      ${text} <span class="unit">${printed(unit)}</span>
+      ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
+        shown(same)}`}</div><div class="scatter">ideal ${shown(ideal)}</div>`}</td>
+    ${compared && html`<td class="number">${percent(part)}</td>`}
+    <td><button type="button" onClick=${() => take(row)}>Into the editor</button></td>
+  </tr>`;
+}
+
+/** The best value for each number of elements. @param {{one: any, baseline: string | null, take: (row: Row) => void}}
+ * props */
+function Frontier({ one, baseline, take }) {
+  const [picked, look] = useState(/** @type {number | null} */ (null));
+  const plot = useMemo(() => frontierOf(one, baseline), [one, baseline]);
+  return html`<${Plot} plot=${plot} picked=${picked} look=${look}
+    take=${(/** @type {Point} */ { of }) => take(of)} />`;
+}
+
+/** @param {any} one @param {string | null} baseline @returns {Declaration} */
+function frontierOf({ index, title, unit, frontier, baseline_value: base }, baseline) {
+  const counts = frontier.map((/** @type {Row} */ { n_elements: count }) => count);
+  const ends = [counts[0], counts.at(-1)];
+  const below = typeof base === "number" ? [{ name: baseline ?? "", colour: "s1", dash: true, x: ends,
+    y: [base, base] }] : [];
+  return {
+    title: `${index} by number of elements`,
+    x: { what: "Number of elements", unit: "", ticks: counts, padded: true },
+    y: { what: `${title} ${index}`, unit, padded: true },
+    curves: [{ name: "best network", colour: "s3", x: counts,
+      y: frontier.map((/** @type {Row} */ { value }) => value) }, ...below],
+    points: frontier.map((/** @type {Row} */ row) => {
+      const value = `${index} ${shown(row.value, 4)} ${printed(unit)}`.trim();
+      return { curve: 0, x: row.n_elements, y: row.value, doubtful: !isOk(row.status), of: row,
+        lines: [row.network, value, valuesIn({ ...row.elements, ...row.values })],
+        label: `${row.network}: ${value}; take it into the editor` };
+    }),
+  };
+}
+
+/** The values of a network, and those of what else is free. @param {Row} row */
 const valuesOf = ({ elements, values, active_bounds: bounds }) =>
   Object.entries({ ...elements, ...values }).map(([name, text]) =>
     `${name} = ${rounded(String(text))}${name in bounds ? "*" : ""}`).join(", ");

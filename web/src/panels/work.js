@@ -31,7 +31,7 @@ export const KINDS = [
   { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult, name: frontTitle,
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
   { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
-    sentence: "As inerter search does, for one index: every network that a free network may be, with its best values."
+    sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks."
   },
 ];
 

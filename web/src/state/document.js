@@ -152,6 +152,9 @@ export function textOf({ study, layout, strut }) {
   return typeof text === "string" ? text : "";
 }
 
+/** The indices of a study: where it names none, those of its trade-off. @param {Study} study @returns {string[]} */
+export const indicesIn = ({ study = {} }) => study.indices ?? study.trade_off ?? [];
+
 /** @param {unknown} entry @returns {entry is Range} */
 export const isRange = (entry) => typeof entry === "object" && entry !== null && "from" in entry && "to" in entry;
 

@@ -10,8 +10,9 @@ import shutil
 import subprocess
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
@@ -19,15 +20,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError, WorkError
+from inerter.exports.fmu.arrivals import on_one_road
 from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
+from inerter.exports.fmu.equations import equations_of
+from inerter.exports.fmu.strut import port_masses, strut_system
 from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
 from inerter.exports.kind import ExportKind
 from inerter.exports.modelica import package_name
+from inerter.exports.named_system import NamedQuantity
 from inerter.exports.request import ExportSpec
-from inerter.networks.elements import Element
+from inerter.networks.elements import Element, Network
 from inerter.systems.graph import switching
 from inerter.systems.linear import LinearSystem, check_names
-from inerter.systems.outputs import main_outputs
+from inerter.systems.outputs import input_names, main_outputs
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
@@ -57,6 +62,16 @@ def _make_3(request: ExportSpec, suffix: str) -> bytes:
 
 
 def _system(request: ExportSpec) -> SwitchingSystem:
+    """A strut alone, or a whole vehicle."""
+    if isinstance(request.of, Network) or request.part:
+        ((name, network),) = request.networks.items()
+        ends = port_masses(request.mechanism, request.strut) if request.part else (0.0, 0.0)
+        return strut_system(network, ends, request.title or name)
+    found = _vehicle_system(request)
+    return found if request.speed is None else on_one_road(found, request.mechanism, request.speed)
+
+
+def _vehicle_system(request: ExportSpec) -> SwitchingSystem:
     """The state space, by default with displacements that drift with the road too: they begin at zero."""
     if isinstance(request.of, LinearSystem):
         return without_reactions(replace(request, form="").system())
@@ -66,7 +81,9 @@ def _system(request: ExportSpec) -> SwitchingSystem:
         return switching_system(mechanism, wanted, request.title)
     if request.outputs is None:
         request = replace(request, outputs=main_outputs(mechanism))
-    return without_reactions(replace(request, form="").system())
+    inputs = input_names(mechanism) if request.inputs is None else check_names("inputs", request.inputs)
+    equations = equations_of(mechanism, tuple(inputs), check_names("outputs", request.outputs))
+    return without_reactions(replace(request, form="").system(), equations)
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
@@ -88,13 +105,12 @@ def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> b
     """
     name = package_name(title or "vehicle")
     header = _header(switches)
-    system = replace(switches.system, inputs=switches.inputs)
-    told = "".join([header, *(one.label for one in (*system.inputs, *system.outputs)), name, str(version.number)])
-    token = hashlib.sha256(told.encode()).hexdigest()[:32]
-    sources = {"model.h": f'#define TOKEN "{token}"\n{header}'}
-    for file in ("engine.c", version.source):
+    model = FmuModel(name, "", title or "vehicle", switches)
+    told = header + (description_2(model, version.source) if version is FMI_2 else description_3(model))
+    model = replace(model, token=hashlib.sha256(told.encode()).hexdigest()[:32])
+    sources = {"model.h": f'#define TOKEN "{model.token}"\n{header}'}
+    for file in ("engine.c", "instance.c", version.source):
         sources[file] = (files("inerter.exports.fmu") / file).read_text(encoding="utf-8")
-    model = FmuModel(name, token, title or "vehicle", system)
     entries: dict[str, str | bytes] = {f"sources/{file}": text for file, text in sources.items()}
     if version is FMI_2:
         entries["modelDescription.xml"] = description_2(model, version.source)
@@ -133,24 +149,66 @@ def _compile(sources: dict[str, str], main: str) -> bytes:
 
 
 def _header(switches: SwitchingSystem) -> str:
+    """`model.h`: sizes, matrices, laws, parameters and their equations."""
     system, reactions = switches.system, len(switches.is_gap)
-    sizes = {"NX": len(system.states), "NU": len(switches.inputs), "NR": reactions, "NY": len(system.outputs)}
+    equations, parameters = switches.equations, switches.parameters
+    rows = np.zeros((1, 0, 0)) if equations is None else equations.rows
+    entries = np.argwhere(rows)
+    sizes = {
+        "NX": len(system.states),
+        "NE": len(switches.host_inputs),
+        "NU": len(switches.inputs),
+        "NR": reactions,
+        "NY": len(system.outputs),
+        "NM": len(switches.motions),
+        "NP": len(parameters),
+        "NETA": 0 if equations is None else equations.unknowns,
+        "NENTRIES": len(entries),
+        "MASSES": parameters.index(switches.host_masses[0]) if switches.host_masses else 0,
+        "SPEED": -1 if switches.speed is None else parameters.index(switches.speed),
+    }
     lines = [f"#define {name} {size}" for name, size in sizes.items()]
     for what, several in (("states", system.states), ("inputs", system.inputs), ("outputs", system.outputs)):
         lines.append(f"/* {what}: {', '.join(one.label for one in several)} */")
+    lines.append(f"/* parameters: {', '.join(NamedQuantity(one.name, one.unit).label for one in parameters)} */")
     lines += [f"/* {note} */" for note in system.notes]
-    lines += [_array(name, getattr(system, name)) for name in "ABCD"]
-    lines.append(_array("Q", switches.Q))
-    limits = {"LOW": switches.lower, "HIGH": switches.upper, "GAP": np.array(switches.is_gap, dtype=float)}
-    for name, values in limits.items():
-        numbers = ", ".join(
-            "HUGE_VAL" if x == np.inf else "-HUGE_VAL" if x == -np.inf else repr(x) for x in values.tolist()
-        )
-        lines.append(f"static const double {name}[{max(reactions, 1)}] = {{{numbers or '0.0'}}};")
+    lines += [_matrix(name, getattr(system, name)) for name in "ABCD"]
+    lines.append(_matrix("Q", switches.Q))
+    places = [-1 if one is None else parameters.index(one) for one in switches.limits]
+    gains = [
+        0.0 if one is None else high / one.value if one.value else 1.0
+        for one, high in zip(switches.limits or (), switches.upper, strict=True)
+    ]
+    lines += [
+        _row("double", "LOW", switches.lower),
+        _row("double", "HIGH", switches.upper),
+        _row("double", "LIMIT_GAIN", gains),
+        _row("int", "LIMIT", places),
+        _row("int", "GAP", switches.is_gap),
+        _row("double", "START", [one.value for one in parameters]),
+        _row("int", "TUNABLE", [one.is_tunable for one in parameters]),
+        _row("int", "MAY_VANISH", [one.may_vanish for one in parameters]),
+        _row("int", "SOURCE", switches.sources_of_inputs),
+        _row("double", "DISTANCE", switches.distances or [0.0] * len(switches.inputs)),
+        _row("int", "MOTION_STATE", [one.state for one in switches.motions]),
+        _row("int", "MOTION_INPUT", [one.input for one in switches.motions]),
+        _row("int", "MOTION_IS_RATE", [one.is_rate for one in switches.motions]),
+        _row("int", "ENTRY_PARAMETER", entries[:, 0] - 1),
+        _row("int", "ENTRY_ROW", entries[:, 1]),
+        _row("int", "ENTRY_COLUMN", entries[:, 2]),
+        _row("double", "ENTRY_VALUE", rows[tuple(entries.T)]),
+    ]
     return "\n".join([*lines, ""])
 
 
-def _array(name: str, matrix: Matrix) -> str:
+def _row(kind: str, name: str, values: Iterable[float]) -> str:
+    """An array in C, which may not be empty."""
+    numbers = [float(one) if kind == "double" else int(one) for one in values] or [0]
+    told = ("HUGE_VAL" if x == np.inf else "-HUGE_VAL" if x == -np.inf else repr(x) for x in numbers)
+    return f"static const {kind} {name}[{len(numbers)}] = {{{', '.join(told)}}};"
+
+
+def _matrix(name: str, matrix: Matrix) -> str:
     """A matrix in C, where no dimension may be zero."""
     rows, columns = (max(size, 1) for size in matrix.shape)
     whole = np.zeros((rows, columns))
@@ -159,5 +217,6 @@ def _array(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
-FMU = ExportKind("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", (".fmu",), _make_2)
-FMU3 = ExportKind("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", (".fmu",), _make_3)
+_KIND = partial(ExportKind, suffixes=(".fmu",), requires="a C compiler", takes=("part", "speed"))
+FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=_make_2)
+FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=_make_3)

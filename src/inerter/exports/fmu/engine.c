@@ -1,12 +1,13 @@
 /* Exact flow of x' = A x + B u, y = C x + D u over a step in which every input is a cubic polynomial of time.
 
-   Written by inerter. model.h has NX, NU, NR, NY, A, B, C and D. The inputs of a step are u and its first three derivatives
-   at its begin; at its end, the inputs are those polynomials there.
+   Written by inerter. model.h has the sizes, and A, B, C, D and Q for the values that the parameters have at first; for
+   others they follow from the equations in ENTRIES. The inputs of a step are e and its first three derivatives at its
+   begin; at its end, the inputs are those polynomials there. Of them u are the inputs of the matrices, some of them late.
 
    NR reactions of friction and gaps are such that their laws hold at the end of a step. From their values at its begin they
    change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
    state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
-   each other. Reactions at an instant are those of the smallest step from there. */
+   each other. Reactions at an instant are those of a step of GLANCE from there. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,22 +16,40 @@
 #include "model.h"
 
 #define ORDERS 4
+#define SOME(n) ((n) + !(n)) /* no array is empty */
+#define NI (NU + NR)
 #define HELD (NX + ORDERS * NU) /* columns of the reactions, and of their rates */
 #define WIDTH (HELD + 2 * NR)
+#define HEIGHT (NETA + NX + NY + NR) /* of the equations: balance, rates, outputs, motions of friction and gaps */
+#define SPAN (NETA + NX + NI)
 #define SWEEPS 10000
 #define LONGEST 1e-4 /* s, with reactions */
+#define GLANCE (LONGEST / 1024.0)
 #if NR > 0
 #define LEVELS 11
 #else
 #define LEVELS 1
 #endif
 #define TERMS 20
+#define KEPT 6 /* flows of so many lengths of steps */
+#define BITS 36 /* of a length between two breaks of late inputs, so that rounding makes no new ones */
+
+typedef struct {
+    double begin;
+    double e[ORDERS][NE + 1];
+} Segment; /* inputs of a step */
 
 typedef struct {
     double time;
     double x[NX + 1];
+    double e[ORDERS][NE + 1];
     double u[ORDERS][NU + 1];
     double r[NR + 1]; /* in tension */
+    double p[NP + 1];
+    double mean; /* of the force of a strut over the last step */
+    int stale; /* whether u and r are not yet those of this instant */
+    int given; /* whether an input was ever set that is not a motion */
+    size_t count; /* of segments */
 } State;
 
 typedef struct {
@@ -40,10 +59,71 @@ typedef struct {
 } Flow;
 
 typedef struct {
-    State now;
-    double step; /* of the first flow; 0 for none. Each flow is of half the step of that before */
+    double step; /* of the first; 0 for none. Each is of half the step of that before */
     Flow flows[LEVELS];
+} Flows;
+
+typedef struct {
+    State now;
+    Segment *past; /* what late inputs still need, the oldest first */
+    size_t room;
+    double p[NP + 1]; /* of the matrices */
+    double A[SOME(NX)][SOME(NX)], B[SOME(NX)][SOME(NI)], C[SOME(NY)][SOME(NX)], D[SOME(NY)][SOME(NI)];
+    double Q[SOME(NR)][SOME(NX + NI)];
+    double low[NR + 1], high[NR + 1];
+    Flow glance;
+    Flows kept[KEPT];
+    int oldest; /* of those */
+    int is_ready, is_running, is_coupled, is_warned;
 } Model;
+
+static double gauge(double number) { return ldexp(1.0, number > 0.0 ? ilogb(number) : 0); }
+
+/* A, B, C, D and Q from the equations, by elimination of the unknowns. 0 if memory lacks, or the equations are singular. */
+static int eliminate(Model *model)
+{
+    double *m = calloc((size_t)HEIGHT * SPAN + 1, sizeof(double));
+    int i, j, k;
+    if (m == NULL) return 0;
+    for (i = 0; i < NENTRIES; i++)
+        m[ENTRY_ROW[i] * SPAN + ENTRY_COLUMN[i]] +=
+            ENTRY_VALUE[i] * (ENTRY_PARAMETER[i] < 0 ? 1.0 : model->now.p[ENTRY_PARAMETER[i]]);
+    for (i = 0; i < NETA; i++) { /* rows of the balance have other units each */
+        double largest = 0.0;
+        for (j = 0; j < NETA; j++) largest = fmax(largest, fabs(m[i * SPAN + j]));
+        largest = gauge(largest);
+        for (j = 0; j < SPAN; j++) m[i * SPAN + j] /= largest;
+    }
+    for (k = 0; k < NETA; k++) {
+        int best = k;
+        for (i = k + 1; i < NETA; i++)
+            if (fabs(m[i * SPAN + k]) > fabs(m[best * SPAN + k])) best = i;
+        if (m[best * SPAN + k] == 0.0) {
+            free(m);
+            return 0;
+        }
+        for (j = 0; j < SPAN; j++) {
+            const double other = m[k * SPAN + j];
+            m[k * SPAN + j] = m[best * SPAN + j];
+            m[best * SPAN + j] = other;
+        }
+        for (i = k + 1; i < HEIGHT; i++) {
+            const double factor = m[i * SPAN + k] / m[k * SPAN + k];
+            if (factor != 0.0)
+                for (j = k; j < SPAN; j++) m[i * SPAN + j] -= factor * m[k * SPAN + j];
+        }
+    }
+    for (i = 0; i < NX; i++)
+        for (j = 0; j < NX + NI; j++)
+            *(j < NX ? &model->A[i][j] : &model->B[i][j - NX]) = m[(NETA + i) * SPAN + NETA + j];
+    for (i = 0; i < NY; i++)
+        for (j = 0; j < NX + NI; j++)
+            *(j < NX ? &model->C[i][j] : &model->D[i][j - NX]) = m[(NETA + NX + i) * SPAN + NETA + j];
+    for (i = 0; i < NR; i++)
+        for (j = 0; j < NX + NI; j++) model->Q[i][j] = m[(NETA + NX + NY + i) * SPAN + NETA + j];
+    free(m);
+    return 1;
+}
 
 static void multiply(const double *a, const double *b, double *c)
 {
@@ -57,23 +137,24 @@ static void multiply(const double *a, const double *b, double *c)
         }
 }
 
-static void keep(Flow *flow, const double *whole, double step)
+static void keep(const Model *model, Flow *flow, const double *whole, double step)
 {
     int i, j, k;
     for (i = 0; i < NX; i++)
         for (j = 0; j < WIDTH; j++) flow->flow[i][j] = whole[i * WIDTH + j];
     for (i = 0; i < NR; i++)
         for (j = 0; j < NR; j++) {
-            flow->held[i][j] = flow->ramp[i][j] = Q[i][NX + NU + j];
+            flow->held[i][j] = flow->ramp[i][j] = model->Q[i][NX + NU + j];
             for (k = 0; k < NX; k++) {
-                flow->held[i][j] += Q[i][k] * flow->flow[k][HELD + j];
-                flow->ramp[i][j] += Q[i][k] * flow->flow[k][HELD + NR + j] / step;
+                flow->held[i][j] += model->Q[i][k] * flow->flow[k][HELD + j];
+                flow->ramp[i][j] += model->Q[i][k] * flow->flow[k][HELD + NR + j] / step;
             }
         }
 }
 
-/* The exponential of the matrix of states and inputs, by a Taylor polynomial and repeated squaring. 0 if memory lacks. */
-static int discretise(Model *model, double step)
+/* The flows of step, step / 2, ... of so many levels: the exponential of the matrix of states and inputs, by a Taylor
+   polynomial and repeated squaring. 0 if memory lacks. */
+static int discretise(const Model *model, double step, Flow *flows, int levels)
 {
     const size_t size = (size_t)WIDTH * WIDTH + 1;
     double *m = calloc(3 * size, sizeof(double)), *sum, *other, *swap, norm = 0.0;
@@ -82,9 +163,9 @@ static int discretise(Model *model, double step)
     sum = m + size;
     other = sum + size;
     for (i = 0; i < NX; i++) {
-        for (j = 0; j < NX; j++) m[i * WIDTH + j] = step * A[i][j];
-        for (j = 0; j < NU; j++) m[i * WIDTH + NX + j] = step * B[i][j];
-        for (j = 0; j < NR; j++) m[i * WIDTH + HELD + j] = step * B[i][NU + j];
+        for (j = 0; j < NX; j++) m[i * WIDTH + j] = step * model->A[i][j];
+        for (j = 0; j < NU; j++) m[i * WIDTH + NX + j] = step * model->B[i][j];
+        for (j = 0; j < NR; j++) m[i * WIDTH + HELD + j] = step * model->B[i][NU + j];
     }
     for (i = NX; i < NX + (ORDERS - 1) * NU; i++) m[i * WIDTH + i + NU] = step;
     for (i = HELD; i < HELD + NR; i++) m[i * WIDTH + i + NR] = step;
@@ -93,7 +174,7 @@ static int discretise(Model *model, double step)
         for (j = 0; j < WIDTH; j++) row += fabs(m[i * WIDTH + j]);
         if (row > norm) norm = row;
     }
-    while (halvings < LEVELS - 1 || ldexp(norm, -halvings) > 0.5) halvings++;
+    while (halvings < levels - 1 || ldexp(norm, -halvings) > 0.5) halvings++;
     for (i = 0; i < WIDTH * WIDTH; i++) m[i] = ldexp(m[i], -halvings);
     for (i = 0; i < WIDTH; i++) sum[i * WIDTH + i] = 1.0;
     for (k = TERMS; k > 0; k--) { /* I + m/1 (I + m/2 (I + ...)) */
@@ -103,30 +184,29 @@ static int discretise(Model *model, double step)
         swap = sum, sum = other, other = swap;
     }
     for (k = halvings; k >= 0; k--) { /* the flow of step / 2^k */
-        if (k < LEVELS) keep(&model->flows[k], sum, ldexp(step, -k));
+        if (k < levels) keep(model, &flows[k], sum, ldexp(step, -k));
         if (k == 0) break;
         multiply(sum, sum, other);
         swap = sum, sum = other, other = swap;
     }
-    model->step = step;
     free(m);
     return 1;
 }
 
 /* Reactions by their laws, from the motions that there would be without any; by Gauss-Seidel from the last ones. */
-static void react(double weight[][NR + 1], double *r, const double *free_motion)
+static void react(const Model *model, const double weight[][NR + 1], double *r, const double *free_motion)
 {
     int i, j, sweep;
     for (sweep = 0; sweep < SWEEPS; sweep++) {
         double change = 0.0, size = 0.0;
         for (i = 0; i < NR; i++) {
-            const double own = weight[i][i], before = r[i];
+            const double own = weight[i][i], before = r[i], low = model->low[i], high = model->high[i];
             double motion = free_motion[i];
             for (j = 0; j < NR; j++)
                 if (j != i) motion += weight[i][j] * r[j];
             if (!(own < 0.0)) continue;
-            if (GAP[i]) r[i] = motion > HIGH[i] ? (HIGH[i] - motion) / own : motion < LOW[i] ? (LOW[i] - motion) / own : 0.0;
-            else r[i] = fmin(fmax(-motion / own, LOW[i]), HIGH[i]);
+            if (GAP[i]) r[i] = motion > high ? (high - motion) / own : motion < low ? (low - motion) / own : 0.0;
+            else r[i] = fmin(fmax(-motion / own, low), high);
             change = fmax(change, fabs(r[i] - before));
             size = fmax(size, fabs(r[i]));
         }
@@ -135,14 +215,43 @@ static void react(double weight[][NR + 1], double *r, const double *free_motion)
 }
 
 /* -1, 0 or 1 of a friction that slips down, sticks or slips up, and of a gap in contact or not. */
-static int contact(const double *r, int i)
+static int contact(const Model *model, const double *r, int i)
 {
     if (GAP[i]) return (r[i] > 0.0) - (r[i] < 0.0);
-    return (r[i] >= HIGH[i]) - (r[i] <= LOW[i]);
+    return (r[i] >= model->high[i]) - (r[i] <= model->low[i]);
+}
+
+/* Reactions, zero but for the active ones, that leave these no motion. */
+static void hold(const double weight[][NR + 1], const int *active, double *r, const double *free_motion)
+{
+    int i, j, sweep;
+    memset(r, 0, sizeof(double) * NR);
+    for (sweep = 0; sweep < SWEEPS; sweep++) {
+        double change = 0.0, size = 0.0;
+        for (i = 0; i < NR; i++) {
+            const double own = weight[i][i], before = r[i];
+            double motion = free_motion[i];
+            for (j = 0; j < NR; j++)
+                if (j != i) motion += weight[i][j] * r[j];
+            if (!active[i] || !(own < 0.0)) continue;
+            r[i] = -motion / own;
+            change = fmax(change, fabs(r[i] - before));
+            size = fmax(size, fabs(r[i]));
+        }
+        if (change <= 1e-14 * size) return;
+    }
+}
+
+static double cubic(double e[][NE + 1], int input, int order, double time)
+{
+    double value = e[ORDERS - 1][input];
+    int k;
+    for (k = ORDERS - 2; k >= order; k--) value = e[k][input] + value * time / (k - order + 1);
+    return value;
 }
 
 /* The end of a step from a state, with the reactions there; these are held, or ramps from those of the state. */
-static void follow(Flow *flow, double step, int held, State *now)
+static void follow(const Model *model, const Flow *flow, double step, int held, State *now)
 {
     double next[NX + 1], motion[NR + 1], before[NR + 1];
     int i, j, k;
@@ -161,12 +270,12 @@ static void follow(Flow *flow, double step, int held, State *now)
     for (i = 0; i < NR; i++) {
         before[i] = now->r[i];
         motion[i] = 0.0;
-        for (j = 0; j < NX; j++) motion[i] += Q[i][j] * next[j];
-        for (j = 0; j < NU; j++) motion[i] += Q[i][NX + j] * now->u[0][j];
+        for (j = 0; j < NX; j++) motion[i] += model->Q[i][j] * next[j];
+        for (j = 0; j < NU; j++) motion[i] += model->Q[i][NX + j] * now->u[0][j];
         if (!held)
             for (j = 0; j < NR; j++) motion[i] += (flow->held[i][j] - flow->ramp[i][j]) * now->r[j];
     }
-    if (NR > 0) react(held ? flow->held : flow->ramp, now->r, motion);
+    if (NR > 0) react(model, held ? flow->held : flow->ramp, now->r, motion);
     for (i = 0; i < NX; i++) {
         now->x[i] = next[i];
         for (j = 0; j < NR; j++) {
@@ -182,34 +291,186 @@ static void look(Model *model)
 {
     State trial = model->now;
     if (NR == 0) return;
-    follow(&model->flows[LEVELS - 1], ldexp(model->step, 1 - LEVELS), 1, &trial);
+    follow(model, &model->glance, GLANCE, 1, &trial);
     memcpy(model->now.r, trial.r, sizeof trial.r);
 }
 
-static void advance_part(Model *model, double step, int level)
+static double delay(const Model *model, int input)
+{
+    return SPEED < 0 || DISTANCE[input] == 0.0 ? 0.0 : DISTANCE[input] / model->now.p[SPEED < 0 ? 0 : SPEED];
+}
+
+/* The inputs of the matrices at a time, as they go on until `until`, which is not beyond the next segment of any. */
+static void load(Model *model, double time, double until)
+{
+    int j, k;
+    for (j = 0; j < NU; j++) {
+        const double late = delay(model, j), seen = 0.5 * (time + until) - late;
+        size_t at = model->now.count;
+        if (late > 0.0) {
+            while (at > 0 && model->past[at - 1].begin > seen) at--;
+            for (k = 0; k < ORDERS; k++)
+                model->now.u[k][j] =
+                    at == 0 ? 0.0 : cubic(model->past[at - 1].e, SOURCE[j], k, time - late - model->past[at - 1].begin);
+        } else
+            for (k = 0; k < ORDERS; k++) model->now.u[k][j] = cubic(model->now.e, SOURCE[j], k, time - model->now.time);
+    }
+}
+
+/* The matrices of the parameters. 0 if memory lacks, or the equations are singular. */
+static int assemble(Model *model)
+{
+    int i;
+    if (model->is_ready && memcmp(model->p, model->now.p, sizeof model->p) == 0) return 1;
+    if (memcmp(model->now.p, START, sizeof(double) * NP) == 0) {
+        memcpy(model->A, A, sizeof A), memcpy(model->B, B, sizeof B), memcpy(model->C, C, sizeof C);
+        memcpy(model->D, D, sizeof D), memcpy(model->Q, Q, sizeof Q);
+    } else if (!eliminate(model)) return 0;
+    for (i = 0; i < NR; i++) {
+        const double value = LIMIT[i] < 0 ? 0.0 : model->now.p[LIMIT[i]] * LIMIT_GAIN[i];
+        model->low[i] = LIMIT[i] < 0 ? LOW[i] : -value;
+        model->high[i] = LIMIT[i] < 0 ? HIGH[i] : value;
+    }
+    if (NR > 0 && !discretise(model, GLANCE, &model->glance, 1)) return 0;
+    memset(model->kept, 0, sizeof model->kept);
+    memcpy(model->p, model->now.p, sizeof model->p);
+    return model->is_ready = model->now.stale = 1;
+}
+
+/* Matrices of the parameters, and inputs and reactions of this instant. 0 as `assemble`. */
+static int prepare(Model *model)
+{
+    if (!assemble(model)) return 0;
+    if (model->now.stale) {
+        load(model, model->now.time, model->now.time);
+        look(model);
+        model->now.stale = 0;
+    }
+    return 1;
+}
+
+/* What an output changes by with the states and the inputs at once, while what sticks sticks, and contacts last. */
+static double sensitivity(const Model *model, int number, const double *dx, const double *du)
+{
+    double motion[NR + 1], dr[NR + 1], y = 0.0;
+    int active[NR + 1], i, j, k;
+    for (i = 0; i < NR; i++) {
+        active[i] = (contact(model, model->now.r, i) == 0) != GAP[i];
+        motion[i] = 0.0;
+        for (k = 0; k < NX; k++) {
+            double next = 0.0;
+            for (j = 0; j < NX; j++) next += model->glance.flow[k][j] * dx[j];
+            for (j = 0; j < NU; j++) next += model->glance.flow[k][NX + j] * du[j];
+            motion[i] += model->Q[i][k] * next;
+        }
+        for (j = 0; j < NU; j++) motion[i] += model->Q[i][NX + j] * du[j];
+    }
+    hold(model->glance.held, active, dr, motion);
+    for (j = 0; j < NX; j++) y += model->C[number][j] * dx[j];
+    for (j = 0; j < NU; j++) y += model->D[number][j] * du[j];
+    for (j = 0; j < NR; j++) y += model->D[number][NU + j] * dr[j];
+    return y;
+}
+
+static void advance_part(Model *model, const Flows *flows, double step, int level)
 {
     const State before = model->now;
     int i, changed = 0;
-    follow(&model->flows[level], step, level == LEVELS - 1, &model->now);
-    for (i = 0; i < NR; i++) changed |= contact(before.r, i) != contact(model->now.r, i);
+    follow(model, &flows->flows[level], step, level == LEVELS - 1, &model->now);
+    for (i = 0; i < NR; i++) changed |= contact(model, before.r, i) != contact(model, model->now.r, i);
     if (changed && level < LEVELS - 1) {
         model->now = before;
-        advance_part(model, step / 2.0, level + 1);
-        advance_part(model, step / 2.0, level + 1);
+        advance_part(model, flows, step / 2.0, level + 1);
+        advance_part(model, flows, step / 2.0, level + 1);
         return;
     }
     look(model);
 }
 
+/* The flows of a step; NULL if memory lacks. */
+static const Flows *flows_of(Model *model, double step)
+{
+    Flows *found;
+    int i;
+    for (i = 0; i < KEPT; i++)
+        if (model->kept[i].step == step) return &model->kept[i];
+    found = &model->kept[model->oldest];
+    model->oldest = (model->oldest + 1) % KEPT;
+    found->step = 0.0;
+    if (!discretise(model, step, found->flows, LEVELS)) return NULL;
+    found->step = step;
+    return found;
+}
+
+/* The inputs of a step from now on, for those that are late; what none needs any more is dropped. 0 if memory lacks. */
+static int record(Model *model)
+{
+    double latest = 0.0;
+    size_t first = 0;
+    int j;
+    for (j = 0; j < NU; j++) latest = fmax(latest, delay(model, j));
+    if (latest == 0.0) return 1;
+    while (first + 1 < model->now.count && model->past[first + 1].begin + latest < model->now.time) first++;
+    if (first > model->now.count / 2) {
+        model->now.count -= first;
+        memmove(model->past, model->past + first, model->now.count * sizeof(Segment));
+    }
+    if (model->now.count == model->room) {
+        const size_t room = 2 * model->room + 64;
+        Segment *const past = realloc(model->past, room * sizeof(Segment));
+        if (past == NULL) return 0;
+        model->past = past, model->room = room;
+    }
+    model->past[model->now.count].begin = model->now.time;
+    memcpy(model->past[model->now.count].e, model->now.e, sizeof model->now.e);
+    model->now.count++;
+    return 1;
+}
+
+/* Where one of the late inputs begins its next segment, at most `end`. */
+static double next_break(const Model *model, double time, double end)
+{
+    const double least = 1e-9 * (end - model->now.time);
+    double found = end;
+    int j;
+    for (j = 0; j < NU; j++) {
+        const double late = delay(model, j);
+        size_t at = model->now.count;
+        if (late == 0.0) continue;
+        while (at > 0 && model->past[at - 1].begin + late > time + least) {
+            at--;
+            if (model->past[at].begin + late < found - least) found = model->past[at].begin + late;
+        }
+    }
+    return found;
+}
+
+static double shortened(double length)
+{
+    const int scale = BITS - ilogb(length);
+    return ldexp(floor(ldexp(length, scale) + 0.5), -scale);
+}
+
 static int advance(Model *model, double step)
 {
-    const int parts = NR > 0 ? (int)ceil(step / LONGEST - 1e-9) : 1;
-    const double part = step / parts, begin = model->now.time;
-    int i;
-    if (part != model->step && !discretise(model, part)) return 0;
-    look(model); /* inputs may have jumped */
-    for (i = 0; i < parts; i++) advance_part(model, part, 0);
-    model->now.time = begin + step;
+    const double begin = model->now.time, end = begin + step;
+    double time = begin;
+    int i, k;
+    if (!prepare(model) || !record(model)) return 0;
+    while (time < end) {
+        const double until = next_break(model, time, end);
+        const double piece = time == begin && until == end ? step : shortened(until - time);
+        const int parts = NR > 0 ? (int)ceil(piece / LONGEST - 1e-9) : 1;
+        const Flows *flows = flows_of(model, piece / parts);
+        if (flows == NULL) return 0;
+        load(model, time, until);
+        if (time > begin) look(model); /* inputs may have jumped */
+        for (i = 0; i < parts; i++) advance_part(model, flows, piece / parts, 0);
+        time = until;
+    }
+    for (i = 0; i < NE; i++)
+        for (k = 0; k < ORDERS; k++) model->now.e[k][i] = cubic(model->now.e, i, k, step);
+    model->now.time = end;
     return 1;
 }
 
@@ -217,13 +478,52 @@ static double output(const Model *model, int number)
 {
     double y = 0.0;
     int j;
-    for (j = 0; j < NX; j++) y += C[number][j] * model->now.x[j];
-    for (j = 0; j < NU; j++) y += D[number][j] * model->now.u[0][j];
-    for (j = 0; j < NR; j++) y += D[number][NU + j] * model->now.r[j];
+    for (j = 0; j < NX; j++) y += model->C[number][j] * model->now.x[j];
+    for (j = 0; j < NU; j++) y += model->D[number][j] * model->now.u[0][j];
+    for (j = 0; j < NR; j++) y += model->D[number][NU + j] * model->now.r[j];
     return y;
+}
+
+/* How the states move as a motion jumps by one: by a pulse of its acceleration, or by two against each other. */
+static void jump(const Model *model, int motion, double *dx)
+{
+    int i, j;
+    for (i = 0; i < NX; i++) {
+        dx[i] = model->B[i][MOTION_INPUT[motion]];
+        if (!MOTION_IS_RATE[motion])
+            for (dx[i] = 0.0, j = 0; j < NX; j++) dx[i] += model->A[i][j] * model->B[j][MOTION_INPUT[motion]];
+    }
+}
+
+/* A prescribed motion, which the state follows at once; gaps in contact stay so, by pulses of their reactions. */
+static void move(Model *model, int motion, double value)
+{
+    const double change = value - model->now.x[MOTION_STATE[motion]];
+    double dx[NX + 1], weight[NR + 1][NR + 1], pulse[NR + 1], beyond[NR + 1];
+    int active[NR + 1], i, j, k;
+    if (change == 0.0) return;
+    jump(model, motion, dx);
+    for (i = 0; i < NX; i++) model->now.x[i] += dx[i] * change;
+    model->now.x[MOTION_STATE[motion]] = value;
+    for (i = 0; i < NR; i++) {
+        const int side = GAP[i] ? contact(model, model->now.r, i) : 0;
+        double q = 0.0;
+        for (j = 0; j < NX; j++) q += model->Q[i][j] * model->now.x[j];
+        active[i] = GAP[i] && (side != 0 || q > model->high[i] || q < model->low[i]);
+        beyond[i] = active[i] ? q - (side > 0 || (side == 0 && q > model->high[i]) ? model->high[i] : model->low[i]) : 0.0;
+        for (j = 0; j < NR; j++)
+            for (weight[i][j] = 0.0, k = 0; k < NX; k++) weight[i][j] += model->Q[i][k] * model->B[k][NU + j];
+        if (weight[i][i] * GLANCE > 0.5 * model->glance.held[i][i]) weight[i][i] = 0.0; /* of inertia, but for rounding */
+    }
+    hold((const double(*)[NR + 1])weight, active, pulse, beyond);
+    for (i = 0; i < NX; i++)
+        for (j = 0; j < NR; j++) model->now.x[i] += model->B[i][NU + j] * pulse[j];
 }
 
 static void rest(Model *model)
 {
     memset(&model->now, 0, sizeof model->now);
+    memcpy(model->now.p, START, sizeof(double) * NP);
+    model->now.stale = 1;
+    model->is_running = model->is_coupled = model->is_warned = 0;
 }

@@ -1,10 +1,10 @@
-/* FMI 2.0 for co-simulation over engine.c. Written by inerter after the specification.
-
-   References: 0 to NU - 1 are the inputs, NU to NU + NY - 1 the outputs. */
+/* FMI 2.0 for co-simulation over instance.c. Written by inerter after the specification. */
 
 #include <stddef.h>
 
-#include "engine.c"
+#define FIRST 0
+#define INPUT_ORDERS 1
+#include "instance.c"
 
 #if defined _WIN32
 #define FMI2 __declspec(dllexport)
@@ -18,7 +18,6 @@ typedef double Real;
 typedef int Integer, Boolean;
 typedef const char *String;
 typedef char Byte;
-typedef enum { OK, WARNING, DISCARD, ERROR, FATAL, PENDING } Status;
 typedef enum { MODEL_EXCHANGE, CO_SIMULATION } Type;
 typedef enum { DO_STEP_STATUS, PENDING_STATUS, LAST_SUCCESSFUL_TIME, TERMINATED } StatusKind;
 typedef struct {
@@ -28,6 +27,18 @@ typedef struct {
     void (*finished)(void *, Status);
     void *environment;
 } Callbacks;
+typedef struct {
+    Model model;
+    Callbacks callbacks;
+    char name[128];
+} Instance;
+
+static void tell(Model *model, Status status, const char *text)
+{
+    const Instance *const one = (const Instance *)model;
+    const String category = status == WARNING ? "logStatusWarning" : "logStatusError";
+    if (one->callbacks.logger != NULL) one->callbacks.logger(one->callbacks.environment, one->name, status, category, text);
+}
 
 FMI2 String fmi2GetTypesPlatform(void) { return "default"; }
 FMI2 String fmi2GetVersion(void) { return "2.0"; }
@@ -40,6 +51,7 @@ FMI2 Status fmi2SetDebugLogging(Component c, Boolean on, size_t n, const String 
 FMI2 Component fmi2Instantiate(String name, Type type, String guid, String place, const Callbacks *callbacks,
                                Boolean visible, Boolean logging)
 {
+    Instance *one;
     (void)visible, (void)logging, (void)place;
     if (type != CO_SIMULATION || guid == NULL || strcmp(guid, TOKEN) != 0) {
         if (callbacks != NULL && callbacks->logger != NULL)
@@ -47,10 +59,15 @@ FMI2 Component fmi2Instantiate(String name, Type type, String guid, String place
                               "not for co-simulation, or the description is of another model");
         return NULL;
     }
-    return calloc(1, sizeof(Model));
+    one = calloc(1, sizeof(Instance));
+    if (one == NULL) return NULL;
+    if (callbacks != NULL) one->callbacks = *callbacks;
+    if (name != NULL) strncpy(one->name, name, sizeof one->name - 1);
+    rest(&one->model);
+    return one;
 }
 
-FMI2 void fmi2FreeInstance(Component c) { free(c); }
+FMI2 void fmi2FreeInstance(Component c) { release(c); }
 FMI2 Status fmi2SetupExperiment(Component c, Boolean defined, Real tolerance, Real start, Boolean stops, Real stop)
 {
     (void)defined, (void)tolerance, (void)stops, (void)stop;
@@ -58,30 +75,16 @@ FMI2 Status fmi2SetupExperiment(Component c, Boolean defined, Real tolerance, Re
     return OK;
 }
 FMI2 Status fmi2EnterInitializationMode(Component c) { (void)c; return OK; }
-FMI2 Status fmi2ExitInitializationMode(Component c) { (void)c; return OK; }
+FMI2 Status fmi2ExitInitializationMode(Component c)
+{
+    ((Model *)c)->is_running = 1;
+    return assemble(c) ? OK : ERROR;
+}
 FMI2 Status fmi2Terminate(Component c) { (void)c; return OK; }
 FMI2 Status fmi2Reset(Component c) { rest(c); return OK; }
 
-FMI2 Status fmi2GetReal(Component c, const Reference r[], size_t n, Real value[])
-{
-    const Model *model = c;
-    size_t i;
-    for (i = 0; i < n; i++) {
-        if (r[i] >= NU + NY) return ERROR;
-        value[i] = r[i] < NU ? model->now.u[0][r[i]] : output(model, (int)r[i] - NU);
-    }
-    return OK;
-}
-
-FMI2 Status fmi2SetReal(Component c, const Reference r[], size_t n, const Real value[])
-{
-    size_t i;
-    for (i = 0; i < n; i++) {
-        if (r[i] >= NU) return ERROR;
-        ((Model *)c)->now.u[0][r[i]] = value[i];
-    }
-    return OK;
-}
+FMI2 Status fmi2GetReal(Component c, const Reference r[], size_t n, Real value[]) { return read_values(c, r, n, value); }
+FMI2 Status fmi2SetReal(Component c, const Reference r[], size_t n, const Real value[]) { return write_values(c, r, n, value); }
 
 #define NONE(name, type)                                                                  \
     FMI2 Status fmi2Get##name(Component c, const Reference r[], size_t n, type value[])   \
@@ -98,19 +101,8 @@ NONE(Integer, Integer)
 NONE(Boolean, Boolean)
 NONE(String, String)
 
-FMI2 Status fmi2GetFMUstate(Component c, FmuState *state)
-{
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return ERROR;
-    memcpy(*state, &((Model *)c)->now, sizeof(State));
-    return OK;
-}
-FMI2 Status fmi2SetFMUstate(Component c, FmuState state)
-{
-    if (state == NULL) return ERROR;
-    memcpy(&((Model *)c)->now, state, sizeof(State));
-    return OK;
-}
+FMI2 Status fmi2GetFMUstate(Component c, FmuState *state) { return get_state(c, state); }
+FMI2 Status fmi2SetFMUstate(Component c, FmuState state) { return set_state(c, state); }
 FMI2 Status fmi2FreeFMUstate(Component c, FmuState *state)
 {
     (void)c;
@@ -119,50 +111,39 @@ FMI2 Status fmi2FreeFMUstate(Component c, FmuState *state)
 }
 FMI2 Status fmi2SerializedFMUstateSize(Component c, FmuState state, size_t *size)
 {
-    (void)c, (void)state;
-    *size = sizeof(State);
-    return OK;
+    (void)c;
+    *size = state == NULL ? 0 : state_size(state);
+    return state == NULL ? ERROR : OK;
 }
 FMI2 Status fmi2SerializeFMUstate(Component c, FmuState state, Byte bytes[], size_t size)
 {
     (void)c;
-    if (state == NULL || size < sizeof(State)) return ERROR;
-    memcpy(bytes, state, sizeof(State));
-    return OK;
+    return serialize_state(state, bytes, size);
 }
 FMI2 Status fmi2DeSerializeFMUstate(Component c, const Byte bytes[], size_t size, FmuState *state)
 {
     (void)c;
-    if (size != sizeof(State)) return ERROR;
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return ERROR;
-    memcpy(*state, bytes, sizeof(State));
-    return OK;
+    return deserialize_state(bytes, size, state);
 }
 
 FMI2 Status fmi2GetDirectionalDerivative(Component c, const Reference unknown[], size_t n, const Reference known[],
                                          size_t m, const Real seed[], Real value[])
 {
-    size_t i, j;
-    (void)c;
-    for (i = 0; i < n; i++) {
-        value[i] = 0.0;
-        for (j = 0; j < m; j++) {
-            if (unknown[i] < NU || unknown[i] >= NU + NY || known[j] >= NU) return ERROR;
-            value[i] += D[unknown[i] - NU][known[j]] * seed[j];
-        }
-    }
-    return OK;
+    return directional_derivative(c, unknown, n, known, m, seed, value);
 }
 
 FMI2 Status fmi2SetRealInputDerivatives(Component c, const Reference r[], size_t n, const Integer order[],
                                         const Real value[])
 {
+    Model *const model = c;
     size_t i;
     for (i = 0; i < n; i++) {
-        if (r[i] >= NU || order[i] < 1) return ERROR;
-        if (order[i] < ORDERS) ((Model *)c)->now.u[order[i]][r[i]] = value[i];
+        const Variable one = variable(r[i]);
+        if (one.kind == MOTION) continue; /* its derivatives are inputs themselves */
+        if (one.kind != INPUT || order[i] < 1) return ERROR;
+        if (order[i] < ORDERS) model->now.e[order[i]][one.number] = value[i];
         else if (value[i] != 0.0) return DISCARD;
+        model->now.stale = 1;
     }
     return OK;
 }
@@ -174,14 +155,12 @@ FMI2 Status fmi2GetRealOutputDerivatives(Component c, const Reference r[], size_
 
 FMI2 Status fmi2DoStep(Component c, Real time, Real step, Boolean final)
 {
-    Model *model = c;
-    int k;
+    Model *const model = c;
+    const Status status = take_step(model, time, step);
     (void)final;
-    if (!(step >= 0.0)) return ERROR;
-    model->now.time = time;
-    if (step > 0.0 && !advance(model, step)) return ERROR;
-    for (k = 1; k < ORDERS; k++) memset(model->now.u[k], 0, sizeof model->now.u[k]); /* they are of one step */
-    return OK;
+    memset(model->now.e[1], 0, sizeof model->now.e - sizeof model->now.e[0]); /* derivatives are of one step */
+    model->now.stale = 1;
+    return status;
 }
 FMI2 Status fmi2CancelStep(Component c) { (void)c; return ERROR; }
 FMI2 Status fmi2GetStatus(Component c, StatusKind kind, Status *value) { (void)c, (void)kind; *value = OK; return OK; }

@@ -1,12 +1,13 @@
-/* FMI 3.0 for co-simulation over engine.c. Written by inerter after the specification.
-
-   References: 0 is time, 1 + k NU + j is derivative k of input j, and then come the outputs. */
+/* FMI 3.0 for co-simulation over instance.c, with derivatives of inputs as inputs. Written by inerter after the
+   specification. Reference 0 is time. */
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine.c"
+#define FIRST 1
+#define INPUT_ORDERS ORDERS
+#include "instance.c"
 
 #if defined _WIN32
 #define FMI3 __declspec(dllexport)
@@ -14,7 +15,7 @@
 #define FMI3 __attribute__((visibility("default")))
 #endif
 
-typedef void *Instance, *FmuState, *Environment;
+typedef void *Handle, *FmuState, *Environment;
 typedef uint32_t Reference;
 typedef double Float64;
 typedef bool Boolean;
@@ -22,38 +23,51 @@ typedef const char *String;
 typedef uint8_t Byte;
 typedef const uint8_t *Binary;
 typedef bool Clock;
-typedef enum { OK, WARNING, DISCARD, ERROR, FATAL } Status;
 typedef void (*Log)(Environment, Status, String, String);
 typedef void (*Function)(void);
 
-#define FIRST_OUTPUT (1 + ORDERS * NU)
-#define ALL (FIRST_OUTPUT + NY)
+typedef struct {
+    Model model;
+    Log log;
+    Environment environment;
+} Instance;
+
+static void tell(Model *model, Status status, const char *text)
+{
+    const Instance *const one = (const Instance *)model;
+    if (one->log != NULL) one->log(one->environment, status, status == WARNING ? "logStatusWarning" : "logStatusError", text);
+}
 
 FMI3 String fmi3GetVersion(void) { return "3.0"; }
-FMI3 Status fmi3SetDebugLogging(Instance c, Boolean on, size_t n, const String names[])
+FMI3 Status fmi3SetDebugLogging(Handle c, Boolean on, size_t n, const String names[])
 {
     (void)c, (void)on, (void)n, (void)names;
     return OK;
 }
-FMI3 Instance fmi3InstantiateCoSimulation(String name, String token, String place, Boolean visible, Boolean logging,
+FMI3 Handle fmi3InstantiateCoSimulation(String name, String token, String place, Boolean visible, Boolean logging,
                                           Boolean events, Boolean early, const Reference wanted[], size_t n,
                                           Environment environment, Log log, Function update)
 {
+    Instance *one;
     (void)name, (void)place, (void)visible, (void)logging, (void)events, (void)early, (void)wanted, (void)n;
     (void)update;
     if (token == NULL || strcmp(token, TOKEN) != 0) {
         if (log != NULL) log(environment, ERROR, "logStatusError", "the description is of another model");
         return NULL;
     }
-    return calloc(1, sizeof(Model));
+    one = calloc(1, sizeof(Instance));
+    if (one == NULL) return NULL;
+    one->log = log, one->environment = environment;
+    rest(&one->model);
+    return one;
 }
-FMI3 Instance fmi3InstantiateModelExchange(String name, String token, String place, Boolean visible, Boolean logging,
+FMI3 Handle fmi3InstantiateModelExchange(String name, String token, String place, Boolean visible, Boolean logging,
                                            Environment environment, Log log)
 {
     (void)name, (void)token, (void)place, (void)visible, (void)logging, (void)environment, (void)log;
     return NULL;
 }
-FMI3 Instance fmi3InstantiateScheduledExecution(String name, String token, String place, Boolean visible,
+FMI3 Handle fmi3InstantiateScheduledExecution(String name, String token, String place, Boolean visible,
                                                 Boolean logging, Environment environment, Log log, Function update,
                                                 Function lock, Function unlock)
 {
@@ -61,8 +75,8 @@ FMI3 Instance fmi3InstantiateScheduledExecution(String name, String token, Strin
     (void)update, (void)lock, (void)unlock;
     return NULL;
 }
-FMI3 void fmi3FreeInstance(Instance c) { free(c); }
-FMI3 Status fmi3EnterInitializationMode(Instance c, Boolean defined, Float64 tolerance, Float64 start, Boolean stops,
+FMI3 void fmi3FreeInstance(Handle c) { release(c); }
+FMI3 Status fmi3EnterInitializationMode(Handle c, Boolean defined, Float64 tolerance, Float64 start, Boolean stops,
                                         Float64 stop)
 {
     (void)defined, (void)tolerance, (void)stops, (void)stop;
@@ -70,10 +84,14 @@ FMI3 Status fmi3EnterInitializationMode(Instance c, Boolean defined, Float64 tol
     return OK;
 }
 #define NOTHING(name) \
-    FMI3 Status fmi3##name(Instance c) { (void)c; return OK; }
+    FMI3 Status fmi3##name(Handle c) { (void)c; return OK; }
 #define REFUSED(name) \
-    FMI3 Status fmi3##name(Instance c) { (void)c; return ERROR; }
-NOTHING(ExitInitializationMode)
+    FMI3 Status fmi3##name(Handle c) { (void)c; return ERROR; }
+FMI3 Status fmi3ExitInitializationMode(Handle c)
+{
+    ((Model *)c)->is_running = 1;
+    return assemble(c) ? OK : ERROR;
+}
 NOTHING(Terminate)
 REFUSED(EnterEventMode)
 REFUSED(EnterConfigurationMode)
@@ -81,38 +99,23 @@ REFUSED(ExitConfigurationMode)
 REFUSED(EvaluateDiscreteStates)
 REFUSED(EnterContinuousTimeMode)
 REFUSED(EnterStepMode)
-FMI3 Status fmi3Reset(Instance c) { rest(c); return OK; }
+FMI3 Status fmi3Reset(Handle c) { rest(c); return OK; }
 
-FMI3 Status fmi3GetFloat64(Instance c, const Reference r[], size_t n, Float64 value[], size_t m)
+FMI3 Status fmi3GetFloat64(Handle c, const Reference r[], size_t n, Float64 value[], size_t m)
 {
-    const Model *model = c;
-    size_t i;
-    if (m < n) return ERROR;
-    for (i = 0; i < n; i++) {
-        if (r[i] >= ALL) return ERROR;
-        if (r[i] == 0) value[i] = model->now.time;
-        else if (r[i] < FIRST_OUTPUT) value[i] = model->now.u[(r[i] - 1) / (NU + !NU)][(r[i] - 1) % (NU + !NU)];
-        else value[i] = output(model, (int)r[i] - FIRST_OUTPUT);
-    }
-    return OK;
+    return m < n ? ERROR : read_values(c, r, n, value);
 }
-FMI3 Status fmi3SetFloat64(Instance c, const Reference r[], size_t n, const Float64 value[], size_t m)
+FMI3 Status fmi3SetFloat64(Handle c, const Reference r[], size_t n, const Float64 value[], size_t m)
 {
-    size_t i;
-    if (m < n) return ERROR;
-    for (i = 0; i < n; i++) {
-        if (r[i] == 0 || r[i] >= FIRST_OUTPUT) return ERROR;
-        ((Model *)c)->now.u[(r[i] - 1) / (NU + !NU)][(r[i] - 1) % (NU + !NU)] = value[i];
-    }
-    return OK;
+    return m < n ? ERROR : write_values(c, r, n, value);
 }
 #define NONE(name, type)                                                                                       \
-    FMI3 Status fmi3Get##name(Instance c, const Reference r[], size_t n, type value[], size_t m)               \
+    FMI3 Status fmi3Get##name(Handle c, const Reference r[], size_t n, type value[], size_t m)               \
     {                                                                                                          \
         (void)c, (void)r, (void)value, (void)m;                                                                \
         return n ? ERROR : OK;                                                                                 \
     }                                                                                                          \
-    FMI3 Status fmi3Set##name(Instance c, const Reference r[], size_t n, const type value[], size_t m)         \
+    FMI3 Status fmi3Set##name(Handle c, const Reference r[], size_t n, const type value[], size_t m)         \
     {                                                                                                          \
         (void)c, (void)r, (void)value, (void)m;                                                                \
         return n ? ERROR : OK;                                                                                 \
@@ -128,118 +131,90 @@ NONE(Int64, int64_t)
 NONE(UInt64, uint64_t)
 NONE(Boolean, Boolean)
 NONE(String, String)
-FMI3 Status fmi3GetBinary(Instance c, const Reference r[], size_t n, size_t sizes[], Binary value[], size_t m)
+FMI3 Status fmi3GetBinary(Handle c, const Reference r[], size_t n, size_t sizes[], Binary value[], size_t m)
 {
     (void)c, (void)r, (void)sizes, (void)value, (void)m;
     return n ? ERROR : OK;
 }
-FMI3 Status fmi3SetBinary(Instance c, const Reference r[], size_t n, const size_t sizes[], const Binary value[], size_t m)
+FMI3 Status fmi3SetBinary(Handle c, const Reference r[], size_t n, const size_t sizes[], const Binary value[], size_t m)
 {
     (void)c, (void)r, (void)sizes, (void)value, (void)m;
     return n ? ERROR : OK;
 }
-FMI3 Status fmi3GetClock(Instance c, const Reference r[], size_t n, Clock value[])
+FMI3 Status fmi3GetClock(Handle c, const Reference r[], size_t n, Clock value[])
 {
     (void)c, (void)r, (void)value;
     return n ? ERROR : OK;
 }
-FMI3 Status fmi3SetClock(Instance c, const Reference r[], size_t n, const Clock value[])
+FMI3 Status fmi3SetClock(Handle c, const Reference r[], size_t n, const Clock value[])
 {
     (void)c, (void)r, (void)value;
     return n ? ERROR : OK;
 }
 
-FMI3 Status fmi3GetNumberOfVariableDependencies(Instance c, Reference r, size_t *n) { (void)c, (void)r, (void)n; return ERROR; }
-FMI3 Status fmi3GetVariableDependencies(Instance c, Reference r, size_t of[], Reference on[], size_t at[], int kinds[],
+FMI3 Status fmi3GetNumberOfVariableDependencies(Handle c, Reference r, size_t *n) { (void)c, (void)r, (void)n; return ERROR; }
+FMI3 Status fmi3GetVariableDependencies(Handle c, Reference r, size_t of[], Reference on[], size_t at[], int kinds[],
                                         size_t n)
 {
     (void)c, (void)r, (void)of, (void)on, (void)at, (void)kinds, (void)n;
     return ERROR;
 }
 
-FMI3 Status fmi3GetFMUState(Instance c, FmuState *state)
-{
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return ERROR;
-    memcpy(*state, &((Model *)c)->now, sizeof(State));
-    return OK;
-}
-FMI3 Status fmi3SetFMUState(Instance c, FmuState state)
-{
-    if (state == NULL) return ERROR;
-    memcpy(&((Model *)c)->now, state, sizeof(State));
-    return OK;
-}
-FMI3 Status fmi3FreeFMUState(Instance c, FmuState *state)
+FMI3 Status fmi3GetFMUState(Handle c, FmuState *state) { return get_state(c, state); }
+FMI3 Status fmi3SetFMUState(Handle c, FmuState state) { return set_state(c, state); }
+FMI3 Status fmi3FreeFMUState(Handle c, FmuState *state)
 {
     (void)c;
     if (state != NULL) free(*state), *state = NULL;
     return OK;
 }
-FMI3 Status fmi3SerializedFMUStateSize(Instance c, FmuState state, size_t *size)
-{
-    (void)c, (void)state;
-    *size = sizeof(State);
-    return OK;
-}
-FMI3 Status fmi3SerializeFMUState(Instance c, FmuState state, Byte bytes[], size_t size)
+FMI3 Status fmi3SerializedFMUStateSize(Handle c, FmuState state, size_t *size)
 {
     (void)c;
-    if (state == NULL || size < sizeof(State)) return ERROR;
-    memcpy(bytes, state, sizeof(State));
-    return OK;
+    *size = state == NULL ? 0 : state_size(state);
+    return state == NULL ? ERROR : OK;
 }
-FMI3 Status fmi3DeserializeFMUState(Instance c, const Byte bytes[], size_t size, FmuState *state)
+FMI3 Status fmi3SerializeFMUState(Handle c, FmuState state, Byte bytes[], size_t size)
 {
     (void)c;
-    if (size != sizeof(State)) return ERROR;
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return ERROR;
-    memcpy(*state, bytes, sizeof(State));
-    return OK;
+    return serialize_state(state, bytes, size);
+}
+FMI3 Status fmi3DeserializeFMUState(Handle c, const Byte bytes[], size_t size, FmuState *state)
+{
+    (void)c;
+    return deserialize_state(bytes, size, state);
 }
 
-FMI3 Status fmi3GetDirectionalDerivative(Instance c, const Reference unknown[], size_t n, const Reference known[],
+FMI3 Status fmi3GetDirectionalDerivative(Handle c, const Reference unknown[], size_t n, const Reference known[],
                                          size_t m, const Float64 seed[], size_t ns, Float64 value[], size_t nv)
 {
-    size_t i, j;
-    (void)c;
-    if (ns < m || nv < n) return ERROR;
-    for (i = 0; i < n; i++) {
-        if (unknown[i] < FIRST_OUTPUT || unknown[i] >= ALL) return ERROR;
-        value[i] = 0.0;
-        for (j = 0; j < m; j++) {
-            if (known[j] == 0 || known[j] >= FIRST_OUTPUT) return ERROR;
-            if (known[j] <= NU) value[i] += D[unknown[i] - FIRST_OUTPUT][known[j] - 1] * seed[j];
-        }
-    }
-    return OK;
+    return ns < m || nv < n ? ERROR : directional_derivative(c, unknown, n, known, m, seed, value);
 }
-FMI3 Status fmi3GetAdjointDerivative(Instance c, const Reference unknown[], size_t n, const Reference known[], size_t m,
+FMI3 Status fmi3GetAdjointDerivative(Handle c, const Reference unknown[], size_t n, const Reference known[], size_t m,
                                      const Float64 seed[], size_t ns, Float64 value[], size_t nv)
 {
     (void)c, (void)unknown, (void)n, (void)known, (void)m, (void)seed, (void)ns, (void)value, (void)nv;
     return ERROR;
 }
 
-FMI3 Status fmi3GetIntervalDecimal(Instance c, const Reference r[], size_t n, Float64 v[], int q[])
+FMI3 Status fmi3GetIntervalDecimal(Handle c, const Reference r[], size_t n, Float64 v[], int q[])
 {
     (void)c, (void)r, (void)v, (void)q;
     return n ? ERROR : OK;
 }
-FMI3 Status fmi3GetIntervalFraction(Instance c, const Reference r[], size_t n, uint64_t v[], uint64_t w[], int q[])
+FMI3 Status fmi3GetIntervalFraction(Handle c, const Reference r[], size_t n, uint64_t v[], uint64_t w[], int q[])
 {
     (void)c, (void)r, (void)v, (void)w, (void)q;
     return n ? ERROR : OK;
 }
 #define DECIMAL(name, type)                                                         \
-    FMI3 Status fmi3##name(Instance c, const Reference r[], size_t n, type v[])     \
+    FMI3 Status fmi3##name(Handle c, const Reference r[], size_t n, type v[])     \
     {                                                                               \
         (void)c, (void)r, (void)v;                                                  \
         return n ? ERROR : OK;                                                      \
     }
 #define FRACTION(name, type)                                                              \
-    FMI3 Status fmi3##name(Instance c, const Reference r[], size_t n, type v[], type w[]) \
+    FMI3 Status fmi3##name(Handle c, const Reference r[], size_t n, type v[], type w[]) \
     {                                                                                     \
         (void)c, (void)r, (void)v, (void)w;                                               \
         return n ? ERROR : OK;                                                            \
@@ -251,46 +226,43 @@ FRACTION(GetShiftFraction, uint64_t)
 FRACTION(SetIntervalFraction, const uint64_t)
 FRACTION(SetShiftFraction, const uint64_t)
 
-FMI3 Status fmi3UpdateDiscreteStates(Instance c, Boolean *a, Boolean *b, Boolean *d, Boolean *e, Boolean *f, Float64 *t)
+FMI3 Status fmi3UpdateDiscreteStates(Handle c, Boolean *a, Boolean *b, Boolean *d, Boolean *e, Boolean *f, Float64 *t)
 {
     (void)c, (void)a, (void)b, (void)d, (void)e, (void)f, (void)t;
     return ERROR;
 }
-FMI3 Status fmi3CompletedIntegratorStep(Instance c, Boolean final, Boolean *event, Boolean *end)
+FMI3 Status fmi3CompletedIntegratorStep(Handle c, Boolean final, Boolean *event, Boolean *end)
 {
     (void)c, (void)final, (void)event, (void)end;
     return ERROR;
 }
-FMI3 Status fmi3SetTime(Instance c, Float64 time) { (void)c, (void)time; return ERROR; }
-FMI3 Status fmi3SetContinuousStates(Instance c, const Float64 x[], size_t n) { (void)c, (void)x, (void)n; return ERROR; }
+FMI3 Status fmi3SetTime(Handle c, Float64 time) { (void)c, (void)time; return ERROR; }
+FMI3 Status fmi3SetContinuousStates(Handle c, const Float64 x[], size_t n) { (void)c, (void)x, (void)n; return ERROR; }
 #define CONTINUOUS(name) \
-    FMI3 Status fmi3##name(Instance c, Float64 x[], size_t n) { (void)c, (void)x, (void)n; return ERROR; }
+    FMI3 Status fmi3##name(Handle c, Float64 x[], size_t n) { (void)c, (void)x, (void)n; return ERROR; }
 CONTINUOUS(GetContinuousStateDerivatives)
 CONTINUOUS(GetEventIndicators)
 CONTINUOUS(GetContinuousStates)
 CONTINUOUS(GetNominalsOfContinuousStates)
-FMI3 Status fmi3GetNumberOfEventIndicators(Instance c, size_t *n) { (void)c; *n = 0; return OK; }
-FMI3 Status fmi3GetNumberOfContinuousStates(Instance c, size_t *n) { (void)c; *n = 0; return OK; }
-FMI3 Status fmi3GetOutputDerivatives(Instance c, const Reference r[], size_t n, const int32_t order[], Float64 v[],
+FMI3 Status fmi3GetNumberOfEventIndicators(Handle c, size_t *n) { (void)c; *n = 0; return OK; }
+FMI3 Status fmi3GetNumberOfContinuousStates(Handle c, size_t *n) { (void)c; *n = 0; return OK; }
+FMI3 Status fmi3GetOutputDerivatives(Handle c, const Reference r[], size_t n, const int32_t order[], Float64 v[],
                                      size_t m)
 {
     (void)c, (void)r, (void)order, (void)v, (void)m;
     return n ? ERROR : OK;
 }
 
-FMI3 Status fmi3DoStep(Instance c, Float64 time, Float64 step, Boolean final, Boolean *event, Boolean *end,
+FMI3 Status fmi3DoStep(Handle c, Float64 time, Float64 step, Boolean final, Boolean *event, Boolean *end,
                        Boolean *early, Float64 *reached)
 {
-    Model *model = c;
+    const Status status = take_step(c, time, step);
     (void)final;
     *event = *end = *early = false;
-    if (!(step >= 0.0)) return ERROR;
-    model->now.time = time;
-    if (step > 0.0 && !advance(model, step)) return ERROR;
-    *reached = model->now.time;
-    return OK;
+    *reached = ((const Model *)c)->now.time;
+    return status;
 }
-FMI3 Status fmi3ActivateModelPartition(Instance c, Reference clock, Float64 time)
+FMI3 Status fmi3ActivateModelPartition(Handle c, Reference clock, Float64 time)
 {
     (void)c, (void)clock, (void)time;
     return ERROR;

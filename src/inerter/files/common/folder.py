@@ -29,6 +29,12 @@ class WriteMode:
     """Planned use of a result folder by a command; `resume` is None for work that cannot be resumed.
 
     `names` are what it will write there, folders with "/" at the end; `inputs` are the files that it reads.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> mode = it.WriteMode(Path("results"), by="run", names=("report.html", "figures/"))
+    >>> mode.force
+    False
     """
 
     folder: Path
@@ -87,6 +93,15 @@ def open_results(intent: WriteMode) -> Iterator[Results]:
 
     Raises `StudyError` if the folder is not one for these results, or is in use, and then nothing has been changed;
     `WorkError` if the disk is full, or a file of the user's has come in the way meanwhile.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     with it.open_results(it.WriteMode(Path(folder) / "out", by="run", names=("table.csv",))) as results:
+    ...         _ = (results.draft / "table.csv").write_text("k,c")
+    ...     (Path(folder) / "out" / "table.csv").read_text()
+    'k,c'
     """
     _check(intent)
     with _full_disk_reported(intent), _folder_lock(intent.folder, wait=0.0):

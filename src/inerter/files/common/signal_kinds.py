@@ -27,7 +27,12 @@ _SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m"}
 
 
 class SignalKey(NamedTuple):
-    """A key of [signal]. In `unit` and `example`, {unit}, {square} and {size} stand for those of the input."""
+    """A key of [signal]. In `unit` and `example`, {unit}, {square} and {size} stand for those of the input.
+
+    >>> import inerter as it
+    >>> it.SIGNALS["chirp"].keys["duration"].unit
+    's'
+    """
 
     unit: str  # empty for what has none
     example: str
@@ -71,6 +76,10 @@ class SignalKind:
     """Kind of signal: `make` takes the keys of [signal] and `given`, some of `road`, `speed` and `unit`.
 
     It returns a signal, or one for the left and one for the right track.
+
+    >>> import inerter as it
+    >>> sorted(it.SIGNALS["step"].keys)
+    ['height', 'time']
     """
 
     key: str

@@ -247,7 +247,7 @@ class MechanismTable:
 
     coordinates: Mapping[str, float] = key(
         NamesCodec(InertiaCodec(), part_name, least=1),
-        "Degrees of freedom: the mass or moment of inertia of each; 0 for a node at which networks meet.",
+        "Degrees of freedom: the mass or moment of inertia of each; 0 for a node that joins networks.",
         'a section [vehicle.coordinates] with lines such as body = "250 kg"',
     )
     struts: Mapping[str, Any] = key(

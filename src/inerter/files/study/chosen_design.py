@@ -117,5 +117,5 @@ def _read(folder: Path, study: Study, case: Case) -> dict[str, float]:
         raise StudyError(f"{folder}: its results are not of its study. Run the study again.") from None
     known = study.free_units
     if any(np.isnan(values.get(name, np.nan)) for name in known if name in study.design(case.layout).free_values()):
-        raise StudyError(f"{folder}: has no values for {case.name}, as the status there tells.")
+        raise StudyError(f"{folder}: has no values for {case.name}; its status there has the reason.")
     return values

@@ -115,6 +115,24 @@ def run_study(
     Raises `StudyError` if the folder holds something and neither `resume` nor `force` is given, if it holds what is not
     from this study, or if another run is writing to it, and then nothing has been changed; `WorkError` if the disk is
     full, or an executor has ended, or its processes have another version.
+
+    >>> import inerter as it
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> text = '''
+    ... title = "Which damper?"
+    ... vehicle = {model = "quarter-car", sprung_mass = "250 kg", unsprung_mass = "35 kg", tyre_stiffness = "180 kN/m"}
+    ... road = {speed = "25 m/s", class = "B"}
+    ... elements = {k = "60 kN/m", c = {from = "1 kN s/m", to = "9 kN s/m"}}
+    ... layouts = {S1 = "k | c"}
+    ... study = {indices = ["J1"], optimise = "norm"}
+    ... '''
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "damper.toml"
+    ...     _ = path.write_text(text)
+    ...     done = it.run_study(it.load_study(path), Path(folder) / "out")
+    >>> done.data.value.dims, done.n_failures
+    (('layout', 'index', 'method'), 0)
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, worker_pool(jobs, executor) as pool:

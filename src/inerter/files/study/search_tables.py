@@ -217,7 +217,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
         if not each.network:
             continue
         unit = one.result.unit
-        before, after = _real_gains(one, each)
+        before, after = real_gains(one, each)
         gains = [
             None if isnan(gain) else format_percent(gain)
             for gain in (before, after, 100.0 * after / before if before > 0.0 else nan)
@@ -235,7 +235,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
     return Table(f"{_capital(one.heading)}: the best networks with real inerters", heads, rows)
 
 
-def _real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
+def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
     """Gains of a network on the baseline with ideal and with real inerters, in per cent."""
     ideal = next(found.value for found in one.result.ranking if found.layout == each.network)
     return improvement(ideal, one.baseline), improvement(each.value, one.real_baseline(each.method))
@@ -255,7 +255,7 @@ def real_table(found: StudySearch) -> Table:
             Row(
                 cells(
                     *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.value),
-                    *(each.standard_error, one.result.unit, *_real_gains(one, each)),
+                    *(each.standard_error, one.result.unit, *real_gains(one, each)),
                     *(each.parameters.get(name) for name in names),
                     ";".join(f"{name}:{end}" for name, end in each.active_bounds.items()),
                     *(each.starts, each.agreed, each.status_text),

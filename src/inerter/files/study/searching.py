@@ -294,7 +294,7 @@ def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[
     fixed = fixed_part(study)
     if fixed.layouts:
         found += kernels(fixed)
-    elif others := [plan for plan in plans.values() if plan.compiled is None]:
+    elif others := [plan for plan in plans.values() if plan.compiled_index is None]:
         found += kernels(study, others[0].design(others[0].topologies[-1]))
     for method in study.real_inerters.methods if study.real_inerters is not None else ():
         plan = next(iter(plans.values()))

@@ -12,6 +12,10 @@ class TaskEntry:
     """Task: its class as module:class, imported when a study uses the task, and the keys of [study] that belong to it.
 
     `keys` is a declared class; what a file says of it is `study.tasks[key]`.
+
+    >>> import inerter as it
+    >>> it.TASKS["tolerances"].key
+    'tolerances'
     """
 
     key: str

@@ -24,9 +24,15 @@ Fraction = tuple[Complex, Complex]  # numerator and denominator
 
 
 class Network:
-    """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`."""
+    """A two-terminal network: an element, or elements combined by `|`, `-` and `Bridge`.
 
-    _repr_svg_ = shown_by("inerter.figures.plots:network_svg")
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) | it.Damper(7544.2) - it.Inerter(366.52)  # - binds tighter than |
+    >>> isinstance(strut, it.Network), [part.label for part in strut.elements()]
+    (True, ['k', 'c', 'b'])
+    """
+
+    _repr_svg_ = shown_by("inerter.figures.plots.network:network_svg")
 
     def __or__(self, other: Network) -> Parallel:
         return Parallel((*_parts(self, Parallel), *_parts(other, Parallel)))

@@ -13,7 +13,12 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Damper(Element):
-    """Force proportional to the rate of elongation: F = c dx/dt."""
+    """Force proportional to the rate of elongation: F = c dx/dt.
+
+    >>> import inerter as it
+    >>> complex(it.Damper(1500.0).admittance(2j))  # force over velocity [N s/m]
+    (1500+0j)
+    """
 
     damping: Value  # [N s/m]
     name: str | None = None

@@ -23,6 +23,11 @@ class Element(Network):
     A kind of element is a frozen dataclass whose fields are its value, its further numbers (`more`), and `name`, in
     this order; its class attributes are its roles. A kind whose law is not in `LinearRole`, or whose modes are not
     those of a `SwitchRole`, overrides `as_linear` or `as_piecewise`.
+
+    >>> import inerter as it
+    >>> part = it.Spring(120e3, name="main")
+    >>> isinstance(part, it.Element), part.label, part.value, part.unit
+    (True, 'main', 120000.0, 'N/m')
     """
 
     # to the parser

@@ -13,7 +13,13 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Friction(Element):
-    """Dry (Coulomb) friction: a force of size f that opposes the motion, any force in [-f, f] at rest."""
+    """Dry (Coulomb) friction: a force of size f that opposes the motion, any force in [-f, f] at rest.
+
+    >>> import inerter as it
+    >>> run = it.simulate(it.Rig(it.Spring(1e6) - it.Friction(10.0)), displacement=it.sine(0.01, 1.0), duration=0.2)
+    >>> float(run["device_force"][-1])  # N, while it slides upwards
+    10.0
+    """
 
     force: Value  # [N]
     name: str | None = None

@@ -13,7 +13,14 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Gap(Element):
-    """Backlash: no force while |x| < half_width, rigid contact at -half_width and at +half_width."""
+    """Backlash: no force while |x| < half_width, rigid contact at -half_width and at +half_width.
+
+    >>> import inerter as it
+    >>> backlash = it.Spring(1e6) - it.Gap(5e-5)  # m: a tenth of a millimetre in all
+    >>> run = it.simulate(it.Rig(backlash), displacement=it.sine(1e-3, 1.0), duration=0.25)
+    >>> round(float(run["device_force"][-1]))  # 1e6 (1e-3 - 5e-5) N
+    950
+    """
 
     half_width: Value  # [m]
     name: str | None = None

@@ -13,7 +13,12 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Inerter(Element):
-    """Force proportional to the relative acceleration of its ends: F = b d2x/dt2."""
+    """Force proportional to the relative acceleration of its ends: F = b d2x/dt2.
+
+    >>> import inerter as it
+    >>> complex(it.Inerter(300.0).admittance(2j))  # b s [N s/m] at s = 2 j rad/s
+    600j
+    """
 
     inertance: Value  # [kg]
     name: str | None = None

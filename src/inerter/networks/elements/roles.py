@@ -10,7 +10,12 @@ from enum import Enum
 
 
 class LinearRole(Enum):
-    """Role of an element in linear analysis; the values of stiffness, damping and mass are their powers of s."""
+    """Role of an element in linear analysis; the values of stiffness, damping and mass are their powers of s.
+
+    >>> import inerter as it
+    >>> it.Inerter(300.0).linear.order, it.Gap(1e-4).linear is it.LinearRole.CLOSED  # power of s; a rigid connection
+    (2, True)
+    """
 
     STIFFNESS = 0
     DAMPING = 1
@@ -26,14 +31,24 @@ class LinearRole(Enum):
 
 
 class GuardRole(Enum):
-    """Quantity that guards the states of a switching element."""
+    """Quantity that guards the states of a switching element.
+
+    >>> import inerter as it
+    >>> it.Friction(10.0).switch.guard is it.GuardRole.FORCE, it.Gap(1e-4).switch.guard is it.GuardRole.ELONGATION
+    (True, True)
+    """
 
     FORCE = "force"  # constant length in state 0 while the force is between its limits; else sliding at one of them
     ELONGATION = "elongation"  # no force in state 0 between its limits; else contact at one of them
 
 
 class StatisticalRole(Enum):
-    """Replacement in statistical linearisation, which rejects switching elements without an equivalent damper."""
+    """Replacement in statistical linearisation, which rejects switching elements without an equivalent damper.
+
+    >>> import inerter as it
+    >>> it.Friction(10.0).statistical is it.StatisticalRole.DAMPER
+    True
+    """
 
     ITSELF = "itself"
     DAMPER = "damper"  # dissipates the same power under a Gaussian velocity
@@ -44,6 +59,11 @@ class SwitchRole:
     """Contact states of an element of the piecewise system: their guard, and their names for -1, 0 and 1.
 
     Reports of the share of time in each state use the same names, or those in `spent`.
+
+    >>> import inerter as it
+    >>> states = it.Gap(1e-4).switch
+    >>> states.middle
+    'open'
     """
 
     guard: GuardRole

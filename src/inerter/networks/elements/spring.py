@@ -13,7 +13,12 @@ from inerter.networks.elements.values import Value
 
 @dataclass(frozen=True)
 class Spring(Element):
-    """Force proportional to elongation: F = k x."""
+    """Force proportional to elongation: F = k x.
+
+    >>> import inerter as it
+    >>> complex(it.Spring(120e3).admittance(2j))  # k / s [N s/m] at s = 2 j rad/s
+    -60000j
+    """
 
     stiffness: Value  # [N/m]
     name: str | None = None

@@ -20,7 +20,13 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 @dataclass(frozen=True)
 class Free:
-    """A design variable between two bounds. Two of the same name are one."""
+    """A design variable between two bounds. Two of the same name are one.
+
+    >>> import inerter as it
+    >>> variable = it.free(100, 1e4, name="c")
+    >>> isinstance(variable, it.Free), variable.lower, variable.upper
+    (True, 100, 10000.0)
+    """
 
     lower: float
     upper: float
@@ -51,6 +57,10 @@ def free(lower: float, upper: float, name: str | None = None) -> Free:
     """A design variable between `lower` and `upper`, in the unit of its element.
 
     Raises `NetworkError` unless 0 <= lower < upper, both finite.
+
+    >>> import inerter as it
+    >>> it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(it.free(100, 1e4))).free_values()
+    {'c': Free(lower=100, upper=10000.0, name='c')}
     """
     return Free(lower, upper, name)
 
@@ -60,6 +70,11 @@ class Tied:
     """A dependent value: sums, differences, products and quotients of other values, by name, and numbers.
 
     `program` lists names and numbers in postfix notation, each operation after its two operands.
+
+    >>> import inerter as it
+    >>> rear = it.tied("k_front", factor=0.8)
+    >>> isinstance(rear, it.Tied), rear.substitute({"k_front": 100e3})
+    (True, 80000.0)
     """
 
     program: tuple[str | float, ...]

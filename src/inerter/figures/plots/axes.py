@@ -1,0 +1,60 @@
+"""Axes, looks and legends of the plots of one call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from inerter.figures.style import colour, layout_styles, new_figure
+
+
+def single_axes(ax: Axes | None) -> Axes:
+    """The axes that are given, or new ones."""
+    return ax if ax is not None else new_figure(height=3.0, width=4.6)[1][0]
+
+
+def axes_pair(axes: Sequence[Axes] | None) -> tuple[Axes, Axes]:
+    """The two axes that are given, or new ones above one another."""
+    upper, lower = axes if axes is not None else new_figure(2, height=2.0, width=4.6)[1]
+    return upper, lower
+
+
+def curve_looks(named: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Keywords of a curve each; the first of several is what the others are compared with."""
+    if len(named) == 1:
+        return [{"color": colour(0), "label": name} for name in named]
+    styles = layout_styles(named, next(iter(named)))
+    return [{**styles[name].curve(), "label": name} for name in named]
+
+
+def add_curve_legend(ax: Axes, count: int) -> None:
+    """A legend where there are several curves, each name once."""
+    entries = _entries(ax)
+    if entries and count > 1:
+        ax.legend(list(entries.values()), list(entries))
+
+
+def add_legend_above(ax: Axes) -> None:
+    """A legend in a row above the axes, where it covers no curve."""
+    if entries := _entries(ax):
+        ax.legend(
+            list(entries.values()),
+            list(entries),
+            loc="lower right",
+            bbox_to_anchor=(1.0, 1.0),
+            ncols=len(entries),
+            borderaxespad=0.2,
+        )
+
+
+def _entries(ax: Axes) -> dict[str, Any]:
+    """Handle of each label of the curves of axes, each label once."""
+    handles, labels = ax.get_legend_handles_labels()
+    return {label: handle for handle, label in zip(handles, labels, strict=True) if label}
+
+
+def words_of(name: str) -> str:
+    """Name of an input or output as words."""
+    return name.replace("_", " ")

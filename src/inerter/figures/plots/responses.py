@@ -1,0 +1,95 @@
+"""Frequency responses of designs, as Bode and Nyquist plots show them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from inerter.errors import DesignError, LinearSystemError
+from inerter.figures.labels import axis_label, capital
+from inerter.figures.plots.axes import curve_looks, words_of
+from inerter.files.study.responses import gain_unit, source_unit
+from inerter.indices.definition import Index
+from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.norms.response import frequency_response, resonant_range
+from inerter.systems.assemble import state_space
+from inerter.systems.descriptor import close
+from inerter.systems.linear import LinearSystem
+from inerter.systems.outputs import input_unit, unit_of
+from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
+
+Array = NDArray[np.float64]
+Designs = Vehicle | Mapping[str, Vehicle]
+Response = Index | tuple[str, str]
+
+
+class ResponseCurve:
+    """The response of an output of one design."""
+
+    def __init__(self, frequency: Array, value: NDArray[np.complex128], look: dict[str, Any], what: str, unit: str):
+        self.frequency, self.value, self.look, self.unit = frequency, value, look, unit
+        self.gain_label = axis_label(what, unit)
+
+
+def response_curves(designs: Designs, response: Response, frequency: ArrayLike | None) -> Iterator[ResponseCurve]:
+    """A curve for each design and each output of the response."""
+    named = designs_by_name(designs)
+    found = [_system(vehicle.mechanism(), vehicle, response) for vehicle in named.values()]
+    omega = resonant_range([system.A for system, *_ in found])
+    hertz = omega / (2.0 * np.pi) if frequency is None else check_frequencies(frequency)
+    for look, (system, pade_order, what, unit) in zip(curve_looks(named), found, strict=True):
+        values = frequency_response(system, 2.0 * np.pi * hertz, pade_order)
+        if values.shape[2] > 1:
+            raise DesignError(
+                "Several independent sources excite this response, so that it has no phase. Plot it from one input to "
+                'one output, such as ("road_front_left", "roll_acceleration").'
+            )
+        for row, output in enumerate(system.outputs):
+            several = {"label": f"{look['label']} {words_of(output)}".strip()} if len(system.outputs) > 1 else {}
+            yield ResponseCurve(hertz, values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)
+
+
+def _system(mechanism: Mechanism, vehicle: Vehicle, response: Response) -> tuple[LinearSystem, int | None, str, str]:
+    """System of a response, the order of its Pade approximants, what its gain is in words, and its unit."""
+    if not isinstance(response, tuple):
+        if free := ", ".join(mechanism.free_values()):
+            raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+        problem = linear_problem(mechanism, response.definition(mechanism), CONVENTIONS["exact"])
+        system = problem.system(close(problem.descriptor, {}))
+        own = unit_of(mechanism, [system.outputs[0]])
+        return (
+            system,
+            problem.pade_order,
+            capital(response.response),
+            gain_unit(own, source_unit(mechanism, problem.definition)),
+        )
+    source, output = response
+    system = state_space(vehicle, source, output)
+    moved = source in {road.name for road in mechanism.roads}
+    what = f"{capital(words_of(output))} over {words_of(source)}{' velocity' if moved else ''}"
+    per = "m/s" if moved else input_unit(mechanism, source)
+    return system, None, what, gain_unit(unit_of(mechanism, [output]), per)
+
+
+def designs_by_name(designs: Designs) -> dict[str, Vehicle]:
+    named = dict(designs) if isinstance(designs, Mapping) else {"": designs}
+    if not named:
+        raise DesignError("A plot of designs needs at least one, got none.")
+    for vehicle in named.values():
+        check_vehicle(vehicle)
+    return named
+
+
+def check_frequencies(frequency: ArrayLike) -> Array:
+    found = np.atleast_1d(np.asarray(frequency, dtype=float))
+    if found.ndim != 1 or not found.size or not np.all(np.isfinite(found) & (found > 0.0)):
+        raise LinearSystemError("Frequencies of a plot are a list of positive numbers of Hz.")
+    return found
+
+
+def _fainter(row: int) -> dict[str, Any]:
+    return {"alpha": 1.0 / (1 + row)} if row else {}

@@ -1,0 +1,43 @@
+// The design that is edited in the formats of other programs: the library declares the kinds.
+
+import { elementsIn, kindOf } from "../library.js";
+import { DropDown } from "../parts/controls.js";
+import { Unchosen } from "../parts/doubts.js";
+import { html, useState } from "../parts/html.js";
+import { designOf, goalOf } from "../questions.js";
+import { download, fileName } from "../remembering.js";
+
+/** @typedef {{key: string, description: string, suffixes: string[], requires: string}} ExportKind */
+
+const ABOUT = "export"; // messages
+
+/** @param {{store: import("../state/store.js").Store, api: import("../api.js").Api}} props */
+export function ExportMenu({ store, api }) {
+  const state = store.get();
+  const { study, layout } = state.history.present;
+  const design = designOf(state.history.present);
+  const [linear, setLinear] = useState(false);
+  const isNonlinear = elementsIn(state, layout).some((name) => kindOf(state, name)?.switches);
+  /** @param {Event} event @param {ExportKind} kind @param {string} suffix */
+  const save = async ({ currentTarget }, { key: kind }, suffix) => {
+    /** @type {Element} */ (currentTarget).closest("details")?.removeAttribute("open");
+    store.dispatch({ type: "closed", about: ABOUT });
+    try {
+      const file = await api.blob("export/design", { kind, suffix, study, design, index: goalOf(state), linear });
+      download(file, `${fileName(study.title)}-${fileName(layout)}${suffix}`);
+    } catch (error) {
+      store.say(/** @type {Error} */ (error).message, ABOUT);
+    }
+  };
+  return html`<${DropDown} title="Export" id="export-menu">
+    <b>${layout} for other programs</b>
+    <${Unchosen} state=${state} designs=${[design]} />
+    ${isNonlinear && html`<label><input type="checkbox" checked=${linear} onChange=${() => setLinear(!linear)} />
+      linear: without friction and gaps</label>`}
+    <ul class="exports">${(state.about?.exports ?? []).map((/** @type {ExportKind} */ kind) => html`<li key=${kind.key}>
+      <span>${kind.description}${kind.requires && html` <span class="quiet">requires ${kind.requires}</span>`}</span>
+      ${kind.suffixes.map((suffix) => html`<button type="button" key=${suffix} class="edged"
+        aria-label=${`${kind.description} (${suffix})`}
+        onClick=${(/** @type {Event} */ event) => save(event, kind, suffix)}>${suffix}</button>`)}
+    </li>`)}</ul><//>`;
+}

@@ -21,8 +21,8 @@ from inerter.errors import ExportError, WorkError
 from inerter.networks.transform import map_elements
 
 pytest.importorskip("fmpy", reason='FMPy steps FMUs: pip install "inerter[test]".')
-import fmpy
 from fmpy.validation import validate_fmu
+from fmu_functions import declared
 from fmu_master import Master
 from fmu_roads import driven, error, needs_compiler, road
 
@@ -249,16 +249,6 @@ def test_its_sources_alone_make_the_same_library(strut: it.Network, kind: str, t
     symbols = subprocess.run(["nm", "-D", "--defined-only", library], capture_output=True, text=True, check=True).stdout
     names = {line.split()[-1] for line in symbols.splitlines()}
     assert names == declared(kind)
-
-
-def declared(kind: str) -> set[str]:
-    """Functions of the standard's own headers, which FMPy has; of FMI 2.0 without those of model exchange alone."""
-    folder, number = Path(fmpy.__file__).parent / "c-code", {"fmu": 2, "fmu3": 3}[kind]
-    text = (folder / f"fmi{number}FunctionTypes.h").read_text(encoding="utf-8")
-    if kind == "fmu":
-        begin, end = text.index("Model Exchange\n"), text.index("Co-Simulation\n")
-        text = text[:begin] + text[end:]
-    return set(re.findall(rf"\b(fmi{number}\w+)TYPE\b", text))
 
 
 def test_what_is_in_the_archive() -> None:

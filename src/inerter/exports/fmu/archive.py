@@ -156,6 +156,7 @@ def _header(switches: SwitchingSystem) -> str:
         _row("double", "LIMIT_GAIN", gains),
         _row("int", "LIMIT", places),
         _row("int", "GAP", switches.is_gap),
+        _row("int", "CREEPS", switches.creeps),
         _row("double", "START", [one.value for one in parameters]),
         _row("int", "TUNABLE", [one.is_tunable for one in parameters]),
         _row("int", "MAY_VANISH", [one.may_vanish for one in parameters]),

@@ -54,6 +54,12 @@ def test_a_wrong_layout_leaves_the_others_their_answers(client: TestClient, wron
         else:
             assert compared == [each["improvement_percent"] for each in same["results"]]
     assert (told["baseline"] is None) == (spoilt == "S1")
+    caveats = [one["sentence"] for one in _answer(client, study, names, "decision").json()["verdict"]["caveats"]]
+    said = f"The baseline {spoilt} is not valid" if spoilt == "S1" else f"{spoilt} is not valid; it is not ranked"
+    assert sum(said in sentence for sentence in caveats) == 1
+    assert not [
+        one for one in _answer(client, right, names, "decision").json()["verdict"]["caveats"] if "valid" in str(one)
+    ]
     curves = _answer(client, study, names, "response").json()["curves"]
     assert {curve["layout"] for curve in curves} == set(others)
 

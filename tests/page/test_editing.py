@@ -125,3 +125,60 @@ def test_names_with_markup_are_text(visitor: Any, tmp_path: Path) -> None:
     page.wait_for_selector(".kept")
     assert page.locator("img").count() == 0
     assert page.locator("#page script").count() == 0
+
+
+@pytest.mark.campaign
+def test_a_number_is_dragged_and_home_is_its_best_value(visitor: Any) -> None:
+    page = visitor.page
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    page.wait_for_selector("[id='slider elements.b'].marked")
+    optimum = visitor.values()
+    entry, slider = page.locator("[id='entry elements.b']"), page.locator("[id='slider elements.b']")
+    best = entry.get_attribute("title")
+    box = entry.bounding_box()
+    x, y = box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"]
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for far in (2, 10, 60):
+        page.mouse.move(x + far, y)
+    page.mouse.up()
+    assert page.evaluate("() => document.activeElement.id") != "entry elements.b"
+    page.wait_for_function(
+        "best => parseFloat(document.getElementById('entry elements.b').title) > 1.2 * best", arg=float(best.split()[0])
+    )
+    assert visitor.values()["J1"] > optimum["J1"]
+    dragged = entry.get_attribute("title")
+    slider.press("Home")
+    page.wait_for_function("best => document.getElementById('entry elements.b').title === best", arg=best)
+    assert visitor.values() == optimum
+    page.keyboard.press("Control+Z")
+    page.wait_for_function("before => document.getElementById('entry elements.b').title === before", arg=dragged)
+    page.keyboard.press("Control+Z")  # a drag is one step
+    page.wait_for_function("best => document.getElementById('entry elements.b').title === best", arg=best)
+    entry.click()  # a press without a drag
+    page.keyboard.type("400 kg")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => document.getElementById('entry elements.b').title === '400 kg'")
+    page.fill("[id='entry elements.k']", "100 kN/m")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("[id='slider elements.b'].marked", state="detached")  # it was the best of another study
+
+
+@pytest.mark.campaign
+def test_an_element_is_marked_wherever_it_is(visitor: Any) -> None:
+    page = visitor.page
+    page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+    visitor.settled()
+    visitor.drawn()
+    picture = "() => document.querySelector('.vehicle canvas').toDataURL()"
+    page.mouse.move(2, 400)
+    before = page.evaluate(picture)
+    for place in (".element[data-name=b]", "[data-place='elements.b'] .bounds"):
+        page.locator(place).hover()
+        page.wait_for_selector("[data-place='elements.b'].chosen")
+        page.wait_for_selector(".element.lit[data-name=b]")
+        assert page.locator(".amount.chosen, .element.lit").count() == 2
+        page.wait_for_function(f"before => ({picture})() !== before", arg=before)
+        page.mouse.move(2, 400)
+        page.wait_for_function(f"before => ({picture})() === before", arg=before)
+        assert page.locator(".amount.chosen, .element.lit").count() == 0

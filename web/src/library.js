@@ -1,7 +1,8 @@
 // What the library says of the study that is edited: its networks as trees, its elements, its numbers. The newest
 // answer stands until the next one comes; of what it names, what the document has no longer is left out.
 
-import { isRange, own, textOf, entryAt } from "./state/document.js";
+import { partAt } from "./network/algebra.js";
+import { entryAt, isRange, own, textOf } from "./state/document.js";
 
 /** @import { State } from "./state/store.js" */
 /** @import { Tree } from "./network/algebra.js" */
@@ -25,6 +26,17 @@ const at = (table, key) => own(table, key) ?? null;
 
 /** The tree of a text, null where it is no network or not known yet. @param {State} state @param {string} text */
 export const treeOf = ({ trees }, text) => at(trees, text);
+
+/** The element that is selected in the drawing. @param {State} state */
+export function selectedElement(state) {
+  const tree = treeOf(state, textOf(state.history.present));
+  const part = tree && partAt(tree, state.view.path);
+  return part?.kind === "element" ? part.name : null;
+}
+
+/** The element that is pointed at, else the one that is selected. @param {State} state */
+export const shownElement = (state) =>
+  (own(state.history.present.study.elements, state.lit ?? "") === undefined ? selectedElement(state) : state.lit);
 
 /** What is wrong with the network that is edited. @param {State} state
  * @returns {{at: [number, number], sentence: string} | null} */

@@ -119,9 +119,10 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
     <${Axes} laid=${laid} />
     ${laid.bars && html`<path class="bars" d=${laid.bars} />`}
     <g clip-path=${`url(#${clip})`}>
-      ${plot.curves.map(({ name, colour, dash, pale, strong, loose }, i) => !loose && html`<path key=${i}
+      ${plot.curves.map(({ name, colour, dash, pale, strong, loose, stale }, i) => !loose && html`<path key=${i}
         data-curve=${name}
-        class=${["curve", dash && "dash", pale && "pale", strong && "strong"].filter(Boolean).join(" ")}
+        class=${["curve", dash && "dash", pale && "pale", strong && "strong", stale && "stale"].filter(Boolean)
+          .join(" ")}
         style=${{ stroke: curveColour(colour) }} d=${laid.paths[i]} />`)}
       ${(plot.marks ?? []).map(({ x: at, text }) => html`<g key=${text} class="mark-at">
         <path d=${`M${x.at(at)} ${box.top}V${box.bottom}`} />

@@ -1,6 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { numbersOf } from "./library.js";
+import { layoutsWith, numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
 import { entryAt, indicesIn, isRange, own, strutsOf } from "./state/document.js";
@@ -31,6 +31,13 @@ export const allDesigns = (document) =>
 export function goalOf({ view, history }) {
   const indices = indicesIn(history.present.study);
   return indices.includes(view.index) ? view.index : indices[0];
+}
+
+/** The best values that were found of a layout, as long as the study and its goal are the same.
+ * @param {State} state @param {string} layout @returns {{[name: string]: string}} */
+export function bestOf(state, layout) {
+  const found = own(state.best, layout);
+  return found?.study === state.history.present.study && found.index === goalOf(state) ? found.values : {};
 }
 
 /** The design that is edited and the one that it is compared with; that one alone if it is edited.
@@ -69,8 +76,8 @@ const ROWS = [
   (state, document) => [ofDesigns("decision", decided(state, document))],
   ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
   (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
-  ({ view: { seconds, seed } }, document) => [
-    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed }),
+  ({ view: { seconds, seed, output } }, document) => [
+    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
       rest: 300 },
     ofDesigns("mechanism", presentDesign(document)),
   ],
@@ -124,6 +131,23 @@ const keyed = (row) => ({ ...row, key: JSON.stringify(row.body) });
 export const answerOf = (state, panel) =>
   shownOf(state.answers[panel], questions(state).find((question) => question.panel === panel)?.key ?? null);
 
+/** Whether an answer of before is still right about a layout, which does not depend on what was changed.
+ * @param {State} state @param {string} panel @returns {(layout: string) => boolean} */
+export function isRightStill(state, panel) {
+  const latest = state.answers[panel]?.kept[0]?.question;
+  const now = questions(state).find((question) => question.panel === panel)?.body;
+  if (latest === undefined || now === undefined) return () => false;
+  const before = JSON.parse(latest);
+  return (layout) => askedOf(state, before, layout) === askedOf(state, now, layout);
+}
+
+/** All that a question asks of one layout. @param {State} state @param {any} body @param {string} layout */
+function askedOf(state, { study: { elements = {}, layouts = {}, ...rest }, designs = [], index, methods }, layout) {
+  const used = Object.entries(elements).filter(([name]) => layoutsWith(state, name)?.includes(layout) ?? true);
+  return JSON.stringify([rest, used, own(layouts, layout), index, methods,
+    designs.filter((/** @type {any} */ design) => design.layout === layout)]);
+}
+
 /** The same of a panel that asks by a button. @param {State} state @param {string} panel */
 export const soughtAnswer = (state, panel) => soughtIn(state.answers[panel], soughtOf(state, panel)?.key ?? null);
 
@@ -168,9 +192,14 @@ function effortOf(state, scattering) {
   };
 }
 
-/** What is asked for a panel, whether it is shown or not. @param {State} state @param {string} panel */
-export const bodyOf = (state, panel) => panel === "indices" ? indicesBody(state) :
-  questions({ ...state, view: { ...state.view, tab: panel } }).find((question) => question.panel === panel)?.body;
+/** What is asked for a table of a panel, whether it is shown or not: of all outputs. @param {State} state
+ * @param {string} panel */
+export function bodyOf(state, panel) {
+  if (panel === "indices") return indicesBody(state);
+  const asked = questions({ ...state, view: { ...state.view, tab: panel } });
+  const { output, ...body } = asked.find((question) => question.panel === panel)?.body ?? {};
+  return body;
+}
 
 /** The method by which the page judges; none where the server has told of none, and then those of the study.
  * @param {State} state */

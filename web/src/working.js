@@ -53,6 +53,7 @@ export function takeOptima(store, designs, gesture = null, of = null) {
   }
   const all = Object.fromEntries(taken.map(({ best, values }) => [best.layout, values]));
   store.change({ type: "valuedAll", values: all }, gesture);
+  if (of === study) store.dispatch({ type: "optimised", study, index: taken[0].best.index, values: all });
   return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
     best.layout + atBounds(best)).join(", ")}.`;
 }

@@ -71,7 +71,7 @@ def answer_panel(key: str, body: Body) -> Answer:
         study, asked = study_for(body)
         for index in asked.get("indices") or ():
             study.symbol(index)  # raises if it is unknown
-        left_out = {key: asked.pop(key) for key in ("left_out",) if key in asked}
+        left_out = {key: asked[key] for key in ("left_out",) if key in asked}
         return {**answer(study, asked), **left_out}
 
 

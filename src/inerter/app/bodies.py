@@ -120,6 +120,7 @@ class PanelRequest(OfDesigns):
     spread: Annotated[dict[Name, Number], Field(description="Relative tolerances of the values.")] = {}
     samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
+    output: Annotated[Name, Field(description="The only one that is wanted; else the first.")] = ""
 
 
 class WorkRequest(OfDesigns):

@@ -41,7 +41,15 @@ def decision(study: Study, body: Body) -> Answer:
     goal = body.get("index") or indices[0]
     compared = _DesignComparison(study, method, baseline, (goal, *(index for index in indices if index != goal)))
     results = [compared.result(design) for design in designs]
-    told = decide(results, compared.over, method=brief_words_of(method), remedy=remedy_of(method))
+    left_out = body.get("left_out") or ()
+    told = decide(
+        results,
+        compared.over,
+        method=brief_words_of(method),
+        remedy=remedy_of(method),
+        left_out=[one["layout"] for one in left_out],
+        left_out_baseline=next((one["layout"] for one in left_out if one["is_baseline"]), ""),
+    )
     return {
         "goal": {
             "index": goal,

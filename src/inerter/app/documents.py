@@ -60,7 +60,7 @@ def study_for(body: Mapping[str, Any]) -> tuple[Study, dict[str, Any]]:
     """Study of a request, and the request, both without the layouts that are invalid.
 
     Raises `StudyError` as `study_from` if anything else is invalid, or if no valid design of the request is left. The
-    designs left out are listed as `left_out`, each with a sentence.
+    designs left out are listed as `left_out`, each with a sentence, also the baseline if it is one.
     """
     document, asked = body["study"], dict(body)
     try:
@@ -77,8 +77,14 @@ def study_for(body: Mapping[str, Any]) -> tuple[Study, dict[str, Any]]:
         asked |= {key: kept for key, kept in given.items() if body.get(key)}
         if (body.get("baseline") or {}).get("layout") in faults:
             del asked["baseline"]
-        layouts = [one["layout"] for one in body.get("designs") or ()] + list(body.get("layouts") or ())
-        left_out = [{"layout": name, "sentence": faults[name]} for name in dict.fromkeys(layouts) if name in faults]
+        own_base = document["study"].get("baseline", next(iter(document[_LAYOUTS])))
+        base = body["baseline"]["layout"] if body.get("baseline") else own_base
+        named = [*(one["layout"] for one in body.get("designs") or ()), *(body.get("layouts") or ()), base]
+        left_out = [
+            {"layout": name, "sentence": faults[name], "is_baseline": name == base}
+            for name in dict.fromkeys(named)
+            if name in faults
+        ]
         return study, {**asked, "left_out": left_out}
 
 

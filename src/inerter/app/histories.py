@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.app.designs import Design, baseline_of
 from inerter.errors import InerterError, StatusKind, StudyError
@@ -22,6 +24,8 @@ from inerter.vehicle.mechanism import Mechanism
 
 _MOST = 2000  # samples of an output
 _FRAMES = 60.0  # a second, of the car in motion
+_PLACES = 7  # decimal places of its heights [m] and angles [rad]
+_KEPT = 4  # runs
 _MOST_EVENTS, _LONGEST = 5000, 120.0
 _DURATION, _STEP = 10.0, 5e-4  # [s]
 
@@ -32,6 +36,8 @@ def history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, 
     A baseline whose motion cannot be computed has a status only. Raises what `simulation_request` raises, and
     `simulate`.
     """
+    if "output" in body:
+        body = {**body, "output": _names(design.mechanism, body)[0]}
     found = _one_history(study, design, body)
     if body.get("baseline"):
         found["baseline"] = _history_or_status(study, baseline_of(study, body, []), body)
@@ -48,11 +54,12 @@ def _history_or_status(study: Study, design: Design | None, body: Mapping[str, A
 
 def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     asked = simulation_request(study, design, body)
-    run, mechanism = asked.run(), design.mechanism
-    names = body.get("outputs") or main_outputs(mechanism)
+    run, mechanism = _run_once(asked, design, body), design.mechanism
+    names = _names(mechanism, body)
     shaded = state_intervals(run)
     return {
         **design.describe_values(),
+        "outputs": [_describe_output(run, name) for name in main_outputs(mechanism)],
         "signals": [_signal_curve(run, name) for name in names],
         "motion": motion_of(run, mechanism),
         "shaded": shaded,
@@ -64,6 +71,28 @@ def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[
         "status": run.status.kind.value,
         "message": run.status.message,
     }
+
+
+def _names(mechanism: Mechanism, body: Mapping[str, Any]) -> list[str]:
+    """Names of the signals of a request; of one for an `output` that the vehicle does not have, its first."""
+    known = main_outputs(mechanism)
+    if "output" not in body:
+        return body.get("outputs") or known
+    return [body["output"]] if body["output"] in known else known[:1]
+
+
+_runs: dict[str, Trajectory] = {}  # the last ones, of which another output may be asked for
+
+
+def _run_once(asked: SimulationRequest, design: Design, body: Mapping[str, Any]) -> Trajectory:
+    """Run of a request, or the same of before."""
+    key = json.dumps([body["study"], design.layout, design.values, asked.duration, asked.step, body.get("seed")])
+    if key not in _runs:
+        run = asked.run()
+        for old in list(_runs)[: 1 - _KEPT]:
+            _runs.pop(old, None)
+        _runs[key] = run
+    return _runs[key]
 
 
 def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:
@@ -95,27 +124,31 @@ def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) ->
 def _signal_curve(run: Trajectory, name: str) -> dict[str, Any]:
     """An output by the lowest and the highest sample of each piece, at their times."""
     time, values = thin_curve(run.time, run[name], _MOST)
-    return {
-        "name": name,
-        "label": run.outputs[name].title,
-        "unit": run.outputs[name].unit,
-        "time": time,
-        "values": values,
-    }
+    return {**_describe_output(run, name), "time": time, "values": values}
+
+
+def _describe_output(run: Trajectory, name: str) -> dict[str, str]:
+    return {"name": name, "label": run.outputs[name].title, "unit": run.outputs[name].unit}
 
 
 def motion_of(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
-    """Coordinates, roads and elongations of elements at even times, as many a second as a screen shows."""
+    """Coordinates, roads and elongations of elements at even times, as many a second as a screen shows.
+
+    They are rounded to less than a pixel of any picture, which halves what is sent.
+    """
     time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
     inside = elongations(run, mechanism)
-    at = {name: np.interp(time, run.time, run[output]) for name, output in _coordinate_outputs(mechanism).items()}
+
+    def sampled(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.round(np.interp(time, run.time, values), _PLACES)
+
+    at = {name: sampled(run[output]) for name, output in _coordinate_outputs(mechanism).items()}
     return {
-        "time": time,
+        "time": np.round(time, _PLACES),
         "coordinates": {c.name: at[c.name] for c in mechanism.coordinates},
         "roads": {r.name: at[r.name] for r in mechanism.roads},
         "elements": {
-            mount: {label: np.interp(time, run.time, values) for label, values in elements.items()}
-            for mount, elements in inside.items()
+            mount: {label: sampled(values) for label, values in elements.items()} for mount, elements in inside.items()
         },
     }
 

@@ -21,6 +21,7 @@ class CaveatKind(StrEnum):
 
     WORSE = "worse"  # another index gets worse
     STATUS = "status"  # a value is unreliable, infinite or missing
+    LEFT_OUT = "left-out"  # a design is not valid
     TIE = "tie"  # a difference is not significant
     LIMIT = "limit"  # a limit is broken, or its quantity not known
     NEGLECTED = "neglected"  # friction or backlash that the method neglects
@@ -56,6 +57,8 @@ class Contest:
     over: Over
     method: str = ""  # in words
     remedy: str = ""  # method that models friction and backlash
+    left_out: Sequence[str] = ()  # names of designs that are not valid
+    left_out_baseline: str = ""  # of these the baseline
 
     @property
     def baseline(self) -> DesignResult | None:
@@ -73,6 +76,7 @@ def caveats_of(contest: Contest) -> list[Caveat]:
     found = [
         *_worse(contest),
         *_statuses(contest),
+        *_left_out(contest),
         *_ties(contest),
         *_limits(contest),
         *_neglect_caveats(contest),
@@ -111,6 +115,15 @@ def _statuses(contest: Contest) -> Iterator[Caveat]:
     for several in by_reason.values():
         names = list(dict.fromkeys(name for name, _ in several))
         yield Caveat(CaveatKind.STATUS, several[0][1].doubt(format_list(names)))
+
+
+def _left_out(contest: Contest) -> Iterator[Caveat]:
+    if contest.left_out_baseline:
+        text = f"The baseline {contest.left_out_baseline} is not valid: nothing is compared with it."
+        yield Caveat(CaveatKind.LEFT_OUT, text)
+    if others := [name for name in contest.left_out if name != contest.left_out_baseline]:
+        be, rank = ("is", "it is") if len(others) == 1 else ("are", "they are")
+        yield Caveat(CaveatKind.LEFT_OUT, f"{format_list(others)} {be} not valid; {rank} not ranked.")
 
 
 def _ties(contest: Contest) -> Iterator[Caveat]:

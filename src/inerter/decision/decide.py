@@ -54,18 +54,27 @@ class Decision:
     verdict: DecisionVerdict
 
 
-def decide(designs: Sequence[DesignResult], over: Over, *, method: str = "", remedy: str = "") -> Decision:
+def decide(
+    designs: Sequence[DesignResult],
+    over: Over,
+    *,
+    method: str = "",
+    remedy: str = "",
+    left_out: Sequence[str] = (),
+    left_out_baseline: str = "",
+) -> Decision:
     """Rank designs by the goal, and state the verdict.
 
     A design with a broken limit, an infinite or missing value, or a value that nobody has chosen is not ranked. `over`
     gives the improvement of one design over another, or None; it is called for the best one only. `method` is the
-    method in words, `remedy` the name of one that models what it neglects.
+    method in words, `remedy` the name of one that models what it neglects; `left_out` are names of designs that are not
+    valid, with the baseline if it is one of them.
     """
     ranked = sorted((one for one in designs if one.is_ranked), key=lambda one: one.goal.value)
     winners = _winners(designs, ranked, over)
     rest = [one for one in ranked if one not in winners]
     others = sorted((one for one in designs if one not in ranked), key=_order)
-    contest = Contest(designs, winners, over, method, remedy)
+    contest = Contest(designs, winners, over, method, remedy, left_out, left_out_baseline)
     ranks = [*[1] * len(winners), *range(len(winners) + 1, len(ranked) + 1), *[None] * len(others)]
     return Decision((*winners, *rest, *others), tuple(ranks), tuple(winners), _verdict(contest, rest))
 

@@ -2,7 +2,7 @@
 
 import { treeOf, unchosenIn } from "../library.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
-import { allDesigns, answerOf, baselineOf, goalOf } from "../questions.js";
+import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout, textOf } from "../state/document.js";
 import { estimated, placed, shown, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
@@ -57,6 +57,7 @@ function Ranking({ store, answer: { is, value, before } }) {
   const others = value?.rows?.[0]?.others ?? [];
   const baseline = baselineOf(document).layout;
   const { goal } = value ?? {};
+  const isRight = before ? isRightStill(state, "decision") : () => true;
   /** @param {KeyboardEvent} event */
   const turn = (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -67,18 +68,20 @@ function Ranking({ store, answer: { is, value, before } }) {
     /** @type {HTMLElement} */ (next).focus();
   };
   return html`<div class="scroll" role="group" aria-label="Layouts" onKeyDown=${turn}>
-    <table class=${before ? "stale" : ""}><thead><tr><th scope="col">layout</th>
+    <table><thead><tr><th scope="col">layout</th>
       <th scope="col" title=${goal && withUnit(goal.title, goal.unit)}>${goal ? withUnit(goal.index, goal.unit)
         : goalOf(state)}</th>
       <th scope="col">against ${baseline}</th>
       ${others.map((/** @type {any} */ { index, title, unit }) => html`<th scope="col" key=${index}
         title=${withUnit(title, unit)}>${withUnit(index, unit)}</th>`)}</tr></thead>
     <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row}
+      stale=${before && !isRight(row.layout)} compared=${!before || isRight(baseline)}
       missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;
 }
 
-/** @param {{store: Store, row: any, missing: string}} props */
-function Row({ store, row, missing }) {
+/** A layout; `stale` where its numbers are of before, `compared` unless those of the baseline are.
+ * @param {{store: Store, row: any, stale: boolean, compared: boolean, missing: string}} props */
+function Row({ store, row, stale, compared, missing }) {
   const state = store.get();
   const { layout, is_baseline: isBaseline, unchosen = [], others } = row;
   const document = state.history.present;
@@ -86,7 +89,8 @@ function Row({ store, row, missing }) {
   const select = () => on || store.change({ type: "selected", layout });
   const text = textOf({ ...document, layout, strut: Object.keys(Object(document.study.layouts?.[layout]))[0] });
   const goal = goalOf(state);
-  return html`<tr class=${`${on ? "on" : ""} ${unchosen.length > 0 ? "quiet" : ""}`} onClick=${select}>
+  const classes = [on && "on", unchosen.length > 0 && "quiet", stale && "stale", !compared && "apart"].filter(Boolean);
+  return html`<tr class=${classes.join(" ")} onClick=${select}>
     <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
       <${Sketch} state=${state} tree=${treeOf(state, text)} />
       <span style=${{ color: layoutColour(document, layout) }}>${layout}
@@ -95,7 +99,7 @@ function Row({ store, row, missing }) {
       data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
       <${Against} row=${{ ...row, status: null }} unchosen=${unchosen.length > 0} /></td>
-    ${others.map((/** @type {any} */ other) => html`<td class=${`number ${unchosen.length ? "" : better(other)}`}
+    ${others.map((/** @type {any} */ other) => html`<td class=${`number other ${unchosen.length ? "" : better(other)}`}
       key=${other.index} data-index=${on ? other.index : undefined} data-value=${other.value} title=${other.message}>
       <${Against} row=${{ ...other, is_baseline: isBaseline || unchosen.length > 0 }} unchosen=${false} />
       <div class="scatter">${amountText(other)}</div></td>`)}

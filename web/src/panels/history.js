@@ -3,7 +3,7 @@
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
-import { Select, useChoice } from "../parts/controls.js";
+import { Select } from "../parts/controls.js";
 import { html, useMemo } from "../parts/html.js";
 import { Plot } from "../plot.js";
 import { layoutColours } from "../plots/colours.js";
@@ -28,10 +28,10 @@ export function HistoryPanel({ store }) {
   const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
-  /** @type {Signal[]} */
-  const signals = value?.signals ?? [];
-  const [picked, setPicked] = useChoice(signals.map(({ name }) => name));
-  const plot = useMemo(() => declared(value, picked, document), [value, picked, document]);
+  /** @type {{name: string, label: string}[]} */
+  const outputs = value?.outputs ?? [];
+  const { output } = state.view;
+  const plot = useMemo(() => declared(value, document), [value, document]);
   /** @param {string} key @param {string} label @param {number} number @param {{min: number, max: number}} range */
   const setting = (key, label, number, range) => html`<label>
     ${label} <${Field} type="number" class="short" ...${range} text=${String(number)}
@@ -39,8 +39,9 @@ export function HistoryPanel({ store }) {
     const entered = Number(text);
     if (entered >= range.min && entered <= range.max) store.look({ [key]: entered });
   }} /></label>`;
-  const controls = html`<${Select} aria-label="Show" value=${picked} set=${setPicked}
-      choices=${signals.map(({ name, label }) => [name, label])} />
+  const controls = html`<${Select} aria-label="Show" choices=${outputs.map(({ name, label }) => [name, label])}
+      value=${outputs.some(({ name }) => name === output) ? output : outputs[0]?.name}
+      set=${(/** @type {string} */ name) => store.look({ output: name })} />
     ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
     ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     <${Being} shown=${answer} />`;
@@ -54,12 +55,13 @@ export function HistoryPanel({ store }) {
 }
 
 /** The history of a signal, of the design and, where the answer has it, of the baseline on the same road.
- * @param {any} value @param {string | undefined} picked @param {Document} document @returns {Declaration | null} */
-function declared(value, picked, document) {
-  /** @param {any} of @returns {Signal | undefined} */
-  const signalOf = (of) => of?.signals?.find((/** @type {Signal} */ { name }) => name === picked);
-  const signal = signalOf(value);
+ * @param {any} value @param {Document} document @returns {Declaration | null} */
+function declared(value, document) {
+  /** @type {Signal | undefined} */
+  const signal = value?.signals?.[0];
   if (signal === undefined) return null;
+  /** @param {any} of @returns {Signal | undefined} */
+  const signalOf = (of) => of?.signals?.find((/** @type {Signal} */ { name }) => name === signal.name);
   const colours = layoutColours(document);
   const compared = [value.baseline].flatMap((of) => (signalOf(of) ? [{ ...of, dash: true }] : []));
   const other = compared.map(({ name, layout }) => `; dashed ${name ?? layout}`).join("");

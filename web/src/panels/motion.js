@@ -1,13 +1,11 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
-import { numbersOf, treeOf } from "../library.js";
-import { partAt } from "../network/algebra.js";
+import { numbersOf, shownElement } from "../library.js";
 import { layoutColour } from "../parts/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
-import { textOf } from "../state/document.js";
 import { captions } from "../vehicles/captions.js";
 import { layout, rangeOf } from "../vehicles/layout.js";
 import { REST, momentOf, passing, pastOf } from "../vehicles/moments.js";
@@ -126,13 +124,6 @@ function Picture({ store, shown, reduced }) {
       /** @type {PointerEvent} */ event) => scrub(event, end)}></canvas>`;
 }
 
-/** The element that is selected in the drawing of the strut. @param {State} state */
-function chosenIn(state) {
-  const tree = treeOf(state, textOf(state.history.present));
-  const part = tree && partAt(tree, state.view.path);
-  return part?.kind === "element" ? part.name : null;
-}
-
 /** @param {Shown} shown */
 const endOf = ({ motion }) => (motion ? motion.time[motion.time.length - 1] : 0);
 
@@ -223,7 +214,7 @@ function fitTo(canvas, stage, range) {
  * @param {HTMLCanvasElement} canvas @param {Stage} stage @param {State} state */
 function look(canvas, stage, state) {
   if (state !== stage.state) {
-    const next = chosenIn(state);
+    const next = shownElement(state);
     stage.due ||= next !== stage.chosen || state.view.playing !== stage.state?.view.playing;
     stage.chosen = next;
     stage.state = state;

@@ -305,10 +305,12 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
   const label = [one.name, kind?.key ?? (unknown ? "unknown element" : ""), value].filter(Boolean).join(", ");
   const select = () => same(store.get().view.path, one.path)
     || store.look({ path: one.path });
-  return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""}`}
+  const light = (/** @type {string | null} */ name) => () => store.dispatch({ type: "lit", name });
+  return html`<g class=${`element ${chosen ? "chosen" : ""} ${unknown ? "unknown" : ""} ${state.lit === one.name ? "lit"
+    : ""}`}
     transform=${`translate(${one.x} ${one.y})`} role="button" aria-label=${label} aria-pressed=${chosen}
       tabindex=${entrance ? 0 : -1} data-path=${one.path.join(".")} data-name=${one.name}
-    onClick=${select} onFocus=${select}
+    onClick=${select} onFocus=${select} onPointerEnter=${light(one.name)} onPointerLeave=${light(null)}
     onPointerDown=${(/** @type {PointerEvent} */ event) => drag(event, one.path)}>
     <title>${label}</title>
     <rect class="touch" x="-11" y="-20" height="40" rx="3"

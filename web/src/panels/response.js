@@ -7,7 +7,7 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours, numberedColour } from "../plots/colours.js";
-import { answerOf, baselineOf, choicesOf, ghostPanel, ghostsOf, shownDesigns } from "../questions.js";
+import { answerOf, baselineOf, choicesOf, ghostPanel, ghostsOf, isRightStill, shownDesigns } from "../questions.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -35,12 +35,14 @@ export function ResponsePanel({ store }) {
   const [label, setLabel] = useChoice(labels.length > 1 ? [...labels, ALL] : labels);
   const [parts, setParts] = useState(PARTS[0]);
   const [at, read] = useState(/** @type {number | null} */ (null));
+  const isRight = shown.before ? isRightStill(state, "response") : () => true;
+  const stale = [...new Set(found.map(({ layout }) => layout))].filter((layout) => !isRight(layout));
   const plots = useMemo(() => {
     const others = ghosts.flatMap(({ value: of, kept }) =>
       (of ? [{ frequency: of.frequency, responses: of.curves, pale: kept }] : []));
     const answers = [{ frequency: value?.frequency ?? [], responses: found, pale: false }, ...others];
-    return declared(answers, { index: index ?? "", label: label ?? "", document });
-  }, [value, index, label, document, ...ghosts.map((ghost) => ghost.value)]);
+    return declared(answers, { index: index ?? "", label: label ?? "", document, stale });
+  }, [value, index, label, document, stale.join(), ...ghosts.map((ghost) => ghost.value)]);
   useShown("response", state);
   const both = plots !== null && parts === "both";
   const current = [shown, ...ghosts].every(({ is }) => is === "current");
@@ -52,7 +54,7 @@ export function ResponsePanel({ store }) {
       html`<${Chip} key=${each} on=${each === parts} set=${() => setParts(each)}>${each}<//>`)}</div>
     <${Others} store=${store} />
     <${Being} shown=${shown} />`;
-  return html`<div class=${`plot-panel${shown.before ? " stale" : ""}`} aria-busy=${shown.is === "coming"}>
+  return html`<div class="plot-panel" aria-busy=${shown.is === "coming"}>
     <${Unchosen} state=${state} designs=${shownDesigns(document)} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
@@ -89,9 +91,9 @@ function shortened(names) {
 }
 
 /** The plots of gain and of phase. @param {Answered[]} answers
- * @param {{index: string, label: string, document: Document}} how
+ * @param {{index: string, label: string, document: Document, stale: string[]}} how  `stale`: layouts that were changed
  * @returns {{gain: Declaration, phase: Declaration} | null} */
-function declared(answers, { index, label, document }) {
+function declared(answers, { index, label, document, stale }) {
   const labels = [...new Set(answers[0].responses.filter((each) => each.index === index).map((each) => each.label))];
   const first = answers[0].responses.find((each) => each.index === index && (label === ALL || each.label === label));
   if (first === undefined) return null;
@@ -112,6 +114,7 @@ function declared(answers, { index, label, document }) {
       dash: !pale && each.layout === baseline,
       strong: !pale && each.layout === document.layout,
       pale,
+      stale: !pale && stale.includes(each.layout),
     }))).toSorted((one, other) => Number(one.strong) - Number(other.strong));
   const x = { what: "frequency", unit: "Hz", log: true };
   const title = several ? `${index}, all outputs, dashed ${baseline}` : first.title;

@@ -2,14 +2,13 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { layoutsWith, numbersOf, treeOf } from "../library.js";
-import { partAt } from "../network/algebra.js";
+import { layoutsWith, numbersOf, selectedElement } from "../library.js";
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { answerOf, goalOf, unitKey } from "../questions.js";
-import { entryAt, isRange, own, textOf } from "../state/document.js";
+import { answerOf, bestOf, goalOf, unitKey } from "../questions.js";
+import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
 import { optimise } from "../working.js";
 
@@ -23,8 +22,9 @@ const DECADE = 10;
 const [STEP, LARGE, FINE] = [0.01, 0.1, 0.001]; // by which an arrow key changes a value
 
 /** A number of the document: its text, the bounds of its slider, and the change to another text.
+ * `best`: the text that was found to be the best.
  * @typedef {{row: NumberRow, label: string, text: string, range: {from: string, to: string}, free: boolean,
- * set: (text: string) => Change}} Amount */
+ * best?: string, set: (text: string) => Change}} Amount */
 
 const ELEMENTS = "elements";
 const FEW = 8; // numbers of one table that stand below each other; more are folded away, and those in tables of tables
@@ -44,6 +44,7 @@ export function ValuesPanel({ store, api }) {
   /** @param {NumberRow[]} several */
   const amounts = (several) => several.map((row) => html`<${AmountRow} key=${idOf(row)} store=${store}
     amount=${amountOf(state, row)} chosen=${chosen !== null && row.name === chosen}
+    lit=${state.lit !== null && row.path[0] === ELEMENTS && row.path[1] === state.lit}
     wide=${several.some((each) => labelOf(each).length > SHORT)} />`);
   return html`<section class="panel values" aria-labelledby="values-title" data-keys="Values">
     <${FindBest} store=${store} api=${api} />
@@ -63,13 +64,6 @@ export function ValuesPanel({ store, api }) {
         })}</section>`;
     })}</div>
   </section>`;
-}
-
-/** The element that is selected in the drawing. @param {State} state */
-function selectedElement(state) {
-  const tree = treeOf(state, textOf(state.history.present));
-  const part = tree && partAt(tree, state.view.path);
-  return part?.kind === "element" ? part.name : null;
 }
 
 /** The best values of what may vary. @param {{store: Store, api: Api}} props */
@@ -130,7 +124,7 @@ function amountOf(state, row) {
     const text = own(own(values, layout), name) ?? middle(state, entry, unit);
     const set = (/** @type {string} */ value) =>
       /** @type {Change} */ ({ type: "valued", layout, values: { [name]: value } });
-    return { row, label, text, range: entry, free: true, set };
+    return { row, label, text, range: entry, free: true, best: own(bestOf(state, layout), name), set };
   }
   const text = String(entry);
   const bare = typeof entry === "number" || unit === PURE || unit === "";
@@ -188,10 +182,10 @@ function decade(text) {
   return { from: quantity(apart.number / DECADE, apart.unit), to: quantity(apart.number * DECADE, apart.unit) };
 }
 
-/** @param {{store: Store, amount: Amount, wide: boolean, chosen: boolean}} props */
-function AmountRow({ store, amount, wide, chosen }) {
+/** @param {{store: Store, amount: Amount, wide: boolean, chosen: boolean, lit: boolean}} props */
+function AmountRow({ store, amount, wide, chosen, lit }) {
   const state = store.get();
-  const { row, label, text, range, free, set } = amount;
+  const { row, label, text, range, free, best, set } = amount;
   const { unit, path: place, name } = row;
   const id = idOf(row);
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
@@ -214,19 +208,28 @@ function AmountRow({ store, amount, wide, chosen }) {
     const up = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 }[event.key];
     if (up && usable && !event.ctrlKey && !event.metaKey) slide(size * (1 + up * (event.shiftKey ? LARGE
       : event.altKey ? FINE : STEP)));
+    else if (event.key === "Home" && best !== undefined) store.change(set(best), gesture);
     else if (event.key.toLowerCase() === "x" && row.may_be_free) vary();
     else return;
     event.preventDefault();
   };
-  const classes = ["amount", wide && "wide", free && "free", chosen && "chosen"].filter(Boolean);
-  return html`<div class=${classes.join(" ")} data-place=${id} aria-busy=${isBeingRead(state, id)}>
+  const classes = ["amount", wide && "wide", free && "free", (chosen || lit) && "chosen"].filter(Boolean);
+  const light = (/** @type {string | null} */ element) => () => store.dispatch({ type: "lit", name: element });
+  const found = best === undefined ? null : sizeOf(state, best, unit);
+  const mark = found !== null && usable ? positionOf(found, lower, upper) / STEPS : null;
+  return html`<div class=${classes.join(" ")} data-place=${id} aria-busy=${isBeingRead(state, id)}
+      onPointerEnter=${place[0] === ELEMENTS && light(place[1])} onPointerLeave=${light(null)}>
     <${Bounds} store=${store} amount=${amount} />
-    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label} title=${`${range.from} to ${
-      range.to}`} value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
+    <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label}
+      class=${mark === null ? "" : "marked"} style=${mark === null ? null : { "--best": mark }}
+      title=${`${range.from} to ${range.to}${best === undefined ? "" : `; the best found is ${brief(best)}`}`}
+      value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
       onInput=${textHandler((position) => usable && slide(valueAt(Number(position), lower, upper)))}
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
+      drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
+        store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text }, value, set(value))} />
     ${row.may_be_free && html`<input type="checkbox" checked=${free} aria-label=${`${label} may vary`}
       onChange=${vary} />`}
@@ -269,9 +272,33 @@ function Bounds({ store, amount }) {
   </details>`;
 }
 
-/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit.
- * @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void}} props */
-export function Entry({ id, label, text, wrong = false, done }) {
+const [DRAGGED, PIXEL] = [4, 0.005]; // [px] from where a press is a drag, and by how much a pixel changes a number
+
+/** Changes a number as the pointer is dragged sideways; a press that is none goes into the field.
+ * @param {PointerEvent} event @param {number} size @param {(size: number) => void} slide @param {() => void} rested */
+function dragged({ currentTarget, clientX: begun, pointerId, button, pointerType }, size, slide, rested) {
+  const field = /** @type {HTMLInputElement} */ (currentTarget);
+  if (button !== 0 || pointerType === "touch" || field === globalThis.document.activeElement) return;
+  const over = new AbortController();
+  let far = false;
+  field.setPointerCapture(pointerId);
+  field.addEventListener("mousedown", (event) => event.preventDefault(), { once: true, signal: over.signal });
+  field.addEventListener("pointermove", ({ clientX, shiftKey, altKey }) => {
+    far ||= Math.abs(clientX - begun) >= DRAGGED;
+    if (far) slide(size * Math.exp((clientX - begun) * PIXEL * (shiftKey ? 10 : altKey ? 0.1 : 1)));
+  }, { signal: over.signal });
+  const end = () => {
+    over.abort();
+    if (far) rested();
+    else field.focus();
+  };
+  for (const name of ["pointerup", "pointercancel"]) field.addEventListener(name, end, { signal: over.signal });
+}
+
+/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit, and can
+ * be dragged. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void,
+ * drag?: ((event: PointerEvent) => void) | false}} props */
+export function Entry({ id, label, text, wrong = false, done, drag = false }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
   const [inside, setInside] = useState(false);
   const finish = () => {
@@ -288,7 +315,7 @@ export function Entry({ id, label, text, wrong = false, done }) {
   };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text}
     value=${typed ?? (inside ? text : printed(brief(text)))}
-    aria-invalid=${wrong} autocomplete="off" spellcheck=${false}
+    aria-invalid=${wrong} autocomplete="off" spellcheck=${false} onPointerDown=${drag}
     onInput=${textHandler(setTyped)} onFocus=${enter}
     onBlur=${() => {
       finish();

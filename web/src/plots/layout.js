@@ -9,7 +9,7 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
 /** A curve: its name stands at it, unless it is `unnamed`; `colour` is a token of the style; of a `loose` one only its
  * points are drawn.
  * @typedef {{name: string, x: number[], y: (number | null)[], colour: string, dash?: boolean, pale?: boolean,
- * strong?: boolean, unnamed?: boolean, loose?: boolean}} Curve */
+ * strong?: boolean, unnamed?: boolean, loose?: boolean, stale?: boolean}} Curve */
 /** A point that can be taken: of which curve, what it is called, what is read at it, and what it is.
  * @typedef {{curve: number, x: number, y: number, label: string, lines?: string[], big?: boolean, doubtful?: boolean,
  * of: any}} Point */

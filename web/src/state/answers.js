@@ -60,18 +60,19 @@ export function soughtIn(answers = NOTHING, question) {
   return shown.is === "coming" ? { ...NONE, is: answers.underWay === question ? "coming" : "none" } : shown;
 }
 
-/** A question without its numbers: what it has in common with that of another step of the same slider.
- * @param {string} question */
+/** A question without its numbers, and whatever output is drawn: what it has in common with that of another step of the
+ * same slider. @param {string} question */
 function shape(question) {
   const known = SHAPES.get(question);
   if (known !== undefined) return known;
-  const found = JSON.stringify(JSON.parse(question), (_, value) =>
-    (typeof value === "number" || takenApart(value) !== null ? 0 : value));
+  const found = JSON.stringify(JSON.parse(question), (key, value) =>
+    (key === OUTPUT || typeof value === "number" || takenApart(value) !== null ? 0 : value));
   if (SHAPES.size >= REMEMBERED) SHAPES.clear();
   SHAPES.set(question, found);
   return found;
 }
 
+const OUTPUT = "output";
 const REMEMBERED = 50; // shapes, each of which a page asks for many times while an answer is coming
 /** @type {Map<string, string>} */
 const SHAPES = new Map();

@@ -35,9 +35,20 @@ export function goalOf({ view, history }) {
 
 /** The best values that were found of a layout, as long as the study and its goal are the same.
  * @param {State} state @param {string} layout @returns {{[name: string]: string}} */
-export function bestOf(state, layout) {
+export const bestOf = (state, layout) => (isStale(state, layout) ? {} : (own(state.best, layout)?.values ?? {}));
+
+/** The layouts whose values were optimised for another vehicle, road, network or goal. @param {State} state */
+export const staleLayouts = (state) =>
+  Object.keys(state.history.present.study.layouts ?? {}).filter((layout) => isStale(state, layout));
+
+/** Whether the last optimum of a layout is no longer that of its study and goal. @param {State} state
+ * @param {string} layout */
+function isStale(state, layout) {
   const found = own(state.best, layout);
-  return found?.study === state.history.present.study && found.index === goalOf(state) ? found.values : {};
+  if (found === undefined) return false;
+  const { study } = state.history.present;
+  const problem = (/** @type {Study} */ { title: _, ...asked }) => askedOf(state, { study: asked }, layout);
+  return found.index !== goalOf(state) || (found.study !== study && problem(found.study) !== problem(study));
 }
 
 /** The design that is edited and the one that it is compared with; that one alone if it is edited.

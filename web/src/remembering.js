@@ -190,13 +190,17 @@ async function openFit(store, api, file) {
   store.say(`${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
 }
 
+const FOR_RECORDS = "quarter-car"; // the example that is opened where a record comes first: its panel needs a study
+
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
   store.look({ tab: "rig" });
   store.say(`Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
-  store.say(`${file.name} was read.`, file.name);
+  const blank = Object.keys(store.get().history.present.study).length === 0;
+  if (blank) await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study);
+  store.say(`${file.name} was read.${blank ? " A quarter car is open for its device: see Rig." : ""}`, file.name);
 }
 
 const BEFORE = "inerter.opened";

@@ -171,7 +171,8 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
   store.dispatch({ type: "rested" });
-  return `The device is in the new layout ${name}, next to the existing strut.`;
+  return `The device is in the new layout ${name}, in parallel with the strut of ${document.layout}. To join another `
+    + "strut: undo, select its layout, take the device again.";
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.

@@ -9,6 +9,7 @@ import {
   valueAt,
   STEPS,
   brief,
+  completed,
   estimated,
   placed,
   withUnit,
@@ -17,7 +18,7 @@ import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
 import { elementsIn, freeIn, numbersOf, treeOf } from "../src/library.js";
-import { comparedOf, questions, unitsIn } from "../src/questions.js";
+import { bestOf, comparedOf, questions, staleLayouts, unitsIn } from "../src/questions.js";
 import { takeNetwork } from "../src/working.js";
 import { partsOf } from "./reading.js";
 
@@ -392,4 +393,35 @@ test("a network of a search replaces that of its layout, and no element of anoth
   assert.match(takeNetwork(store, found, { ...row("c2"), status: "failed" }), /^Unreliable/);
   store.dispatch({ type: "undone" });
   assert.equal(textOf(store.get().history.present), "k | c1");
+});
+
+test("a number without a unit has the unit that stands there, and a road class the centre of ISO 8608", () => {
+  for (const [typed, before, text] of [
+    ["40", "25 kg", "40 kg"],
+    ["40 lb", "25 kg", "40 lb"],
+    ["-2e3", "3 kN", "-2e3 kN"],
+    ["0.3", "0.5", "0.3"],
+    ["C", "25 kg", "C"],
+    ["fast", "25 m/s", "fast"],
+    ["C", "5e-7 m^3/cycle", "256e-6 m^3"],
+    ["class a", "16e-6 m^3/rad", "16e-6 m^3"],
+    ["H", "5e-7 m^3/cycle", "262144e-6 m^3"], // as ISO 8608 prints it
+    ["I", "5e-7 m^3/cycle", "I"],
+  ])
+    assert.equal(completed(typed, before), text);
+});
+
+test("optimised values are stale once the vehicle or the goal is another one, not once the title is", () => {
+  const values = { S1: { c: "3 kN s/m" }, S2: { c: "7 kN s/m" } };
+  const study = { ...STUDY, study: { ...STUDY.study, indices: ["J1", "J3"] } };
+  let state = reduce(initial(), { type: "changed", change: { type: "opened", study } });
+  state = reduce(state, { type: "parted", parts: partsOf(study) });
+  assert.deepEqual(staleLayouts(state), []);
+  state = reduce(state, { type: "optimised", study, index: "J1", values });
+  const changed = (/** @type {any} */ change) => reduce(state, { type: "changed", change });
+  assert.deepEqual(staleLayouts(changed({ type: "placed", place: ["title"], value: "truck" })), []);
+  const heavier = changed({ type: "placed", place: ["vehicle", "sprung_mass"], value: "320 kg" });
+  assert.deepEqual([staleLayouts(heavier), bestOf(heavier, "S2")], [["S1", "S2"], {}]);
+  assert.deepEqual(staleLayouts(changed({ type: "placed", place: ["elements", "b"], value: "200 kg" })), ["S2"]);
+  assert.deepEqual(staleLayouts(reduce(state, { type: "viewed", view: { index: "J3" } })), ["S1", "S2"]);
 });

@@ -3,7 +3,7 @@
 import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
-import { answerOf, designOf, goalOf, soughtAnswer } from "../questions.js";
+import { answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
 import { unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
 import { AskedPanel } from "./asked.js";
@@ -99,8 +99,16 @@ function Verdict({ state, blank }) {
   const told = failed || verdict?.sentence || "Under way";
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
     data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
-    <${Caveats} key=${told} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></section>`;
+    <div class="row"><${Stale} layouts=${staleLayouts(state)} />
+      <${Caveats} key=${told} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></div></section>`;
 }
+
+/** That layouts are compared at values optimised for another problem, and the button that optimises all of them.
+ * @param {{layouts: string[]}} props */
+const Stale = ({ layouts }) => layouts.length > 0 && html`<button type="button" class="stale"
+  title=${`Values of ${layouts.join(", ")} were optimised before the study or its goal changed.`}
+  onClick=${() => /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>Values not
+  re-optimised: <u>optimise all layouts</u></button>`;
 
 /** The caveats, as many as there is room for; the others by a button that counts them.
  * @param {{caveats: Caveat[]}} props */

@@ -3,7 +3,7 @@
 
 import { seek } from "../asking.js";
 import { elementsIn, kindOf } from "../library.js";
-import { baselineOf, soughtAnswer, soughtOf } from "../questions.js";
+import { baselineOf, goalOf, soughtAnswer, soughtOf } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { doubted, isOk } from "../parts/doubts.js";
@@ -54,7 +54,8 @@ export function MarginsPanel({ store, api }) {
   return html`<form class="row" aria-busy=${is === "coming"}
       onSubmit=${formHandler(() => void compute(store, api))}>
       <button class="edged" disabled=${is === "coming"}>What does it bear?</button>
-      <p role="status">${is !== "coming" && sentence}</p></form>
+      <p role="status">${is !== "coming" && (sentence || (!value && `Friction, backlash and stiffness at which ${layout}
+        equals ${baselineOf(state.history.present).layout}; simulation takes about a minute.`))}</p></form>
     ${is === "coming" && job && html`<${JobHead} store=${store} api=${api} job=${job} /><p class="quiet">
       ${job.sentence}</p>`}
     ${value && html`<${Margins} value=${value} />`}
@@ -91,7 +92,8 @@ function Budget({ store, api, indices }) {
     <form class="row" aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
       void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
     <${Select} label="Element" name="parameter" key=${document.layout} choices=${names} selected=${switching} />
-    <${Select} label="index" name="index" choices=${indices.map(({ symbol }) => symbol)} />
+    <${Select} label="index" name="index" selected=${goalOf(state)}
+      key=${goalOf(state)} choices=${indices.map(({ symbol }) => symbol)} />
     <button class="edged">Compute</button>
     <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
       ? budgetTold(value, document.layout, baselineOf(document).layout) : sentence}</p>

@@ -7,6 +7,7 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { searchedLayouts } from "../library.js";
 import { Plot } from "../plot.js";
 import { goalOf } from "../questions.js";
+import { entryAt } from "../state/document.js";
 import { estimated, printed, rounded, shown } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
@@ -25,11 +26,17 @@ export function SearchForm({ state }) {
   const layouts = searchedLayouts(state);
   if (layouts.length === 0) return html`<span class="quiet">No layout has a free network.</span>`;
   const wanted = state.history.present.study.study?.trade_off ?? [goalOf(state)];
-  return html`<${Select} label="layout" name="layout" choices=${layouts} />
+  return html`<${Select} label="layout" name="layout" choices=${layouts.map((layout) =>
+    [layout, `${layout}: up to ${elementsAtMost(state, layout)} elements`])} />
     <fieldset class="row"><legend class="visually-hidden">Indices</legend>
       ${indicesOf(state).map(({ symbol, title }) => html`<label key=${symbol} title=${title}><input type="checkbox"
         name="index" value=${symbol} defaultChecked=${wanted.includes(symbol)} /> ${symbol}</label>`)}</fieldset>`;
 }
+
+/** How many elements the free networks of a layout may have. @param {State} state @param {string} layout */
+const elementsAtMost = ({ parts, history }, layout) => (parts?.layouts[layout]?.free_networks ?? []).reduce(
+  (/** @type {number} */ sum, /** @type {string} */ name) =>
+    sum + Number(entryAt(history.present.study, ["elements", name, "network"]) ?? 0), 0);
 
 /** @param {State} _ @param {FormData} form */
 export const searchBody = (_, form) => ({ layouts: form.getAll("layout"), indices: form.getAll("index") });

@@ -9,7 +9,7 @@ import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, bestOf, goalOf, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
+import { STEPS, brief, completed, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -302,7 +302,7 @@ export function Entry({ id, label, text, wrong = false, done, drag = false }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
   const [inside, setInside] = useState(false);
   const finish = () => {
-    if (typed !== null && typed.trim() !== text) done(typed.trim());
+    if (typed !== null && typed.trim() !== text) done(completed(typed.trim(), text));
     setTyped(null);
   };
   /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost.

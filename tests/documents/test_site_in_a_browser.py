@@ -37,6 +37,7 @@ KINDS = {
     "decision": "decisions/0008-no-event-is-missed.html",
     "sources": "_modules/inerter/vehicle/quarter_car.html",
     "search": "search.html",
+    "results": "search.html?q=optimise",
 }
 SIZES = {"wide": (1280, 800), "narrow": (420, 800)}
 

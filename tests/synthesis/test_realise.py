@@ -9,6 +9,7 @@ from operator import or_, sub
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from exact import add, admittance, multiply
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -117,8 +118,7 @@ def test_positive_real_functions_are_realised(family):
     assert max(degrees) == 6
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", sampled(range(10), kept=1))
 @pytest.mark.parametrize("family", FAMILIES)
 def test_many_positive_real_functions_are_realised(family, seed):
     rng = np.random.default_rng(100 + seed)

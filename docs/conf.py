@@ -16,9 +16,10 @@ author = "the inerter developers"
 project_copyright = f"2026, {author}"
 version = release
 language = "en"
+default_role = "code"  # names in docstrings
 
 extensions = [
-    "myst_parser",
+    "myst_nb",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
@@ -27,12 +28,18 @@ extensions = [
     "sphinx.ext.mathjax",
     "reference_pages",
 ]
-source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+source_suffix = {".md": "myst-nb", ".rst": "restructuredtext", ".ipynb": "myst-nb"}
 exclude_patterns = ["_build", "_extensions", "gallery", "examples/*.ipynb", "examples/*.py", "examples/*.json"]
 suppress_warnings = ["myst.header"]  # sections of records begin at the second level
 
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence"]
 myst_heading_anchors = 4
+
+nb_execution_mode = "force"  # notebooks are kept without outputs, and run whenever the site is built
+nb_execution_raise_on_error = True
+nb_execution_timeout = 300
+nb_output_stderr = "remove"  # progress
+nb_ipywidgets_js = {}  # none are used, and they would come from another host
 
 autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
@@ -47,6 +54,7 @@ assert _MATHJAX.origin is not None
 html_static_path = ["_static", str(Path(_MATHJAX.origin).parent / "static")]
 mathjax_path = "mathjax/tex-svg.js"
 html_css_files = ["site.css"]
+html_js_files = ["site.js"]
 html_copy_source = False
 html_show_sphinx = False
 

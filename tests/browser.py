@@ -3,20 +3,37 @@
 from __future__ import annotations
 
 import os
+import shutil
 import socket
 import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+_CHROMIUM = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
+_NONE = "Pages are not tested: there is no Chromium (as root: apt-get install chromium)."
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"
 _TOKEN = "a-token-of-the-tests-of-the-page-00"
 _READY = 240.0  # seconds, with kernels to compile
+
+
+@contextmanager
+def launched_chromium() -> Iterator[Any]:
+    """A real browser; where there is none, the test is skipped and says so."""
+    if _CHROMIUM is None:
+        pytest.skip(_NONE)
+    with pytest.importorskip("playwright.sync_api").sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=_CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
 
 
 @dataclass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import io
+import json
 import re
 import tokenize
 from collections.abc import Iterator, Mapping
@@ -40,6 +41,13 @@ def blocks(page: str, language: str = "python") -> list[Block]:
     ):
         found.append(Block(match[1], text[: match.start()].count("\n") + 2, match[2] or ""))
     return found
+
+
+def notebook(path: Path) -> list[Block]:
+    """The cells of code of a notebook, which must not hold outputs: the site has those of the day."""
+    cells = [cell for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+    assert not any(cell["outputs"] for cell in cells)
+    return [Block("".join(cell["source"]), 1, "") for cell in cells]
 
 
 def commands() -> dict[str, list[str]]:

@@ -331,3 +331,19 @@ def test_how_fast_the_inerter_moves_on_the_road_and_on_the_excitation() -> None:
     heights = 3.162e-3 * gains * 2.0 * np.pi * frequency
     assert_figures(said[1], [on_road], "the road")
     assert_figures(said[2], [math.sqrt(float(np.mean(heights**2)))], "the excitation")
+
+
+def test_what_is_to_be_cited() -> None:
+    """The page and `CITATION.cff` say the same."""
+    said = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    software, paper = blocks("citing.md", "bibtex")[0].code.split("@article")
+    version, title, year = (
+        re.search(rf'^{key}: "?(.*?)"?$', said, re.MULTILINE) for key in ("version", "title", "date-released")
+    )
+    assert version is not None
+    assert title is not None
+    assert year is not None
+    assert version[1] == it.__version__
+    assert all(text in software for text in (f"{{{version[1]}}}", f"{{{title[1]}}}", f"{{{year[1][:4]}}}"))
+    for text in re.findall(r"^    (?:title|journal|volume|issue|year): \"?(.*?)\"?$", said, re.MULTILINE):
+        assert f"{{{text}}}" in paper

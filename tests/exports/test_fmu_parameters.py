@@ -22,7 +22,8 @@ from fmu_roads import driven, error, needs_compiler, road
 pytestmark = needs_compiler
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 REAL = K | C - it.Gap(5e-4) - (it.Spring(1e6, "ks") | it.Damper(3200.0, "cs")) - (B | it.Friction(20.0))
-STRUTS = {"linear": K | C - B, "real": REAL}
+LOOSE = K | C | it.Spring(1e5, "k2") - (it.Spring(5e4, "k3") | it.Friction(80.0))
+STRUTS = {"linear": K | C - B, "real": REAL, "at a node between springs": LOOSE}
 KINDS = ("fmu", "fmu3")
 
 
@@ -78,7 +79,7 @@ def test_values_before_a_run(name: str, kind: str, masters: list[Master], tmp_pa
     assert error(*(driven(one, height, slope, 1e-3, shown) for one in (found, expected))) < 1e-9
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3]))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], kept=8))
 def test_random_vehicles_with_other_values(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle = design(number)
     expected = opened(masters, of_other_values(vehicle, number), tmp_path)

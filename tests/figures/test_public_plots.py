@@ -39,6 +39,11 @@ def test_bode_of_an_index_is_that_of_its_response() -> None:
     np.testing.assert_allclose(by_index, by_names, rtol=1e-12)
 
 
+def test_a_response_to_a_force_has_the_unit_of_its_index() -> None:
+    gain, _ = it.plot_bode(CAR, it.LoadCarrying())
+    assert gain.get_ylabel().endswith("[m/N]")
+
+
 def test_several_designs_have_a_legend_and_the_axes_given() -> None:
     from matplotlib.figure import Figure  # noqa: PLC0415
 

@@ -8,6 +8,7 @@ import numpy as np
 from strategies import paper_quarter_car
 
 import inerter as it
+from inerter.methods.network_norm import free_strut
 
 ROAD = it.Road(roughness=5e-7, speed=25.0)
 INDICES = [it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()]
@@ -37,3 +38,14 @@ def test_values_are_those_of_one_evaluation():
     for i, row in enumerate(many):
         car = CAR.with_values({name: float(column[i]) for name, column in values.items()})
         np.testing.assert_allclose(row, [it.evaluate(car, index, it.Norm()).value for index in INDICES], rtol=1e-11)
+
+
+def test_a_vehicle_is_prepared_once_for_all_its_struts():
+    c, b = it.Damper(it.free(1e2, 1e5, "c")), it.Inerter(it.free(1.0, 2e3, "b"))
+    struts = [it.Spring(80e3) | c, it.Spring(120e3) | c - b, it.Spring(120e3) | (it.Spring(1e6) - b) | c]
+    heavy = it.QuarterCar(300.0, 25.0, 120e3, struts[0])
+    for index in INDICES:
+        found = [free_strut(car, index)[0] for car in [*map(paper_quarter_car, struts), heavy]]
+        assert found[0] is found[1] is found[2] is not found[3]
+        best = [it.optimise(car, index, it.Norm()) for car in (paper_quarter_car(struts[0]), heavy)]
+        assert best[0].value != best[1].value

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import sampled
 
 import inerter as it
 from inerter.network_search.admittance import _AdmittanceIndex, _compile_index
@@ -121,10 +122,9 @@ def test_no_network_of_degree_two_is_better(index):
     assert best.estimate.value == pytest.approx(best.value, rel=1e-8)
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("degree", [2, 3])
-@pytest.mark.parametrize("index", INDICES.values(), ids=INDICES)
-def test_no_network_of_five_elements_is_better(index, degree):
+@pytest.mark.parametrize(("symbol", "degree"), sampled([("J1", 2), ("J1", 3), ("J3", 2), ("J3", 3)], kept=1))
+def test_no_network_of_five_elements_is_better(symbol, degree):
+    index = INDICES[symbol]
     best = it.optimise_admittance(car(it.Spring(120e3) | ANY), index, degree)
     assert best.status.ok
     assert best.value <= lowest(index, 5, degree) * (1.0 + 1e-9)

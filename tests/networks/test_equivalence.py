@@ -172,7 +172,7 @@ def test_classes_differ_as_functions():
     check_that_classes_differ(4)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_classes_of_five_elements_differ_as_functions():
     check_that_classes_differ(5)
 

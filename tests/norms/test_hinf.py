@@ -9,7 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from strategies import logarithmic, random_stable
 
-from inerter import LinearSystem, StatusKind, frequency_response, hinf_norm
+from inerter import (
+    Coordinate,
+    Damper,
+    Force,
+    LinearSystem,
+    Mechanism,
+    Spring,
+    StatusKind,
+    Strut,
+    frequency_response,
+    hinf_norm,
+    state_space,
+)
 from inerter.errors import LinearSystemError
 
 ZERO = [[0.0]]
@@ -193,3 +205,18 @@ def test_inputs_of_one_source_add_up_if_they_arrive_together():
     assert hinf_norm(system.with_delays("road", [0.2, 0.2])).value == pytest.approx(3.0)
     with pytest.raises(LinearSystemError, match=r"0\.3 s apart"):
         hinf_norm(system.with_delays("road", [0.2, 0.5]))
+
+
+@pytest.mark.parametrize("damping", [1e-9, 1e-5, 1e-2, 0.5])
+@pytest.mark.parametrize("omega", [1e-8, 1.0, 3e9])
+def test_peaks_of_one_mass_by_the_textbook(damping, omega):
+    """1/(m (s^2 + 2 d w s + w^2)) has its peak 1/(2 m w^2 d sqrt(1 - d^2)) at w sqrt(1 - 2 d^2)."""
+    mass = 3.0
+    mechanism = Mechanism(
+        (Coordinate("body", mass),),
+        (Strut("s", Spring(mass * omega**2) | Damper(2.0 * damping * omega * mass), {"body": 1.0}, {}),),
+        forces=(Force("push", {"body": 1.0}),),
+    )
+    found = hinf_norm(state_space(mechanism, "push", "body_displacement"))
+    assert found.value == pytest.approx(1.0 / (2.0 * mass * omega**2 * damping * np.sqrt(1.0 - damping**2)), rel=1e-12)
+    assert found.peaks[0].omega == pytest.approx(omega * np.sqrt(1.0 - 2.0 * damping**2), rel=2e-7)

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, free_port, guard
-
-_CHROMIUM = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
-_NONE = "The page is not tested: there is no Chromium (as root: apt-get install chromium)."
+from browser import EXAMPLES, Served, Visitor, free_port, guard, launched_chromium
 
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
-    if _CHROMIUM is None:
-        pytest.skip(_NONE)
-    with pytest.importorskip("playwright.sync_api").sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=_CHROMIUM, args=["--no-sandbox"])
+    with launched_chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="session")

@@ -44,6 +44,11 @@ def test_results_are_tables(name: str) -> None:
     assert [one for one in texts if one not in text] == []
 
 
+def test_ends_of_a_narrow_interval_differ() -> None:
+    html = it.Estimate(250.0, "kg", standard_error=0.013, interval=(249.974, 250.026))._repr_html_()
+    assert "249.974 to 250.026" in html
+
+
 def test_a_doubt_is_said_first_and_markup_is_text() -> None:
     doubtful = replace(OPTIMUM.estimate, status=Status(StatusKind.INACCURATE, "<b>not</b> converged"))
     html = doubtful._repr_html_()

@@ -118,7 +118,7 @@ def test_the_best_admittance_of_degree_one_is_that_of_the_literature():
     assert values[Inerter] == pytest.approx(366.52, rel=1e-3)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_no_layout_of_a_degree_rides_better_than_the_best_admittance():
     c, b, k = Damper(free(10.0, 1e6, "c")), Inerter(free(0.01, 1e5, "b")), Spring(free(1e3, 1e7, "k1"))
     best = [best_admittance(ride_comfort, degree, damping=3e3, omega=20.0, starts=14).value for degree in (1, 2)]

@@ -14,7 +14,7 @@ from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import _describe, close, describe
 from inerter.systems.graph import linear_graph
 from inerter.systems.outputs import input_names
-from inerter.systems.structure import structure_of
+from inerter.systems.structure import once_per_structure, structure_of
 
 STACKS = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
 NAMES = ("states", "inputs", "outputs", "free", "notes", "mechanism", "precision_warning")
@@ -146,3 +146,11 @@ def test_threads_get_their_own_values():
     expected = [it.evaluate(design, index, it.Norm()) for design in designs]
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(lambda design: it.evaluate(design, index, it.Norm()), designs)) == expected
+
+
+def test_an_answer_by_structure_is_computed_once_for_all_values():
+    asked = []
+    answer = once_per_structure(lambda mechanism: asked.append(mechanism) or len(asked))
+    soft, stiff = (it.QuarterCar(181.75, 25.0, 120e3, it.Spring(k) | it.Damper(1e3)).mechanism() for k in (1e4, 1e5))
+    damped = it.QuarterCar(181.75, 25.0, 120e3, it.Spring(1e4) | it.Inerter(1e3)).mechanism()
+    assert [answer(soft), answer(stiff), answer(damped), answer(soft)] == [1, 1, 2, 1]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.cli.interrupts import interruptible
 from inerter.cli.quantity_options import positive_option
@@ -23,16 +25,14 @@ def export(
     layout: str | None,
     index: str | None,
     point: int | None,
-    only: tuple[str, ...],
     output: Path | None,
+    options: Mapping[str, Any],
     *,
-    part: str,
     speed: str | None,
-    linear: bool,
     force: bool,
 ) -> None:
-    """Export a design of a study file or of a folder of results to a file."""
-    kind = EXPORTS[to]
+    """Export a design of a study file or of a folder of results to a file, with `options` of `ExportSpec`."""
+    kind, part = EXPORTS[to], options["part"]
     if output is not None:
         check_suffix(kind, output)
         if output.is_dir():
@@ -53,9 +53,7 @@ def export(
         request = ExportSpec(
             design.vehicle(),
             to,
-            outputs=only or None,
-            linear=linear,
-            part=part,
+            **options,
             speed=None if speed is None else positive_option("speed", speed, "m/s"),
             indices=indices,
             conventions=design.study.conventions,

@@ -322,6 +322,14 @@ def export(
     speed: Annotated[
         str | None, Parameter(help='Speed of an FMU with one road for all axles, such as "25 m/s"; it is a parameter.')
     ] = None,
+    platform: Annotated[
+        tuple[str, ...],
+        Parameter(
+            negative="",
+            show_default=False,
+            help="Another platform for an FMU: windows, macos, macos-arm, linux-arm; repeatable.",
+        ),
+    ] = (),
     linear: Annotated[
         bool, Parameter(negative="", show_default=False, help="Leave out friction and gaps on purpose.")
     ] = False,
@@ -343,7 +351,8 @@ def export(
     """
     from inerter.cli.export import export as command
 
-    command(source, to, layout, index, point, only, output, part=part, speed=speed, linear=linear, force=force)
+    options = {"outputs": only or None, "part": part, "linear": linear, "platforms": platform}
+    command(source, to, layout, index, point, output, options, speed=speed, force=force)
 
 
 @app.command(

@@ -29,6 +29,7 @@ def export(
     title: str = "",
     part: str = "",
     speed: float | None = None,
+    platforms: Sequence[str] = (),
     overwrite: bool = False,
 ) -> Any:
     """A design in the format of another program; `inerter.EXPORTS` lists the kinds.
@@ -38,7 +39,8 @@ def export(
     path for a file that was written to `path`, or without `path` what it would hold, text or bytes. `inputs` and
     `outputs` choose among those of the linear model, `form` is "state-space" or "descriptor"; `frequencies` [Hz] and
     `indices` by name are for tables. `part` is the name of a strut that is exported alone (FMUs, `spice`, drawings);
-    with `speed` [m/s] an FMU has one road, which reaches each axle distance / speed later.
+    with `speed` [m/s] an FMU has one road, which reaches each axle distance / speed later, and it has libraries for
+    other `platforms` than this machine too ("windows", "macos", "macos-arm", "linux-arm").
 
     A file is written whole or not at all, and an existing one replaced with `overwrite` only.
 
@@ -51,9 +53,8 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
-    request = ExportSpec(
-        of, to, inputs, outputs, linear, form, frequencies, indices, title=title, part=part, speed=speed
-    )
+    options: dict[str, Any] = {"title": title, "part": part, "speed": speed, "platforms": platforms}
+    request = ExportSpec(of, to, inputs, outputs, linear, form, frequencies, indices, **options)
     if path is None:
         return kind.contents(request, kind.suffixes[0] if kind.is_file else "")
     contents = export_contents(kind, request, path)

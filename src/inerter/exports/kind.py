@@ -9,7 +9,11 @@ from typing import Any
 from inerter.errors import ExportError
 from inerter.exports.request import ExportSpec
 
-OPTIONS = {"part": "a strut alone", "speed": "one road for all axles"}  # that not every kind can say
+OPTIONS = {
+    "part": "a strut alone",
+    "speed": "one road for all axles",
+    "platforms": "other platforms",
+}  # that not every kind can say
 
 
 @dataclass(frozen=True)

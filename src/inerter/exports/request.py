@@ -47,6 +47,7 @@ class ExportSpec:
     title: str = ""
     part: str = ""  # the strut that is exported alone
     speed: float | None = None  # of a vehicle whose axles have one road [m/s]
+    platforms: Sequence[str] = ()  # other ones for which libraries are made too
 
     def system(self, form: str = "") -> NamedSystem:
         """The linear model, in the form that was asked for, or else in `form`."""

@@ -404,7 +404,10 @@ def fill_exponents(noise: Array, room: Array) -> None:
 
 @part()
 def fill_differences(noise: Array, group: int, room: Array) -> None:
-    """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`."""
+    """Fill `room.ahead_change` and `room.behind_change` from `room.ahead` and `room.behind`.
+
+    For the row of all i = j, where both are one, only the first.
+    """
     delays, pole, pair = noise.delays, room.modes.pole, room.modes.pair
     row = 0
     for i in range(delays.size):
@@ -420,22 +423,27 @@ def fill_differences(noise: Array, group: int, room: Array) -> None:
                     for q in range(k + 1):
                         other = partner(pair, q)
                         ahead_change[k, q] = np.conj(ahead_change[k - 1, other])
-                        behind_change[k, q] = np.conj(behind_change[k - 1, other])
-                        ahead_change[q, k], behind_change[q, k] = ahead_change[k, q], behind_change[k, q]
+                        ahead_change[q, k] = ahead_change[k, q]
+                        if i != j:
+                            behind_change[k, q] = np.conj(behind_change[k - 1, other])
+                            behind_change[q, k] = behind_change[k, q]
                     continue
                 for q in range(k + (2 if pair[k] == 1 else 1)):
                     apart = pole[k] - pole[q]
                     if one_norm(apart) * (1.0 + one_norm(pole[k]) * time) > _CLOSE * one_norm(pole[k]):
                         inverse = reciprocal(apart)
                         ahead_change[k, q] = (ahead[k] - ahead[q]) * inverse
-                        behind_change[k, q] = (behind[k] - behind[q]) * inverse
+                        if i != j:
+                            behind_change[k, q] = (behind[k] - behind[q]) * inverse
                     elif k == q:
                         ahead_change[k, q], behind_change[k, q] = ahead_slope[k], behind_slope[k]
                     else:  # the mean of the derivative, by Simpson's rule
                         middle = theta_at(noise, group, time, decay, pole[k] - 0.5 * apart)
                         ahead_change[k, q] = (ahead_slope[k] + 4.0 * middle[2] + ahead_slope[q]) / 6.0
                         behind_change[k, q] = (behind_slope[k] + 4.0 * middle[3] + behind_slope[q]) / 6.0
-                    ahead_change[q, k], behind_change[q, k] = ahead_change[k, q], behind_change[k, q]
+                    ahead_change[q, k] = ahead_change[k, q]
+                    if i != j:
+                        behind_change[q, k] = behind_change[k, q]
             row += 1
 
 

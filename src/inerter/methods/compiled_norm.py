@@ -50,6 +50,7 @@ class CompiledNorm:
     """Index as a function of the design variables, from compiled code: the `Differentiable` objective of `Norm`."""
 
     problem: LinearProblem
+    is_regular: bool = False  # whether all outputs are known to be finite and excited
 
     @property
     def descriptor(self) -> tuple[Any, ...]:
@@ -106,6 +107,8 @@ class CompiledNorm:
     @cached_property
     def supported_outputs(self) -> NDArray[np.bool_]:
         """True for outputs that compiled code can evaluate: finite at a design near the middle of the bounds."""
+        if self.is_regular:
+            return np.ones(self.problem.weights.size, dtype=bool)
         if self.is_peak:
             return np.array([self._exact(self._special).status.ok])
         return np.asarray(~np.isinf(self._special_norms))
@@ -113,6 +116,8 @@ class CompiledNorm:
     @cached_property
     def reachable_outputs(self) -> NDArray[np.bool_]:
         """True for outputs that the source excites; those of a half model ignore the common motion of both sides."""
+        if self.is_regular:
+            return np.ones(self.problem.weights.size, dtype=bool)
         return np.asarray(self._special_norms > 0.0)
 
     @cached_property
@@ -219,7 +224,7 @@ class CompiledNorm:
 
         Over several sources, squares are added up for the outputs that each one excites.
         """
-        if not self.single_source_definitions and np.all(self.reachable_outputs) and self._excess is None:
+        if self._has_one_exact_source:
             return self._kernel_norms(points, weights)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
         found = []
@@ -239,11 +244,17 @@ class CompiledNorm:
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
         return total, gradients, errors
 
+    @cached_property
+    def _has_one_exact_source(self) -> bool:
+        """Whether one source excites all outputs through an exact filter."""
+        return not self.single_source_definitions and self._excess is None and bool(self.reachable_outputs.all())
+
     def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
         """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter."""
         norms, gradients, errors = self._by_modes(points, weights)
-        rest = np.flatnonzero(np.isinf(errors))
-        if rest.size:
+        missing = np.isinf(errors)
+        if missing.any():
+            rest = np.flatnonzero(missing)
             found = h2_kernels.norms(points[rest], *self.arguments, weights)
             norms[rest], errors[rest] = found[0], found[2]
             if weights.size:
@@ -302,8 +313,9 @@ class CompiledNorm:
         may then be exceeded a little.
         """
         sure = np.isfinite(errors)
-        asked = np.flatnonzero(sure & (errors > _UNCERTAIN) & (self.problem.highest_filter >= 2))
-        if asked.size:
+        uncertain = sure & (errors > _UNCERTAIN)
+        if uncertain.any() and self.problem.highest_filter >= 2:
+            asked = np.flatnonzero(uncertain)
             shifted_value = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
             again = self._with_gradients(shifted_value, np.empty(0))[0].reshape(len(_MOVED), asked.size, -1)
             with np.errstate(invalid="ignore"):
@@ -317,27 +329,44 @@ class CompiledNorm:
         The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
         without rounding.
         """
-        if not np.all(self.supported_outputs):
+        if not self.supported_outputs.all():
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradients, errors = self._with_slopes(point[None])
+        norms, gradient, errors, around = self._with_slopes(point)
         found = value = float(self._combine(norms)[0])
         if not self._sure(point[None], norms, errors)[0]:
             value = self._exact_index(point)
-        if abs(found - value) <= _SAME * value and self._gradient_agrees(point, value, gradients[0]):
-            return value, gradients[0]
+        if abs(found - value) <= _SAME * value and self._gradient_agrees(point, value, gradient, around):
+            return value, gradient
         slopes = _slopes(lambda place: float(self._combine(self._compiled_norms(place[None]))[0]), point, _FAR)
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
 
     def _combine(self, norms: Array) -> Array:
         return self.problem.definition.combine(norms, self.problem.weights)
 
-    def _with_slopes(self, points: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradient of the index, and error estimates of the norms, at one point."""
+    def _with_slopes(self, point: Array) -> tuple[Array, Array, Array, Array]:
+        """Norms, gradient of the index, error estimates of the norms, and norms at the first `_ends` of the point."""
         definition, weights = self.problem.definition, self.problem.weights
+        around = self._ends(point, 0)
         if definition.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
-            return self._with_gradients(points, weights)
-        norms = self._with_gradients(points, np.empty(0))[0]
-        return self._with_gradients(points, definition.slopes(norms[0], weights))
+            norms, gradients, errors = self._with_gradients(point[None], weights)
+            return norms, gradients[0], errors, self._with_gradients(around, np.empty(0))[0]
+        several = self._with_gradients(np.vstack([point, around]), np.empty(0))[0]
+        norms, gradients, errors = self._with_gradients(point[None], definition.slopes(several[0], weights))
+        return norms, gradients[0], errors, several[1:]
+
+    def _ends(self, point: Array, which: int) -> Array:
+        """Two points on both sides of one, at the step `_ASTRIDE[which]` in logarithms."""
+        return np.asarray(point * self._stretches[which])
+
+    @cached_property
+    def _direction(self) -> Array:
+        """A generic direction of the logarithms of the free values."""
+        return np.asarray(np.cos(1.0 + np.arange(len(self._free))))
+
+    @cached_property
+    def _stretches(self) -> list[Array]:
+        """Factors (2, values) of the free values at both ends of each step."""
+        return [np.exp(step * np.outer([1.0, -1.0], self._direction)) for step in _ASTRIDE]
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
@@ -347,17 +376,17 @@ class CompiledNorm:
     def _exact_index(self, point: Array) -> float:
         return float(self._combine(self._exact_norms(point)))
 
-    def _gradient_agrees(self, point: Array, value: float, gradient: Array) -> bool:
+    def _gradient_agrees(self, point: Array, value: float, gradient: Array, around: Array) -> bool:
         """Whether the gradient agrees with a central difference in one direction; gradients have no error bound.
 
-        The shorter step is for resonances so sharp that the difference by the longer one is off.
+        `around` are the norms at the ends of the longer step. The shorter one is for resonances so sharp that the
+        difference by the longer one is off.
         """
-        direction = np.cos(1.0 + np.arange(point.size))
-        for step in _ASTRIDE:
-            ends = point * np.exp(step * np.outer([1.0, -1.0], direction))
-            ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
-            slope = (ahead - behind) / (2.0 * step)
-            if abs(slope - (gradient * point) @ direction) <= _SAME * value:
+        slope = (gradient * point) @ self._direction
+        for which, step in enumerate(_ASTRIDE):
+            norms = around if which == 0 else self._with_gradients(self._ends(point, which), np.empty(0))[0]
+            ahead, behind = self._combine(norms)
+            if abs((ahead - behind) / (2.0 * step) - slope) <= _SAME * value:
                 return True
         return False
 

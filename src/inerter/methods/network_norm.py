@@ -6,7 +6,7 @@ polynomials (`kernels.network_polynomials`), so that nothing is built or compile
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -37,6 +37,7 @@ from inerter.networks.elements import Bridge, Damper, Element, Free, Inerter, Ne
 from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.networks.transform import linearise
 from inerter.systems.network_port import PortFunction, port_functions
+from inerter.systems.structure import Structure, structure_of
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -125,6 +126,7 @@ class CompiledSearch:
     points: Array
     values: Array
     evaluations: NDArray[np.int64]
+    is_regular: bool  # whether no transfer function of the index is zero for all values, or has an infinite norm
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +148,7 @@ class NetworkIndex:
             if form:
                 kept.append(k)
                 forms.append(form)
-        arrays = [self.functions[k].round_coefficients() for k in kept]
+        arrays = [self.functions[k].rounded_coefficients for k in kept]
         size = max((high.shape[1] for high, _ in arrays), default=1)
         coefficients, low = np.zeros((2, len(kept), 4, size))
         for k, (high, rest) in enumerate(arrays):
@@ -188,7 +190,8 @@ class NetworkIndex:
         numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
         variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
         assert lower.size == upper.size == len(names), "names of free values are unique"
-        return IndexOverNetwork(self.definition, variables, program.program, port, (lower, upper))
+        is_regular = port.weights.size == len(self.functions)
+        return IndexOverNetwork(self.definition, variables, program.program, port, (lower, upper), is_regular)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,6 +203,7 @@ class IndexOverNetwork:
     program: Program
     port: Port
     ends: tuple[Array, Array]
+    is_regular: bool
 
     def values(self, points: Array) -> Array:
         """The index at each row of free values, of r.m.s. values; infinite where it is not known."""
@@ -223,7 +227,7 @@ class IndexOverNetwork:
             values = np.asarray(search_network(*given, trade_off, points, counts))
         for end in (lower, upper):  # which logarithms miss by a rounding
             points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
-        return CompiledSearch(points, values, counts)
+        return CompiledSearch(points, values, counts, self.is_regular)
 
 
 def join_indices(several: Sequence[NetworkIndex]) -> tuple[NetworkIndex, NDArray[np.int64]]:
@@ -306,11 +310,29 @@ def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] |
         return None
     probe = replace(mount, network=Damper(free(1.0, 2.0, PLACE), PLACE))
     probed = replace(mechanism, struts=tuple(probe if strut is mount else strut for strut in mechanism.struts))
+    structure, definition = structure_of(probed), index.definition(mechanism)
     try:
-        found = network_index(probed, index.definition(mechanism), PLACE)
+        if structure is None or not isinstance(definition, Hashable):
+            found = network_index(probed, definition, PLACE)
+        else:
+            found = _remembered_index(_Question(structure, tuple(structure.values), definition))
     except InerterError:  # for an output of an element of the strut
         return None
     return None if found is None else (found, network)
+
+
+@dataclass(frozen=True)
+class _Question:
+    """A mechanism with a network in question, by its structure and values, and an index of it."""
+
+    structure: Structure
+    values: tuple[float | Free, ...]
+    definition: IndexDefinition
+
+
+@lru_cache(maxsize=64)
+def _remembered_index(question: _Question) -> NetworkIndex | None:
+    return network_index(question.structure.mechanism, question.definition, PLACE)
 
 
 @dataclass(frozen=True, eq=False)

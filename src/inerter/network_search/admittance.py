@@ -228,7 +228,7 @@ class _AdmittanceIndex:
         damping = float(_DAMPERS[best])
         sizes = []
         for function in self.compiled_index.functions:
-            high, _ = function.round_coefficients()
+            high, _ = function.rounded_coefficients
             sizes += [abs(root) for root in np.roots((high[0] + damping * high[1])[::-1]) if root != 0.0]
         return damping, float(np.exp(np.mean(np.log(sizes)))) if sizes else 1.0
 

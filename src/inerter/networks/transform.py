@@ -114,7 +114,7 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
             raise DesignError(
                 f"The free value {label!r} has two ranges: {one} and {other}. Give them different names, or one range."
             )
-        return element.with_value(Free(value.lower, value.upper, label))
+        return element if value.name == label else element.with_value(Free(value.lower, value.upper, label))
 
     named = {mount: map_elements(network, name) for mount, network in networks.items()}
     if any(isinstance(element.value, Tied) for element in found):

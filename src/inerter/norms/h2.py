@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -21,6 +22,7 @@ _LOST = Status(StatusKind.INACCURATE, "damping lost to rounding: some motions ar
 _EPS = float(np.finfo(float).eps)
 _RESIDUAL = 1e-3  # largest residual of the equation for the variance of an excited state, over its terms
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
+_STEADY = 1e-12  # relative correction of every variance after which none is sought: what is left is one of first order
 _LONG = float(np.finfo(np.longdouble).eps)
 _AT_ZERO = 16.0 * _EPS  # size of a pole relative to A that may be rounding
 _SMALL = 1e-6  # relative size of the terms of a correction at first order up to which higher orders are below 1e-9
@@ -168,11 +170,11 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
         Q = [_adjoint(solver, A, row, drifting) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
-    change = np.array([(one * residual).sum() for one in Q])
-    together = np.abs(Q).sum(axis=0)
-    unsure = (together * (2.0 * EA @ size + EW + len(A) * _LONG * (2.0 * np.abs(A) @ size))).sum()
-    unsure += (seen * (2.0 * EC + len(A) * _LONG * np.abs(C)) / goals[:, None]).sum()
-    terms = float((together * np.abs(residual)).sum())
+    change = np.array([np.vdot(one, residual) for one in Q])
+    together = sum(map(np.abs, Q))
+    unsure = np.vdot(together, EW + 2.0 * (EA + len(A) * _LONG * np.abs(A)) @ size)
+    unsure += np.vdot(seen / goals[:, None], 2.0 * EC + len(A) * _LONG * np.abs(C))
+    terms = float(np.vdot(together, np.abs(residual)))
     if not (unsure <= ACCURATE and terms <= _SMALL and solved):
         return None
     error = float(unsure) + _SECOND_ORDER * terms + len(A) * _EPS
@@ -259,19 +261,22 @@ class _Lyapunov:
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
     def refine(self, A: Matrix, W: Matrix) -> Matrix:
-        """P for an A and a W in extended precision, corrected for its residuals while that helps.
+        """P for an A and a W in extended precision, corrected for its residuals while that changes a variance.
 
         Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
         """
         P, before = self.solve(W.astype(float)), np.inf
         for turn in range(20):
             step = self.solve(np.asarray(_add_transpose(A @ P) + W, dtype=float))
-            change = float(np.linalg.norm(step))
-            if turn == 0 and (np.abs(step.diagonal()) > _DAMPED * P.diagonal()).any():
+            change = math.sqrt(np.vdot(step, step))
+            steps, variances = np.abs(step.diagonal()), P.diagonal()
+            if turn == 0 and (steps > _DAMPED * variances).any():
                 raise np.linalg.LinAlgError("damping lost to rounding")
             if not change < 0.5 * before:
                 break
             P, before = P + step, change
+            if (steps <= _STEADY * variances).all():
+                break
         return P
 
 

@@ -11,6 +11,9 @@ from inerter.norms.mean_square import Transfer, UnknownError
 from inerter.systems.polynomials import Polynomial, add, derivative, mirror, multiply, positive_roots, scale_by, value
 
 _FLAT = 1e-13  # relative difference of gains over a peak that ends its refinement
+_WIDTH = Fraction(1, 1 << 26)  # relative distance of the ends of an interval around a suggested peak
+_HALVINGS = 52  # of an interval in double precision
+_BITS = 900  # of the largest coefficient of a polynomial in double precision
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class SquaredGain:
 
     def _top(self, slope: Polynomial, low: Fraction, high: Fraction) -> tuple[float, float]:
         """The maximum between `low` and `high`, where `slope` changes its sign once."""
+        low, high = _narrow(slope, low, high)
         at_low, at_high = self.gain(low), self.gain(high)
         while True:
             middle = (low + high) / 2
@@ -62,6 +66,28 @@ class SquaredGain:
                 low, at_low = middle, at_middle
             else:
                 high, at_high = middle, at_middle
+
+
+def _narrow(slope: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:
+    """A narrower interval in which `slope` falls through zero, as double precision suggests and whole numbers confirm.
+
+    The interval that is given, where they do not.
+    """
+    scale = max(high.numerator.bit_length() - high.denominator.bit_length(), 0)  # the root lies below 2^(scale + 1)
+    terms = [c << scale * i for i, c in enumerate(slope)]
+    spare = max(max(c.bit_length() for c in terms) - _BITS, 0)
+    falling = [float(c >> spare) for c in reversed(terms)]
+    left, right = float(low / (1 << scale)), float(high / (1 << scale))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (left + right)
+        total = 0.0
+        for c in falling:
+            total = total * middle + c
+        left, right = (middle, right) if total > 0.0 else (left, middle)
+    centre = Fraction(0.5 * (left + right)) * (1 << scale)
+    around = centre * (1 - _WIDTH), centre * (1 + _WIDTH)
+    inside = low <= around[0] and around[1] <= high
+    return around if inside and value(slope, around[0]) > 0 > value(slope, around[1]) else (low, high)
 
 
 def _on_axis_squared(p: Polynomial) -> Polynomial:

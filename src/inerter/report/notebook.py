@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from inerter.errors import OK, Status
 from inerter.figures.labels import capital
-from inerter.formatting import format_number, format_quantity
+from inerter.formatting import format_number, format_quantity, format_with_interval
 from inerter.identification.fit import Fit
 from inerter.methods.compare import Comparison
 from inerter.methods.method import Estimate
@@ -30,7 +30,7 @@ def estimate_html(found: Estimate) -> str:
     """Value with its errors, and what the method left out."""
     facts: list[Fact] = [("value", _estimate_quantity(found))]
     if found.interval is not None:
-        facts.append(("95 % interval", _interval(found.interval, found.unit)))
+        facts.append(("95 % interval", _interval(found.value, found.interval, found.unit)))
     if found.error_sources:
         facts.append(("largest relative error", format_number(found.error_bound, 2)))
     return _html(_facts("Estimate", facts), found.status, found.notes)
@@ -58,7 +58,7 @@ def optimum_html(found: Optimum) -> str:
 def break_even_html(found: BreakEven) -> str:
     """Break-even value with its interval."""
     facts: list[Fact] = [(found.parameter, Quantity(found.value, found.unit, error=found.standard_error))]
-    facts.append(("95 % interval", _interval(found.interval, found.unit)))
+    facts.append(("95 % interval", _interval(found.value, found.interval, found.unit)))
     return _html(_facts("Break-even value", facts), found.status)
 
 
@@ -115,7 +115,7 @@ def fit_html(found: Fit) -> str:
             cells(
                 each.name,
                 Quantity(each.value, each.unit, error=each.standard_error) if each.value == each.value else "not known",
-                _interval(each.interval, each.unit),
+                _interval(each.value, each.interval, each.unit),
             )
         )
         for each in found.parameters.values()
@@ -151,8 +151,8 @@ def _estimate_quantity(found: Estimate) -> Quantity:
     return Quantity(found.value, found.unit, error=error, bound=found.error_bound)
 
 
-def _interval(ends: tuple[float, float], unit: str) -> str:
-    return " to ".join(format_quantity(end, unit) for end in ends)
+def _interval(value: float, ends: tuple[float, float], unit: str) -> str:
+    return format_with_interval(value, *ends, unit)[1]
 
 
 def _parameters(values: Mapping[str, float], design: Vehicle) -> list[Fact]:

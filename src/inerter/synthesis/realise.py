@@ -4,9 +4,11 @@ Poles on the imaginary axis are split off the admittance or the impedance (Foste
 real part is, from that of the two where it lies at zero or infinite frequency, so that the inverse has a pole there: a
 regular biquadratic needs two reactive elements and three dampers (Jiang and Smith 2011, "Regular positive-real
 functions and five-element network synthesis for electrical and mechanical networks", IEEE Trans. Autom. Control 56(6)).
-Where it lies between, Bott and Duffin (1949), "Impedance synthesis without use of transformers", J. Appl. Phys. 20(8),
-lower the degree by two, with six reactive elements and two functions that remain. Partial fractions, each with the
-constant that makes it positive real, often need fewer where their sum allows them.
+Where it lies between, the step of Bott and Duffin (1949), "Impedance synthesis without use of transformers", J. Appl.
+Phys. 20(8), lowers the degree by two and leaves two functions. Its six reactive elements are a balanced bridge, whose
+two inner nodes may be joined by anything; joined by one element, five suffice (Pantell 1954; Reza 1954; Fialkow and
+Gerst 1955). Partial fractions, each with the constant that makes it positive real, often need fewer where their sum
+allows them, and bridges with two reactive elements, where a biquadratic has one (`synthesis.bridges`).
 """
 
 from __future__ import annotations
@@ -24,7 +26,8 @@ from numpy.typing import NDArray
 
 from inerter.errors import NetworkError, SynthesisError
 from inerter.formatting import format_number
-from inerter.networks.elements import Damper, Inerter, Network, Spring
+from inerter.networks.elements import Bridge, Damper, Inerter, Network, Spring
+from inerter.synthesis.bridges import bridges_of_five
 from inerter.synthesis.immittance import DIGITS, Immittance
 from inerter.synthesis.positive_real import Ratio, find_violation
 from inerter.systems.polynomials import Polynomial
@@ -154,7 +157,10 @@ def _expand_smallest(f: Immittance) -> Network:
             regular.append(partial(_remove_at_end, g, least, x))
         else:
             other.append(partial(_remove_inside, g, least, x))
-    attempts: list[Attempt] = [*regular, partial(_split, f), partial(_split, f.inverse()), *([] if regular else other)]
+    attempts: list[Attempt] = [*regular, partial(_split, f), partial(_split, f.inverse())]
+    if not regular:
+        attempts += [partial(next, bridges_of_five(f), None)] if len(f.bottom) == len(f.top) == 3 else []
+        attempts += other
     networks: list[Network] = []
     for attempt in attempts:
         with suppress(ArithmeticError, NetworkError):
@@ -200,31 +206,39 @@ def _expand_at(f: Immittance, x: Decimal) -> Network | None:
         return _remove_pole(f, x)
     if f.inverse().has_pole_at(x):
         return _remove_pole(f.inverse(), x)
-    return _bott_duffin(f, x)
+    return _expand_bridge(f, x)
 
 
 def _remove_pole(f: Immittance, x: Decimal) -> Network | None:
     """The expansion of f after its poles at s^2 = -x, those of a spring and an inerter, are removed."""
     a, rest = f.without_pole_at(x)
-    inverse = f.inverse()
-    return _join(f, _join(inverse, _proportional(inverse, 1 / a), _integral(inverse, x / a)), expand(rest))
+    return _join(f, _resonator(f, a, x), expand(rest))
 
 
-def _bott_duffin(f: Immittance, x: Decimal) -> Network | None:
-    """The expansion of f where Re f(j w) = 0 and Im f(j w) is not zero, with w^2 = x."""
+def _expand_bridge(f: Immittance, x: Decimal) -> Network | None:
+    """The expansion of f where Re f(j w) = 0 and Im f(j w) is not zero, with w^2 = x.
+
+    By Richards' function R, whose zeros are at s^2 = -x, Bott and Duffin expand an impedance f as f(k) R beside
+    k f(k) / s, in series with f(k) / R beside s f(k) / k. The poles a s / (s^2 + x) of 1 / (f(k) R) and of f(k) / R are
+    one branch each. All potentials stay as they are if the second branch, of two elements, becomes the arm between both
+    inner nodes, of one, and the others are `stiffer`.
+    """
     slope = f.at(x)[1]
     if slope < 0:
         f = f.inverse()
         slope = f.at(x)[1]
     k, r = f.richards(slope)
     value, other = slope * k, f.inverse()
-    below = other.over(r.bottom, [value * c for c in r.top])  # 1 / (value R): it has a pole at x
-    above = f.over([value * c for c in r.bottom], r.top)  # value / R: so has this one
-    return _join(
-        f,
-        _join(other, _proportional(other, 1 / (k * value)), _remove_pole(below, x)),
-        _join(other, _integral(other, k / value), _remove_pole(above, x)),
-    )
+    a, across = other.over(r.bottom, [value * c for c in r.top]).without_pole_at(x)  # of 1 / (value R)
+    along = f.over([value * c for c in r.bottom], r.top).without_pole_at(x)[1]  # of value / R
+    ratio = a * value / k
+    arm = 1 / (k * value * (1 + ratio))
+    left = _join(other, _resonator(other, a + x * ratio * arm, x), expand(across))
+    right, lower = expand(along), _proportional(f, value / k)
+    if left is None or right is None:
+        raise ArithmeticError("Richards' function is that of a lossless network")
+    upper, between = _integral(f, 1 / arm), _proportional(f, 1 / (x * arm))
+    return Bridge(left, lower, upper, right, between) if f.is_impedance else Bridge(left, upper, lower, right, between)
 
 
 def _join(f: Immittance, *parts: Network | None) -> Network | None:
@@ -236,6 +250,12 @@ def _join(f: Immittance, *parts: Network | None) -> Network | None:
 def _constant(f: Immittance, a: Decimal) -> Network:
     """The damper of the immittance a."""
     return Damper(float(1 / a if f.is_impedance else a))
+
+
+def _resonator(f: Immittance, a: Decimal, x: Decimal) -> Network | None:
+    """The spring and inerter of the immittance a s / (s^2 + x)."""
+    inverse = f.inverse()
+    return _join(inverse, _proportional(inverse, 1 / a), _integral(inverse, x / a))
 
 
 def _proportional(f: Immittance, a: Decimal) -> Network:

@@ -39,7 +39,7 @@ from inerter.systems.linear import ExtendedMatrices, LinearSystem, Origin
 from inerter.systems.observe import StackedOutput, observe, observed_by_default
 from inerter.systems.outputs import Output, check_inputs, force_of, input_names
 from inerter.systems.polynomials import Polynomial, TransferFunctions
-from inerter.systems.structure import Structure, structure_of
+from inerter.systems.structure import Structure, once_per_structure, structure_of
 from inerter.systems.transfer import transfer_functions
 from inerter.vehicle.mechanism import Mechanism
 
@@ -103,9 +103,9 @@ def close(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
     p = np.array([1.0, *(values[name] for name in descriptor.free)], dtype=np.longdouble)
-    d = descriptor
-    S, R, F, Y_eta, Y_x, Y_u = (_sum_stack(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
-    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = (_sum_stack(p.astype(float), stack) for stack in d.sizes)
+    d, rounded = descriptor, p.astype(float)
+    S, R, F, Y_eta, Y_x, Y_u = [_sum_stack(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u)]
+    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = [_sum_stack(rounded, stack) for stack in d.sizes]
     T, T_error = _solve_extended(S, _beside(R, F), S_size, _beside(R_size, F_size))
     X, Y = _beside(d.X_x, d.X_u), _beside(Y_x, Y_u)
     top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
@@ -295,6 +295,13 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
     )
 
 
+@once_per_structure
+def linear_notes(mechanism: Mechanism) -> tuple[str, ...]:
+    """Notes on what the linear model neglects."""
+    return linear_graph(mechanism).notes
+
+
+@once_per_structure
 def is_held_by_springs(mechanism: Mechanism) -> bool:
     """Whether springs determine the position of every coordinate when all roads lie still."""
     graph = linear_graph(mechanism)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from operator import is_
@@ -91,7 +92,7 @@ class LinearSystem:
                 raise LinearSystemError(f"{name} must be a matrix of numbers.") from None
             if matrix.ndim != 2:
                 raise LinearSystemError(f"{name} must be a matrix, got an array of shape {matrix.shape}.")
-            if not np.isfinite(matrix).all():
+            if not (math.isfinite(np.vdot(matrix, matrix)) or np.isfinite(matrix).all()):  # the first takes less time
                 raise LinearSystemError(f"{name} has entries that are not finite numbers.")
             object.__setattr__(self, name, matrix)
         n, m, p = self.A.shape[0], self.B.shape[1], self.C.shape[0]
@@ -109,8 +110,8 @@ class LinearSystem:
         except (TypeError, ValueError):
             raise LinearSystemError(f"The delays of a system are numbers of seconds, got {self.delays!r}.") from None
         object.__setattr__(self, "delays", delays if delays.size else np.zeros(m))
-        timely = np.isfinite(self.delays).all() and (self.delays >= 0.0).all()
-        if len(self.sources) != m or self.delays.shape != (m,) or not timely:
+        fits = len(self.sources) == m and self.delays.shape == (m,)
+        if not (fits and all(0.0 <= delay < math.inf for delay in self.delays.tolist())):
             raise LinearSystemError(f"Each of the {m} inputs needs one source and one delay of zero or more seconds.")
 
     @property

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +37,8 @@ class PortFunction:
         """P, Q, A, B."""
         return self.poles, self.poles_rigid, self.zeros, self.zeros_rigid
 
-    def round_coefficients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    @cached_property
+    def rounded_coefficients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The polynomials (4, size) over a common power of two, and what is to be added in twice the precision."""
         bits = max(c.bit_length() for p in self.polynomials for c in p)
         high, low = np.zeros((2, 4, max(map(len, self.polynomials))))

@@ -148,10 +148,11 @@ def on_axis(p: Polynomial) -> Polynomial:
 
 def value(p: Polynomial, x: Fraction) -> int:
     """p(x) times the denominator of x to the degree of p, which has the sign of p(x)."""
+    top, bottom = x.as_integer_ratio()
     result, power = 0, 1
     for c in reversed(p):
-        result = result * x.numerator + c * power
-        power *= x.denominator
+        result = result * top + c * power
+        power *= bottom
     return result
 
 

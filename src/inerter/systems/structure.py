@@ -7,8 +7,10 @@ lever arms, and the same ones free. What follows from the structure is found onc
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, replace
+from functools import lru_cache, wraps
+from typing import TypeVar
 
 from inerter.networks.elements import CombinedNetwork, Element, Free, Network, Tied
 from inerter.networks.transform import map_elements
@@ -16,6 +18,7 @@ from inerter.systems.graph import Graph, linear_graph
 from inerter.vehicle.mechanism import Mechanism, Port
 
 Values = list[float | Free]
+_Answer = TypeVar("_Answer")
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +87,18 @@ def structure_of(mechanism: Mechanism) -> Structure | None:
     points = tuple([(point.name, _port(point.port), point.angle) for point in mechanism.points])
     key = (struts, tyres, still, coordinates, ground, mechanism.roads, forces, points)
     return Structure(key, values, mechanism)
+
+
+def once_per_structure(answer: Callable[[Mechanism], _Answer]) -> Callable[[Mechanism], _Answer]:
+    """A function of a mechanism that does not depend on values, computed once for each structure."""
+    known = lru_cache(maxsize=128)(lambda structure: answer(structure.mechanism))
+
+    @wraps(answer)
+    def remembered(mechanism: Mechanism) -> _Answer:
+        structure = structure_of(mechanism)
+        return answer(mechanism) if structure is None else known(structure)
+
+    return remembered
 
 
 class _DependsOnValuesError(Exception):

@@ -82,17 +82,40 @@ def _scale_rows(rows: Rows, unit: int) -> Rows:
     return over_nodes, over_roads
 
 
+@dataclass(frozen=True, eq=False)
+class _WholeRows:
+    """Rows over nodes and roads in whole numbers, times a unit: of branches, outputs and forces. They are only read."""
+
+    lever_unit: int
+    branches: list[Rows]
+    outputs: list[tuple[Rows, ...]]
+    forces: dict[str, Row]  # over nodes
+
+
 @lru_cache(maxsize=64)
-def _whole_rows(span: BranchRows, nodes: int, shape: tuple[int, int], data: bytes) -> tuple[int, list[Rows]]:
-    """Rows over nodes and roads in whole numbers, times a unit that comes first; not to be written to."""
-    exact = span.exact_rows(np.frombuffer(data).reshape(shape))
+def _whole_rows(graph: Graph, asked: tuple[Output, ...], roads: int, names: tuple[str, ...], ends: bytes) -> _WholeRows:
+    """Rows of a graph with this number of roads; the named external forces act on the nodes by the rows `ends`."""
+    size = len(graph.nodes)
+    pushed = dict(zip(names, np.frombuffer(ends).reshape(len(names), size), strict=True))
+    pushed = {force_of(branch.label): -branch.nodes for branch in graph.branches} | pushed
+    rows = [(branch.nodes, branch.roads) for branch in graph.branches]
+    rows += [pair for output in asked for pair in _pairs(output)]
+    rows += [(force, np.zeros(0)) for force in pushed.values()]
+    joined = np.zeros((len(rows), size + roads))
+    for row, (on_nodes, on_roads) in zip(joined, rows, strict=True):
+        row[: on_nodes.size], row[size : size + on_roads.size] = on_nodes, on_roads
+    exact = BranchRows.of(graph, range(roads)).exact_rows(joined)
     unit = lcm(*{x.denominator for row in exact for x in row})
-    whole = [{i: int(x * unit) for i, x in enumerate(row) if x} for row in exact]
-    split = [
-        ({i: x for i, x in row.items() if i < nodes}, {i - nodes: x for i, x in row.items() if i >= nodes})
-        for row in whole
-    ]
-    return unit, split
+    whole = ({i: int(x * unit) for i, x in enumerate(row) if x} for row in exact)
+    rest = iter(
+        [
+            ({i: x for i, x in row.items() if i < size}, {i - size: x for i, x in row.items() if i >= size})
+            for row in whole
+        ]
+    )
+    on_branches = list(islice(rest, len(graph.branches)))
+    on_outputs = [tuple(islice(rest, 3)) for _ in asked]
+    return _WholeRows(unit, on_branches, on_outputs, dict(zip(pushed, (nodes for nodes, _ in rest), strict=True)))
 
 
 def _pairs(output: Output) -> list[tuple[Matrix, Matrix]]:
@@ -112,28 +135,16 @@ class _Nodal:
     ) -> None:
         self.graph, self.size = graph, len(graph.nodes)
         self.roads = [road.name for road in mechanism.roads]
-        self.names = [force.name for force in mechanism.forces]
-        pushed = dict(zip(self.names, ports(mechanism, graph), strict=True))
-        pushed = {force_of(branch.label): -branch.nodes for branch in graph.branches} | pushed
-        rows = [(branch.nodes, branch.roads) for branch in graph.branches]
-        rows += [pair for output in asked for pair in _pairs(output)]
-        rows += [(force, np.zeros(0)) for force in pushed.values()]
-        joined = np.zeros((len(rows), self.size + len(self.roads)))
-        for row, (on_nodes, on_roads) in zip(joined, rows, strict=True):
-            row[: on_nodes.size], row[self.size : self.size + on_roads.size] = on_nodes, on_roads
-        span = BranchRows.of(graph, range(len(self.roads)))
-        self.lever_unit, whole = _whole_rows(span, self.size, joined.shape, joined.tobytes())
-        rest = iter(whole)
-        on_branches = list(islice(rest, len(graph.branches)))
-        self.outputs = [tuple(islice(rest, 3)) for _ in asked]
-        self.forces = dict(zip(pushed, (on_nodes for on_nodes, _ in rest), strict=True))
+        self.names = tuple(force.name for force in mechanism.forces)
+        whole = _whole_rows(graph, tuple(asked), len(self.roads), self.names, ports(mechanism, graph).tobytes())
+        self.lever_unit, self.outputs, self.forces = whole.lever_unit, whole.outputs, whole.forces
         numbers = [_coefficient(b.element, values) for b in graph.branches]
         masses = [_mass(coordinate, values) for coordinate in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [
             (_times(number, self.value_bits), b.element.linear.order, *row)
-            for b, number, row in zip(graph.branches, numbers, on_branches, strict=True)
+            for b, number, row in zip(graph.branches, numbers, whole.branches, strict=True)
         ]
 
     def load(self, name: str) -> Load:
@@ -232,14 +243,15 @@ def solve_fraction_free(P: list[list[int]], F: list[list[int]]) -> tuple[int, li
     return determinant, X
 
 
-def _coefficient(element: Element, values: Mapping[str, float]) -> Fraction:
+def _coefficient(element: Element, values: Mapping[str, float]) -> float | Fraction:
     value = element.value
     assert not isinstance(value, Tied)
-    return Fraction(values[str(value.name)] if isinstance(value, Free) else value) * Fraction(element.gain)
+    number = values[str(value.name)] if isinstance(value, Free) else value
+    return number if element.gain == 1.0 else Fraction(number) * Fraction(element.gain)
 
 
-def _mass(coordinate: Coordinate, values: Mapping[str, float]) -> Fraction:
-    return Fraction(0) if coordinate.is_massless else _coefficient(coordinate.element, values)
+def _mass(coordinate: Coordinate, values: Mapping[str, float]) -> float | Fraction:
+    return 0.0 if coordinate.is_massless else _coefficient(coordinate.element, values)
 
 
 def _bits(value: float | Fraction) -> int:
@@ -248,4 +260,6 @@ def _bits(value: float | Fraction) -> int:
 
 
 def _times(value: float | Fraction, bits: int) -> int:
-    return int(Fraction(value) * (1 << bits))
+    """`value` doubled `bits` times, which is a whole number."""
+    top, bottom = value.as_integer_ratio()
+    return (top << bits) // bottom

@@ -1,28 +1,22 @@
-"""The archive of an FMU: description, sources, and the library that the C compiler of this machine makes of them."""
+"""The archive of an FMU: description, sources, and the libraries that compilers make of them."""
 
 from __future__ import annotations
 
 import hashlib
 import io
-import os
-import platform
-import shutil
-import subprocess
-import tempfile
 import zipfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.resources import files
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import ExportError, WorkError
 from inerter.exports.fmu.arrivals import on_one_road
 from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
 from inerter.exports.fmu.equations import equations_of
+from inerter.exports.fmu.platforms import libraries
 from inerter.exports.fmu.strut import port_masses, strut_system
 from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
 from inerter.exports.kind import ExportKind
@@ -36,29 +30,26 @@ from inerter.systems.outputs import input_names, main_outputs
 from inerter.vehicle.mechanism import Mechanism
 
 Matrix = NDArray[np.float64]
-_OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off")
 _DATE = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal designs are equal archives
-_LONGEST = 120.0  # of a compilation [s]
 
 
 @dataclass(frozen=True)
 class FmiVersion:
-    """A version of FMI: its source file, and its name of this platform."""
+    """A version of FMI, and its source file."""
 
     number: int
     source: str
-    platform: str
 
 
-FMI_2, FMI_3 = FmiVersion(2, "fmi2.c", "linux64"), FmiVersion(3, "fmi3.c", "x86_64-linux")
+FMI_2, FMI_3 = FmiVersion(2, "fmi2.c"), FmiVersion(3, "fmi3.c")
 
 
 def _make_2(request: ExportSpec, suffix: str) -> bytes:
-    return fmu_archive(_system(request), request.title, FMI_2)
+    return fmu_archive(_system(request), request.title, FMI_2, request.platforms)
 
 
 def _make_3(request: ExportSpec, suffix: str) -> bytes:
-    return fmu_archive(_system(request), request.title, FMI_3)
+    return fmu_archive(_system(request), request.title, FMI_3, request.platforms)
 
 
 def _system(request: ExportSpec) -> SwitchingSystem:
@@ -97,11 +88,10 @@ def _elements(mechanism: Mechanism) -> Iterator[Element]:
         yield from mount.network.elements()
 
 
-def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> bytes:
-    """An FMU of a linear or a switching system.
+def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion, platforms: Sequence[str] = ()) -> bytes:
+    """An FMU of a linear or a switching system, with libraries for this machine and for other platforms.
 
-    Raises `ExportError` where there is no C compiler, or on other platforms than Linux on x86-64; `WorkError` if the
-    compiler fails.
+    Raises as `libraries`.
     """
     name = package_name(title or "vehicle")
     header = _header(switches)
@@ -117,7 +107,8 @@ def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> b
     else:
         entries["modelDescription.xml"] = description_3(model)
         entries["sources/buildDescription.xml"] = build_description(model, version.source)
-    entries[f"binaries/{version.platform}/{name}.so"] = _compile(sources, version.source)
+    for platform, library in libraries(sources, version.source, platforms):
+        entries[f"binaries/{platform.folders[version.number]}/{name}{platform.suffix}"] = library
     content = io.BytesIO()
     with zipfile.ZipFile(content, "w", zipfile.ZIP_DEFLATED) as archive:
         for path, data in sorted(entries.items()):
@@ -126,26 +117,6 @@ def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion) -> b
             info.external_attr = 0o644 << 16
             archive.writestr(info, data)
     return content.getvalue()
-
-
-def _compile(sources: dict[str, str], main: str) -> bytes:
-    compiler = shutil.which(os.environ.get("CC", "cc"))
-    if platform.system() != "Linux" or platform.machine() != "x86_64":
-        raise ExportError("FMUs are made on Linux on x86-64 only. Export the design there.")
-    if compiler is None:
-        raise ExportError("An FMU needs a C compiler, and there is none called cc. Install one, or name it in CC.")
-    with tempfile.TemporaryDirectory() as folder:
-        for file, text in sources.items():
-            (Path(folder) / file).write_text(text, encoding="utf-8")
-        command = [compiler, *_OPTIONS, "-o", "model.so", main, "-lm"]
-        try:
-            done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_LONGEST, check=False)
-        except (OSError, subprocess.TimeoutExpired) as error:
-            raise WorkError(f"The C compiler {compiler} failed: {error}.") from None
-        if done.returncode != 0:
-            lines = [line for line in done.stderr.splitlines() if "error" in line] or ["no message"]
-            raise WorkError(f"The C compiler {compiler} failed: {lines[0]}.")
-        return (Path(folder) / "model.so").read_bytes()
 
 
 def _header(switches: SwitchingSystem) -> str:
@@ -185,6 +156,7 @@ def _header(switches: SwitchingSystem) -> str:
         _row("double", "LIMIT_GAIN", gains),
         _row("int", "LIMIT", places),
         _row("int", "GAP", switches.is_gap),
+        _row("int", "CREEPS", switches.creeps),
         _row("double", "START", [one.value for one in parameters]),
         _row("int", "TUNABLE", [one.is_tunable for one in parameters]),
         _row("int", "MAY_VANISH", [one.may_vanish for one in parameters]),
@@ -217,6 +189,6 @@ def _matrix(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
-_KIND = partial(ExportKind, suffixes=(".fmu",), requires="a C compiler", takes=("part", "speed"))
+_KIND = partial(ExportKind, suffixes=(".fmu",), requires="a C compiler", takes=("part", "speed", "platforms"))
 FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=_make_2)
 FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=_make_3)

@@ -34,7 +34,9 @@ class Cut:
 
     branch: Branch
     reaction: Force  # in its place, in tension
-    point: TrackedPoint | None  # that moves as its elongation does, as far as nodes move it
+    point: TrackedPoint | None  # that moves as its elongation does; none at a node that only springs hold
+    levers: Mapping[str, float]  # of coordinates in its elongation there
+    springs: Mapping[int, float]  # and of the elongations of branches
 
     @property
     def is_gap(self) -> bool:
@@ -46,6 +48,11 @@ class Cut:
         """The output on which its law is."""
         assert self.point is not None
         return f"{self.point.name}_{'displacement' if self.is_gap else 'velocity'}"
+
+    @property
+    def creeps(self) -> bool:
+        """Whether it is a friction at a node that only springs hold, which its force moves at once."""
+        return self.point is None and not self.is_gap
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +76,7 @@ class CutMechanism:
         motions = ("displacement", "velocity", "acceleration")
         moved = [f"{c.name}_{what}" for c in self.whole.coordinates for what in motions]
         known = outputs(self.opened, full_graph(self.opened))
-        across = [cut.motion for cut in self.cuts]
+        across = [cut.motion for cut in self.cuts if cut.point is not None]
         reactions = {cut.reaction.name for cut in self.cuts}
         return (*(n for n in moved if n in known), *across, *(n for n in self.carried if n not in reactions))
 
@@ -115,20 +122,38 @@ class CutMechanism:
                 found[travel] = found[travel] + lever * rows[road.name]
         return found
 
-    def motions(self, rows: Rows) -> list[Matrix]:
-        """Rows of the motions on which the laws are."""
-        return [rows[cut.motion] for cut in self.cuts]
+    def motions(self, rows: Rows, equations: Equations | None = None) -> list[Matrix]:
+        """Rows of the motions on which the laws are; stacks of them with the equations that have these rows."""
+        found = []
+        for cut in self.cuts:
+            if cut.point is not None:
+                found.append(rows[cut.motion])
+                continue
+            terms = [lever * rows[f"{name}_displacement"] for name, lever in cut.levers.items()]
+            terms += [lever * self._elongation(i, rows, equations) for i, lever in cut.springs.items()]
+            found.append(np.sum(terms, axis=0))
+        return found
+
+    def _elongation(self, number: int, rows: Rows, equations: Equations | None) -> Matrix:
+        """Of a spring: its force over its value, which in a stack is the slice of that value."""
+        force, element = rows[self.carried[number]], self.graph.branches[number].element
+        if equations is None:
+            return force / element.coefficient
+        names = [one.name for one in equations.parameters]
+        found = np.zeros_like(force)
+        found[0] = force[1 + names.index(self.graph.branches[number].label)] / element.gain
+        return found
 
 
 def cut_mechanism(mechanism: Mechanism, prescribed: int = 0) -> CutMechanism:
     """The cut mechanism of one with numbers as values, whose first `prescribed` coordinates move as they are told.
 
-    Raises `ExportError` for friction or a gap on a road, or at a node that nothing but springs hold.
+    Raises `ExportError` for friction or a gap on a road.
     """
     whole = switching(mechanism)
     graph = full_graph(whole)
     numbers = [i for i, branch in enumerate(graph.branches) if branch.element.switch is not None]
-    _check(whole, graph, [graph.branches[i] for i in numbers], prescribed)
+    _check([graph.branches[i] for i in numbers], prescribed)
     inner = [f"inner_node_{i}" for i in range(len(graph.nodes) - len(whole.coordinates))]
     nodes = [*(c.name for c in whole.coordinates), *inner]
     roads = [road.name for road in whole.roads]
@@ -144,7 +169,11 @@ def cut_mechanism(mechanism: Mechanism, prescribed: int = 0) -> CutMechanism:
     for i in numbers:
         branch = graph.branches[i]
         pulled = {node: -lever for node, lever in port(branch).items()}
-        cuts.append(Cut(branch, Force(f"reaction_{i}", pulled), TrackedPoint(f"across_{i}", port(branch))))
+        reaction = Force(f"reaction_{i}", pulled)
+        if _is_loose(whole, graph, branch, prescribed):
+            cuts.append(Cut(branch, reaction, None, *_place(whole, graph, branch)))
+        else:
+            cuts.append(Cut(branch, reaction, TrackedPoint(f"across_{i}", port(branch)), {}, {}))
     opened = replace(
         whole,
         coordinates=(*whole.coordinates, *(Coordinate(node, 0.0) for node in inner)),
@@ -169,11 +198,7 @@ def _limit(cut: Cut) -> FmuParameter:
     return FmuParameter(cut.branch.label, element.unit, value, is_tunable=not cut.is_gap, may_vanish=True)
 
 
-def _check(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch], prescribed: int) -> None:
-    if not reactive:
-        return
-    damped = np.vstack([inertias(mechanism, graph)[0], incidence_rows(of_law(graph, LinearRole.DAMPING), graph)[0]])
-    loose = null_space(damped[:, prescribed:]) if damped.shape[1] > prescribed else damped.T[:0]
+def _check(reactive: Sequence[Branch], prescribed: int) -> None:
     for branch in reactive:
         what = f"{branch.element.key} {branch.label!r}"
         if np.any(branch.roads):
@@ -183,9 +208,30 @@ def _check(mechanism: Mechanism, graph: Graph, reactive: Sequence[Branch], presc
                 f"The {what} is between the ends of the strut itself, so that only a host could say when it "
                 "sticks or touches. Export the whole vehicle, or give it an elastic shaft."
             )
-        if np.any(np.abs(branch.nodes[prescribed:] @ loose) > 1e-9):
-            raise ExportError(
-                f"An FMU needs a mass, inerter or damper at both ends of the {what}, where only springs are. Put a "
-                "damper beside the spring, or leave friction and gaps out with linear=True, on the command line "
-                "--linear."
-            )
+
+
+def _is_loose(mechanism: Mechanism, graph: Graph, branch: Branch, prescribed: int) -> bool:
+    """Whether an end of a branch is at a node that neither mass, inerter nor damper holds."""
+    damped = np.vstack([inertias(mechanism, graph)[0], incidence_rows(of_law(graph, LinearRole.DAMPING), graph)[0]])
+    loose = null_space(damped[:, prescribed:])
+    return bool(np.any(np.abs(branch.nodes[prescribed:] @ loose) > 1e-9))
+
+
+def _place(mechanism: Mechanism, graph: Graph, branch: Branch) -> tuple[dict[str, float], dict[int, float]]:
+    """The elongation of a branch by coordinates and by elongations of springs; raises `ExportError` if it is none."""
+    springs = {
+        i: one.nodes
+        for i, one in enumerate(graph.branches)
+        if one.element.linear is LinearRole.STIFFNESS and not np.any(one.roads)
+    }
+    count = len(mechanism.coordinates)
+    rows = np.vstack([np.eye(len(graph.nodes))[:count], *springs.values()])
+    weights = np.linalg.lstsq(rows.T, branch.nodes, rcond=None)[0]
+    if np.abs(weights @ rows - branch.nodes).max() > 1e-9:
+        raise ExportError(
+            f"An FMU cannot tell the elongation of the {branch.element.key} {branch.label!r}, which has only springs "
+            "at one end. Put a damper beside the spring, or leave friction and gaps out with linear=True, on the "
+            "command line --linear."
+        )
+    levers = {c.name: float(w) for c, w in zip(mechanism.coordinates, weights, strict=False) if abs(w) > 1e-9}
+    return levers, {i: float(w) for i, w in zip(springs, weights[count:], strict=True) if abs(w) > 1e-9}

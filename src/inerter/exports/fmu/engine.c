@@ -7,7 +7,8 @@
    NR reactions of friction and gaps are such that their laws hold at the end of a step. From their values at its begin they
    change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
    state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
-   each other. Reactions at an instant are those of a step of GLANCE from there. */
+   each other. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
+   only springs hold: its force moves the node at once, and its law is about the way in the step. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,10 +24,10 @@
 #define HEIGHT (NETA + NX + NY + NR) /* of the equations: balance, rates, outputs, motions of friction and gaps */
 #define SPAN (NETA + NX + NI)
 #define SWEEPS 10000
-#define LONGEST 1e-4 /* s, with reactions */
-#define GLANCE (LONGEST / 1024.0)
+#define LONGEST 2e-5 /* s, with reactions */
+#define GLANCE (LONGEST / 2048.0)
 #if NR > 0
-#define LEVELS 11
+#define LEVELS 9
 #else
 #define LEVELS 1
 #endif
@@ -250,11 +251,23 @@ static double cubic(double e[][NE + 1], int input, int order, double time)
     return value;
 }
 
+/* The motion of a friction or gap, without what reactions add at once if there are none. */
+static double motion_of(const Model *model, int i, const double *x, const double *u, const double *r)
+{
+    double motion = 0.0;
+    int j;
+    for (j = 0; j < NX; j++) motion += model->Q[i][j] * x[j];
+    for (j = 0; j < NU; j++) motion += model->Q[i][NX + j] * u[j];
+    for (j = 0; r != NULL && j < NR; j++) motion += model->Q[i][NX + NU + j] * r[j];
+    return motion;
+}
+
 /* The end of a step from a state, with the reactions there; these are held, or ramps from those of the state. */
 static void follow(const Model *model, const Flow *flow, double step, int held, State *now)
 {
     double next[NX + 1], motion[NR + 1], before[NR + 1];
     int i, j, k;
+    for (i = 0; i < NR; i++) motion[i] = CREEPS[i] ? -motion_of(model, i, now->x, now->u[0], now->r) : 0.0;
     for (i = 0; i < NX; i++) {
         next[i] = 0.0;
         for (j = 0; j < NX; j++) next[i] += flow->flow[i][j] * now->x[j];
@@ -269,9 +282,7 @@ static void follow(const Model *model, const Flow *flow, double step, int held, 
     }
     for (i = 0; i < NR; i++) {
         before[i] = now->r[i];
-        motion[i] = 0.0;
-        for (j = 0; j < NX; j++) motion[i] += model->Q[i][j] * next[j];
-        for (j = 0; j < NU; j++) motion[i] += model->Q[i][NX + j] * now->u[0][j];
+        motion[i] += motion_of(model, i, next, now->u[0], NULL);
         if (!held)
             for (j = 0; j < NR; j++) motion[i] += (flow->held[i][j] - flow->ramp[i][j]) * now->r[j];
     }
@@ -352,18 +363,16 @@ static int prepare(Model *model)
 /* What an output changes by with the states and the inputs at once, while what sticks sticks, and contacts last. */
 static double sensitivity(const Model *model, int number, const double *dx, const double *du)
 {
-    double motion[NR + 1], dr[NR + 1], y = 0.0;
-    int active[NR + 1], i, j, k;
+    double next[NX + 1], motion[NR + 1], dr[NR + 1], y = 0.0;
+    int active[NR + 1], i, j;
+    for (i = 0; i < NX; i++) {
+        next[i] = 0.0;
+        for (j = 0; j < NX; j++) next[i] += model->glance.flow[i][j] * dx[j];
+        for (j = 0; j < NU; j++) next[i] += model->glance.flow[i][NX + j] * du[j];
+    }
     for (i = 0; i < NR; i++) {
         active[i] = (contact(model, model->now.r, i) == 0) != GAP[i];
-        motion[i] = 0.0;
-        for (k = 0; k < NX; k++) {
-            double next = 0.0;
-            for (j = 0; j < NX; j++) next += model->glance.flow[k][j] * dx[j];
-            for (j = 0; j < NU; j++) next += model->glance.flow[k][NX + j] * du[j];
-            motion[i] += model->Q[i][k] * next;
-        }
-        for (j = 0; j < NU; j++) motion[i] += model->Q[i][NX + j] * du[j];
+        motion[i] = motion_of(model, i, next, du, NULL) - (CREEPS[i] ? motion_of(model, i, dx, du, NULL) : 0.0);
     }
     hold(model->glance.held, active, dr, motion);
     for (j = 0; j < NX; j++) y += model->C[number][j] * dx[j];

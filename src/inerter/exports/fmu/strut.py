@@ -148,6 +148,6 @@ def _equations(cut: CutMechanism, states: int) -> Equations | None:
         fixed(np.concatenate([moved(base.balance), given], axis=1)),
         fixed(np.concatenate([moved(base.rates), force], axis=1)),
         fixed(force),
-        fixed(stacked(cut.motions(rows), outputs)),
+        fixed(stacked(cut.motions(rows, base), outputs)),
         tuple(base.parameters[i] for i in own),
     )

@@ -34,7 +34,8 @@ class SwitchingSystem:
     """x' = A x + B (u, r), y = C x + D (u, r), q = Q (x, u, r), with reactions r of friction and gaps in tension.
 
     `system` has the reactions among its inputs, last. q is the velocity across a friction, whose reaction is `upper`
-    where it slips up and `lower` where it slips down, or the elongation of a gap, which stays between both; `limits`
+    where it slips down, or the elongation of a gap, which stays between both. The q of a friction that `creeps` is its
+    elongation, of which the way in a step counts. `limits`
     are those that a parameter gives. `equations`, where they are known, give the matrices for other parameters.
     """
 
@@ -43,6 +44,7 @@ class SwitchingSystem:
     lower: Matrix
     upper: Matrix
     is_gap: tuple[bool, ...]
+    creeps: tuple[bool, ...] = ()
     limits: tuple[FmuParameter | None, ...] = ()
     equations: Equations | None = None
     motions: tuple[PrescribedMotion, ...] = ()
@@ -79,13 +81,13 @@ def without_reactions(system: NamedSystem, equations: Equations | None = None) -
     """A linear system."""
     none = np.zeros(0)
     Q = np.zeros((0, len(system.states) + len(system.inputs)))
-    return SwitchingSystem(system, Q, none, none, (), equations=equations)
+    return SwitchingSystem(system, Q, none, none, (), (), equations=equations)
 
 
 def switching_system(mechanism: Mechanism, wanted: Sequence[str] | None, title: str) -> SwitchingSystem:
     """The switching system of a mechanism whose values are numbers, with its main outputs or those `wanted`.
 
-    Raises `ExportError` for friction or a gap on a road, or at a node that nothing but springs hold.
+    Raises `ExportError` for friction or a gap on a road.
     """
     refuse_moving_ground(mechanism, "an FMU")
     cut = cut_mechanism(mechanism)
@@ -125,7 +127,10 @@ def with_laws(cut: CutMechanism, system: NamedSystem, rows: Rows, equations: Equ
     limits = np.array([one.branch.element.checked_limits() for one in cut.cuts]).reshape(len(cut.cuts), 2)
     is_gap = tuple(one.is_gap for one in cut.cuts)
     given = () if equations is None else cut.limits()
-    return SwitchingSystem(system, Q, limits[:, 0], limits[:, 1], is_gap, given or (None,) * len(is_gap), equations)
+    creeps = tuple(one.creeps for one in cut.cuts)
+    return SwitchingSystem(
+        system, Q, limits[:, 0], limits[:, 1], is_gap, creeps, given or (None,) * len(is_gap), equations
+    )
 
 
 def reaction_quantities(cut: CutMechanism) -> Quantities:
@@ -166,7 +171,7 @@ def _equations(cut: CutMechanism, states: int, chosen: Sequence[str]) -> Equatio
         balance=with_heights(base.balance, place, roads),
         rates=np.concatenate([with_heights(base.rates, place, roads), heights], axis=1),
         outputs=stacked([found[name] for name in chosen], heights),
-        motions=stacked(cut.motions(rows), heights),
+        motions=stacked(cut.motions(rows, base), heights),
     )
 
 

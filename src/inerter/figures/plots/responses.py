@@ -60,12 +60,13 @@ def _system(mechanism: Mechanism, vehicle: Vehicle, response: Response) -> tuple
             raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
         problem = linear_problem(mechanism, response.definition(mechanism), CONVENTIONS["exact"])
         system = problem.system(close(problem.descriptor, {}))
-        own = unit_of(mechanism, [system.outputs[0]])
+        definition = problem.definition
+        own = unit_of(mechanism, [system.outputs[0]]) if definition.drive.is_random else definition.unit
         return (
             system,
             problem.pade_order,
             capital(response.response),
-            gain_unit(own, source_unit(mechanism, problem.definition)),
+            gain_unit(own, source_unit(mechanism, definition)),
         )
     source, output = response
     system = state_space(vehicle, source, output)

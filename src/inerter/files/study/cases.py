@@ -20,8 +20,7 @@ from inerter.methods.method import Estimate, evaluate
 from inerter.methods.notes import parts_of, with_prefix
 from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
-from inerter.systems.descriptor import is_held_by_springs
-from inerter.systems.graph import linear_graph
+from inerter.systems.descriptor import is_held_by_springs, linear_notes
 from inerter.vehicle.mechanism import Mechanism
 from inerter.work.progress import report, within
 
@@ -155,7 +154,7 @@ def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
     """Notes on elements that the linear methods neglect in a design, and on a missing static equilibrium."""
     measures = mechanism.measures
     blind = [method for method in study.methods if is_blind(method)]
-    left_out = linear_graph(mechanism).notes if blind else ()
+    left_out = linear_notes(mechanism) if blind else ()
     notes = [f"{_prefix(study, method)}{note}" for method in blind for note in left_out]
     if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
         notes.append("no static equilibrium: no spring supports the body")
@@ -187,7 +186,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         asked = study.resolve_index(case.index, case.layout)
         with within("search", 0.0, _SEARCHED):
             found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
-        vehicle = vehicle.with_values(found.parameters)
+        vehicle = found.design
         fields = {
             "parameters": found.parameters,
             "active_bounds": found.active_bounds,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
+from operator import is_
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
@@ -90,7 +91,9 @@ class CombinedNetwork(Network):
             yield from part.elements()
 
     def with_parts(self, parts: Sequence[Network]) -> Self:
-        """The same combination of other parts."""
+        """The same combination of other parts; the same object if none differs."""
+        if len(parts) == len(self.parts) and all(map(is_, parts, self.parts)):
+            return self
         return replace(self, parts=tuple(parts))  # type: ignore[type-var]
 
 
@@ -148,7 +151,7 @@ class Bridge(CombinedNetwork):
         return self.a, self.b, self.c, self.d, self.e
 
     def with_parts(self, parts: Sequence[Network]) -> Bridge:
-        return Bridge(*parts, name=self.name)
+        return self if all(map(is_, parts, self.parts)) else Bridge(*parts, name=self.name)
 
     def fraction(self, s: Complex) -> Fraction:
         arms = [_normalise(*arm.fraction(s)) for arm in self.parts]

@@ -9,11 +9,12 @@ import pytest
 from campaigns import sampled
 from designs import ALWAYS, COUNT, design, deviation, frequencies
 from nodal import Nodal
+from scipy.integrate import solve_ivp
 
 import inerter as it
 
 pytest.importorskip("pymoca", reason='pymoca reads Modelica back: pip install "inerter[test]".')
-from flat_modelica import FlatModel
+from flat_modelica import LIBRARY, FlatModel
 
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 
@@ -29,6 +30,35 @@ def test_its_equations_are_those_of_the_vehicle(number: int) -> None:
     expected = [[nodal.response(out, source) for source in sources] for out in model.outputs]
     assert len(model.outputs) == 3 * len(nodal.coordinates) + 2 * len(nodal.carriers)
     assert deviation(model.response(omega), np.moveaxis(np.array(expected, complex), 2, 0)) < 1e-9
+
+
+@pytest.mark.parametrize("number", sampled(range(COUNT), often=[0, 36], kept=2))
+def test_a_compiler_simulates_it(number: int) -> None:
+    """That of rumoca, with its own reduction of index and integrator, against the state space and SciPy's."""
+    rumoca = pytest.importorskip("rumoca", reason='A compiler of Modelica: pip install "inerter[modelica]".')
+    vehicle = design(number)
+    system = it.state_space(vehicle, outputs=None)
+    lines = {name: (1e4 * 10.0 ** (i % 3), 3.0 + 2.5 * i) for i, name in enumerate(system.inputs)}
+    roads = {road.name for road in vehicle.mechanism().roads}
+    given = [
+        f"  car.{name}{'_velocity' if name in roads else ''} = {size!r}*sin({rate!r}*time);"
+        for name, (size, rate) in lines.items()
+    ]
+    source = it.export(vehicle, "modelica", title="design")
+    whole = "\n".join([LIBRARY, source, "model Test", "  design.Vehicle car;", "equation", *given, "end Test;"])
+    model = rumoca.Session().loads(whole, model="Test")
+    made = model.simulate(1.0, dt=1e-2, config=rumoca.SimConfig(rtol=1e-10, atol=1e-12))
+    time, found = np.array(made.time), dict(zip(made.names, made.to_numpy(), strict=True))
+
+    def inputs(at: np.ndarray) -> np.ndarray:
+        return np.array([size * np.sin(rate * at) for size, rate in lines.values()])
+
+    def rates(at: float, x: np.ndarray) -> np.ndarray:
+        return system.A @ x + system.B @ inputs(np.asarray(at))
+
+    states = solve_ivp(rates, (0.0, time[-1]), np.zeros(len(system.A)), "Radau", time, rtol=1e-10, atol=1e-13).y
+    for name, row in zip(system.outputs, system.C @ states + system.D @ inputs(time), strict=True):
+        assert np.allclose(found[f"car.{name}"], row, rtol=0.0, atol=1e-5 * np.abs(row).max()), name
 
 
 def test_bridges_nodes_without_mass_and_levers() -> None:

@@ -257,6 +257,23 @@ def peak_on_damped_tyre():
     return it.evaluate(damped, it.PeakResponse("road", "sprung_displacement"), it.Norm())
 
 
+def test_transmissibility_over_a_damped_tyre_is_that_of_velocities():
+    """A rigid strut on a damped tyre: T^2 = (1 + (2 D r)^2) / ((1 - r^2)^2 + (2 D r)^2) (Den Hartog, sec. 2.12)."""
+    k, c, mass = 180e3, 2e3, 285.0
+    damped = it.Mechanism(
+        coordinates=(it.Coordinate("mass", mass),),
+        struts=(),
+        tyres=(it.Tyre("tyre", Spring(k) | Damper(c), {"mass": 1.0}, "road"),),
+        roads=(it.RoadInput("road"),),
+    )
+    twice = c / math.sqrt(k * mass)  # 2 D
+    square = (math.sqrt(1.0 + 2.0 * twice**2) - 1.0) / twice**2  # of the ratio r at the peak
+    expected = math.sqrt((1.0 + twice**2 * square) / ((1.0 - square) ** 2 + twice**2 * square))
+    found = it.evaluate(damped, it.PeakResponse("road_velocity", "mass_velocity"), it.Norm())
+    assert found.value == pytest.approx(expected, rel=1e-10)
+    assert found.peaks[0].omega == pytest.approx(math.sqrt(square * k / mass), rel=1e-6)
+
+
 BAD = {
     "no mapping": (lambda: it.RandomResponse("a", ROAD), "map names to weights"),
     "empty": (lambda: it.RandomResponse({}, ROAD), "map names to weights"),
@@ -284,7 +301,7 @@ BAD = {
     "amplitude": (lambda: it.PeakResponse("a", "b", amplitude=0.0), "positive number"),
     "no input": (lambda: peak("pull", "mass_velocity"), "Unknown input 'pull'"),
     "no output": (lambda: peak("push", "mass_speed"), "Unknown output 'mass_speed'"),
-    "damped tyre": (peak_on_damped_tyre, r"A damper acts directly on the velocity of road.*road_velocity"),
+    "damped tyre": (peak_on_damped_tyre, r"A damper acts directly on the velocity of road.*road_velocity: the gain"),
 }  # fmt: skip
 
 

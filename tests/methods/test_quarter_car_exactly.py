@@ -11,15 +11,21 @@ from hypothesis import strategies as st
 from strategies import logarithmic, paper_half_car, paper_quarter_car, random_network, random_quarter_car
 
 from inerter import (
+    GROUND,
+    Coordinate,
     Damper,
+    Force,
     HalfCar,
     Inerter,
     LoadCarrying,
+    Mechanism,
     Norm,
+    PeakResponse,
     QuarterCar,
     RideComfort,
     Road,
     Spring,
+    Strut,
     TyreLoad,
     evaluate,
     frequency_response,
@@ -174,6 +180,32 @@ def test_an_undamped_or_unsupported_car_is_said_to_be_so(strut):
     assert not evaluate(car, J5, Norm()).status.ok
     comfort = evaluate(car, J1, Norm())
     assert comfort.status.ok == (comfort.value < math.inf) == isinstance(strut, Damper)
+
+
+@pytest.mark.parametrize("inertance", [0.0, 40.0, 366.52])
+def test_undamped_modes_are_at_the_roots_of_the_characteristic_equation(inertance):
+    """det(K - omega^2 M) = 0 of two masses with b across the strut, by the formula of the quadratic equation."""
+    m, mu, k, kt, b = 250.0, 35.0, 30e3, 180e3, inertance
+    strut = Spring(k) | Inerter(b) if b else Spring(k)
+    square, linear, constant = m * mu + b * (m + mu), k * (m + mu) + kt * (m + b), k * kt
+    root = math.sqrt(linear**2 - 4.0 * square * constant)
+    expected = [math.sqrt((linear + sign * root) / (2.0 * square)) for sign in (-1.0, 1.0)]
+    car = QuarterCar(m, mu, kt, strut)
+    pushed = evaluate(car, J5, Norm())
+    assert [peak.omega for peak in pushed.peaks] == pytest.approx(expected, rel=1e-14)
+    for found in (pushed, evaluate(car, J1, Norm())):
+        assert found.value == math.inf
+        said = complex(found.status.message.rpartition("a pole at ")[2].removesuffix(" rad/s").replace(" ", ""))
+        assert said == pytest.approx(1j * expected[0], rel=1e-3)
+
+
+def test_two_equal_undamped_modes_are_one_pole():
+    """Both halves of a car that is coupled by nothing: k / m = 700 twice."""
+    masses = (Coordinate("one", 11.0), Coordinate("other", 11.0))
+    struts = tuple(Strut(f"under_{c.name}", Spring(7700.0), {c.name: 1.0}, GROUND) for c in masses)
+    pair = Mechanism(coordinates=masses, struts=struts, forces=(Force("push", {"one": 1.0, "other": 0.5}),))
+    found = evaluate(pair, PeakResponse("push", "other_displacement"), Norm())
+    assert [peak.omega for peak in found.peaks] == pytest.approx([math.sqrt(700.0)], rel=1e-14)
 
 
 def test_a_damper_in_the_tyre_lets_white_noise_through():

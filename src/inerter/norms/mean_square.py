@@ -21,8 +21,8 @@ from inerter.systems.polynomials import (
     mirror,
     multiply,
     on_axis,
-    positive_roots,
     quotient,
+    refine_positive_roots,
     scale_by,
     trim,
 )
@@ -62,8 +62,8 @@ class Transfer:
 def axis_frequencies(denominator: Polynomial) -> list[float]:
     """Frequencies [rad/s] of the roots on the imaginary axis, none of which lies to its right."""
     zeros = next(i for i, c in enumerate(denominator) if c)
-    squares = positive_roots(mirror(on_axis(denominator[zeros:])))
-    return [0.0] * bool(zeros) + [math.sqrt(high) for _, high in squares]
+    squares = refine_positive_roots(mirror(on_axis(denominator[zeros:])))
+    return [0.0] * bool(zeros) + [math.sqrt(square) for square in squares]
 
 
 def mean_square(response: Transfer) -> tuple[float, list[float]]:

@@ -200,9 +200,8 @@ def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
     if np.any(d.F[:, :, columns]) or np.any(d.Y_u[:, :, columns]):
         words = " and ".join(d.inputs[i] for i in columns)
         raise LinearSystemError(
-            f"A damper acts directly on the velocity of {words}, so that its displacement cannot be an input of a "
-            "linear system. "
-            f"Use the response to the velocity, {d.inputs[columns[0]]}_velocity."
+            f"A damper acts directly on the velocity of {words}, so the input cannot be a displacement. Use "
+            f"{d.inputs[columns[0]]}_velocity: the gain from it to a velocity is that between the displacements."
         )
     F, Y_u, X_u = d.F.copy(), d.Y_u.copy(), d.X_u.copy()
     F_size, Y_u_size = d.sizes[2].copy(), d.sizes[5].copy()

@@ -14,6 +14,7 @@ from math import gcd as common
 
 Polynomial = list[int]
 _PRIME = (1 << 61) - 1
+_FINE = Fraction(1, 1 << 56)  # of a root, to which an interval is halved
 
 
 def trim(p: Sequence[int]) -> Polynomial:
@@ -161,14 +162,9 @@ def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
 
     By Descartes' rule of signs and bisection (Collins and Akritas, 1976). A root that is met has its interval (x, x).
     """
-    p = trim(p)
-    while p and p[0] == 0:
-        p = p[1:]
+    p = _without_repeated_roots(p)
     if len(p) < 2:
         return []
-    repeated = greatest_common_divisor(p, derivative(p))
-    if len(repeated) > 1:
-        p = quotient(p, repeated)
     one = Fraction(1)
     found = [_above_zero(p, *ends) for ends in _between_zero_and_one(p)]
     found += [(one, one)] if sum(p) == 0 else []
@@ -178,6 +174,27 @@ def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
         while found[i][1] >= found[i + 1][0]:
             found[i], found[i + 1] = _bisect_root(p, *found[i]), _bisect_root(p, *found[i + 1])
     return found
+
+
+def refine_positive_roots(p: Polynomial) -> list[Fraction]:
+    """The positive roots of `p` in rising order, to the digits of double precision."""
+    simple = _without_repeated_roots(p)
+    return [_refine_root(simple, *ends) for ends in positive_roots(simple)]
+
+
+def _refine_root(p: Polynomial, low: Fraction, high: Fraction) -> Fraction:
+    while high - low > _FINE * low:
+        low, high = _bisect_root(p, low, high)
+    return high
+
+
+def _without_repeated_roots(p: Polynomial) -> Polynomial:
+    """The polynomial with the roots of `p` other than zero, each of them once."""
+    p = trim(p)
+    while p and p[0] == 0:
+        p = p[1:]
+    repeated = greatest_common_divisor(p, derivative(p)) if len(p) > 1 else []
+    return quotient(p, repeated) if len(repeated) > 1 else p
 
 
 def _above_zero(p: Polynomial, low: Fraction, high: Fraction) -> tuple[Fraction, Fraction]:

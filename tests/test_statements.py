@@ -155,7 +155,7 @@ def test_statements_name_their_subject_and_their_remedy() -> None:
     assert found.remedy == "detrend(record)"
     assert found.remedy in found.sentence
     assert Finding(FitFinding.OFFSET, about="bench.csv", numbers={"offset": 1.0}).remedy == ""
-    assert NOTES[0].sentence == "friction taken as a damper of 1234.5 N s/m"
+    assert NOTES[0].sentence == "friction taken as a damper of 1234 N s/m"
     assert (UNRELIABLE.sentence, UNRELIABLE.about) == (UNRELIABLE.message, "")
     assert Localisation("bench.csv").about == "bench.csv"
     assert issubclass(Explanation, Statement)

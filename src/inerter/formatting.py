@@ -213,10 +213,13 @@ def format_share(share: float, digits: int = 3, sign: str = "") -> str:
 def format_percent(value: float, error: float = math.nan, bound: float = math.nan) -> str:
     """Improvement [%] with its sign and, if known, its standard error, as text; "-inf %", or "n/a" for nan.
 
-    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths.
+    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths, unless nothing else would
+    be left of a value that is larger than it.
 
     >>> format_percent(13.74), format_percent(13.74, bound=0.2), format_percent(13.74, 0.05)
     ('+13.7 %', '+14 %', '+13.740 +- 0.050 %')
+    >>> format_percent(-0.38, bound=0.11), format_percent(0.38, bound=0.5)
+    ('-0.4 %', '0 %')
     """
     if math.isnan(value):
         return "n/a"
@@ -224,7 +227,7 @@ def format_percent(value: float, error: float = math.nan, bound: float = math.na
         return f"{format_uncertain(value, error, bound / max(abs(value), 1e-300), '+')} %"
     if abs(value) >= _LARGEST:
         return f"{value:+.3g} %"
-    text = f"{value:+.{0 if bound > _TENTH else 1}f} %"
+    text = f"{value:+.{0 if bound > _TENTH and not bound < abs(value) < 1.0 else 1}f} %"
     return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
 
 

@@ -12,7 +12,7 @@ from app.conftest import DOCUMENT, EXAMPLES, ask, changed
 from starlette.testclient import TestClient
 
 import inerter as it
-from inerter.app import fit_advice
+from inerter.app import documents, fit_advice
 from inerter.app.start import InitialStudy
 from inerter.files.common.toml import as_toml
 from inerter.files.identification.loading import identification_of
@@ -166,3 +166,13 @@ def test_an_index_that_is_none_is_a_sentence(client: TestClient, panel: str) -> 
     assert told.status_code == 400
     assert "J9" in told.json()["sentence"]
     assert "J1" in told.json()["sentence"]
+
+
+def test_the_first_layout_stays_the_baseline_where_layouts_are_called_like_numbers() -> None:
+    """Objects of JavaScript have such keys first, and the page sends the document in that order."""
+    lines = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8").splitlines(keepends=True)
+    unnamed = "".join(line for line in lines if not line.startswith("baseline"))
+    assert "baseline" not in documents.read(unnamed)["study"]["study"]
+    document = documents.read(unnamed.replace("S3 = ", '"1" = '))["study"]
+    assert {"S1", "1"} < set(document["layouts"])
+    assert document["study"]["baseline"] == next(iter(document["layouts"])) == "S1"

@@ -151,6 +151,24 @@ def test_lines_of_a_long_log_become_seldom(monkeypatch: pytest.MonkeyPatch, caps
     assert len(printed) < 1000
 
 
+def test_nothing_is_preparing_once_another_printer_has_ended(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A pulse that another one silenced for long has nothing to catch up on."""
+    clock = [0.0]
+    monkeypatch.setattr(pulses, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    outer = pulses.Pulse(str)
+    with pulses.display():
+        clock[0] = 100.0
+        outer(ProgressStep("preparing"))
+    clock[0] += pulses._LOOK
+    outer(ProgressStep("preparing"))
+    assert not capsys.readouterr().err
+    clock[0] += SILENCE * 10.0
+    outer(ProgressStep("preparing"))
+    assert capsys.readouterr().err
+
+
 @pytest.mark.parametrize("seed", sampled(range(30), range(6)))
 def test_the_time_left_is_in_the_range_that_is_told(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of studies whose designs take as long as is supposed, times something that nobody can know."""

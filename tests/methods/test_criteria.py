@@ -305,6 +305,17 @@ def test_elements_that_are_not_there_are_refused_with_those_that_are() -> None:
         it.evaluate(CAR, it.ElementStroke(ROAD, "c"), it.Norm())
 
 
+@pytest.mark.parametrize("order", ["c - (k1 | c1) - b", "(k1 | c1) - c - b", "b - c - (k1 | c1)"])
+def test_a_spring_has_its_stroke_wherever_it_stands_in_a_series(order: str) -> None:
+    """Hooke's law: the stroke of a spring is its force over k, also between a damper and an inerter."""
+    parts = {"k1": Spring(1e6, "k1"), "c1": Damper(3200.0, "c1"), "c": Damper(7e3, "c"), "b": Inerter(300.0, "b")}
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(120e3, "k") | it.network(order, **parts))
+    of_spring, of_damper = (it.evaluate(car, it.ElementStroke(ROAD, name), it.Norm()).value for name in ("k1", "c1"))
+    force = it.evaluate(car, it.ElementForce(ROAD, "k1"), it.Norm()).value
+    assert of_spring == pytest.approx(force / 1e6, rel=1e-10)
+    assert of_damper == pytest.approx(of_spring, rel=1e-10)
+
+
 def test_the_table_of_the_docs_is_that_of_the_rows() -> None:
     page = (Path(__file__).parents[2] / "docs" / "criteria.md").read_text(encoding="utf-8")
     rows = page.splitlines()

@@ -45,8 +45,8 @@ def told_apart(results, study):
         ((), BY_BOTH, ["by exact norms", "by simulation"]),
         ((it.Friction(10.0),), ("norm",), ["without friction"]),
         ((it.Friction(10.0),), BY_BOTH, ["without friction", "with friction"]),
-        ((it.Gap(1e-4),), BY_BOTH, ["without play", "with play"]),
-        ((it.Friction(1.0), it.Gap(1e-4)), BY_BOTH, ["without friction or play", "with friction and play"]),
+        ((it.Gap(1e-4),), BY_BOTH, ["without backlash", "with backlash"]),
+        ((it.Friction(1.0), it.Gap(1e-4)), BY_BOTH, ["without friction or backlash", "with friction and backlash"]),
         (
             (it.Friction(1.0),),
             ("expected-value", "statistical-linearisation"),
@@ -55,7 +55,7 @@ def told_apart(results, study):
         (
             (it.Friction(1.0), it.Gap(1e-4)),
             ("statistical-linearisation", "expected-value"),
-            ["with friction, without play", "with friction and play"],
+            ["with friction, without backlash", "with friction and backlash"],
         ),
     ],
 )

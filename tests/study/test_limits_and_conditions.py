@@ -21,6 +21,8 @@ from inerter.errors import StudyError
 from inerter.files.common.entries import element_name
 from inerter.files.common.problem import EntryError
 from inerter.files.study.cases import Outcome, cases, run_case
+from inerter.files.study.method_labels import neglect_clause
+from inerter.files.study.parts import run_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
@@ -31,6 +33,8 @@ from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
+from inerter.tasks.budgets import BudgetPart
+from inerter.tasks.tolerances import TolerancePart
 
 FREE = """k = { from = "10 kN/m", to = "200 kN/m" }
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -111,6 +115,36 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
     assert verdict_sentences(result.data) == ["No strut keeps the limits, so that none is best in ride comfort (J1)."]
     assert "the nearest design" in report(result.data, study, tmp_path)
+
+
+def test_a_limit_that_nothing_keeps_is_named_once_over_conditions() -> None:
+    car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(60e3) | it.Damper(it.free(100.0, 1e5, "c")))
+    grip = it.TyreLoad(it.Road(5e-7, 25.0))
+    limits = [it.at_most(it.Conditions([it.Condition(1.0, road={"speed": v})]).mean(grip), 10.0) for v in (15.0, 30.0)]
+    message = it.optimise(car, grip, it.Norm(), subject_to=limits, seed=0).status.message
+    assert message.startswith("no feasible design within the bounds for dynamic tyre load at most 10 N; closest: ")
+    assert "over conditions" not in message
+
+
+@pytest.mark.parametrize("part", [BudgetPart("S3", "J1", "f"), TolerancePart("S3", "J1")])
+def test_a_design_that_breaks_a_limit_is_not_analysed(
+    load: Callable[..., Study], part: BudgetPart | TolerancePart
+) -> None:
+    methods = 'optimise = "norm"\nevaluate = ["norm", "expected-value"]'
+    settings = f'indices = ["J1"]\n{methods}\nbreak_even = ["f"]\nsubject_to = {{ J3 = {{ at_most = "10 N" }} }}'
+    study = load(settings, elements=f'{FREE}\nf = "10 N"', layouts='S1 = "k | c"\nS3 = "k | c - (b | f)"')
+    outcome = Outcome("", "J1", 0, {"k": 5e4, "c": 3e3, "b": 100.0}, {}, {}, 1, 1, 1, {}, {}, {"norm": "infeasible"})
+    designs = {case: replace(outcome, layout=case.layout) for case in cases(study)}
+    answer = run_part(study, designs, part)
+    assert (answer.status, answer.message) == ("failed", "S3 has no feasible design for J1.")
+
+
+def test_what_a_method_neglects_is_a_clause(load: Callable[..., Study]) -> None:
+    study = load(
+        'indices = ["J1"]\noptimise = "norm"', elements=f'{FREE}\nf = "10 N"', layouts='S3 = "k | c - (b | f)"'
+    )
+    clauses = {name: neglect_clause(study, name) for name in ("norm", "statistical-linearisation", "expected-value")}
+    assert clauses == {"norm": "without friction", "statistical-linearisation": "", "expected-value": ""}
 
 
 @pytest.mark.campaign

@@ -95,3 +95,13 @@ for (const text of ["5 kg", "12 furlong", "much", "7", "9 lbf s/ft"]) {
     assert.equal(damper(store), FIELD.before);
   });
 }
+
+test("a layout called like a number does not become the baseline", () => {
+  const opened = after(empty(), { type: "opened", study: studyWith("S2") });
+  const added = after(opened, { type: "layoutAdded", name: "10" });
+  assert.equal(Object.keys(added.study.layouts ?? {})[0], "10"); // as objects have it
+  assert.equal(added.study.study?.baseline, "S1");
+  const renamed = after(after(opened, { type: "selected", layout: "S1" }), { type: "layoutRenamed", name: "7" });
+  assert.equal(renamed.study.study?.baseline, "7");
+  assert.equal(after(opened, { type: "layoutAdded", name: "S3" }).study.study?.baseline, undefined);
+});

@@ -26,7 +26,6 @@ from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Spring
 from inerter.networks.elements.algebra import CombinedNetwork, Network
-from inerter.optimisation.threads import one_blas_thread
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
@@ -34,6 +33,7 @@ from inerter.tasks.budgets import budget_method, element_break_even
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.registry import VEHICLES
+from inerter.work.blas_threads import one_blas_thread
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import lru_cache
@@ -22,6 +23,7 @@ Document = Mapping[str, Any]
 _Stamp = tuple[int, int] | None
 PATH = Path("study.toml")  # what a document is called that is no file
 _LAYOUTS = "layouts"
+_NUMBER = re.compile(r"[0-9]+")
 _KEPT = 256  # documents whose studies are kept
 
 
@@ -29,10 +31,24 @@ def read(text: str, name: str = "") -> dict[str, Any]:
     """The document that a text of TOML says, and its problems; null where it is no TOML."""
     path = Path(Path(name).name or PATH)
     try:
-        document = _plain(tables_of(text.encode("utf-8", "surrogatepass"), path, WHAT))
+        document = _with_baseline(_plain(tables_of(text.encode("utf-8", "surrogatepass"), path, WHAT)))
     except InerterError as error:
         return {"study": None, "problems": problems_of(error)}
     return {"study": document, "problems": problems(document)}
+
+
+def _with_baseline(document: dict[str, Any]) -> dict[str, Any]:
+    """The document with its baseline by name where a layout is called like a number.
+
+    Objects of JavaScript have such keys first, in the order of the numbers: the first layout, which is the baseline of
+    a file that names none, would become another one.
+    """
+    layouts, settings = document.get(_LAYOUTS), document.get("study", {})
+    if not isinstance(layouts, dict) or not isinstance(settings, dict) or "baseline" in settings:
+        return document
+    if not any(_NUMBER.fullmatch(name) for name in layouts):
+        return document
+    return {**document, "study": {**settings, "baseline": next(iter(layouts))}}
 
 
 def problems(document: object) -> list[dict[str, Any]]:

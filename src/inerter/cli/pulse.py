@@ -38,6 +38,7 @@ class Pulse:
         if self.take is not None:
             self.take(step)
         if self.level != _open:
+            self.printed = time.monotonic()  # by what is within
             return
         now = time.monotonic()
         factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)

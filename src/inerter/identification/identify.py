@@ -19,11 +19,11 @@ from inerter.identification.solving import SolvedFit, part, solve
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
 from inerter.networks.elements.roles import LinearRole
-from inerter.optimisation.threads import one_blas_thread
 from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
 from inerter.validation import is_number
 from inerter.vehicle.rig import Rig
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import running_on
 
 _SOLVED = 0.8  # of the work, before explanations are sought

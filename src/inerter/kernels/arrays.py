@@ -116,7 +116,7 @@ class Modes(NamedTuple):
     reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and impulse on each element
     limits: Matrices  # (capacity, k, 2): intervals of the guards while the mode lasts
     entry_limits: Matrices  # the same on entry
-    steps: Matrices  # (capacity, columns, rows): see `integrate.lines_of`, then jumps of the state with inputs
+    steps: Matrices  # (capacity, lines, rows): see `integrate.lines_of`
     reach: Floats  # (capacity,) how far a Taylor series of the flow serves [s]
 
 
@@ -210,10 +210,10 @@ class March(NamedTuple):
 class MarchLines(NamedTuple):
     """Matrices and state for whole steps in one mode."""
 
-    steps: Matrix  # a line each column, then the jump of the state with each input
+    steps: Matrix  # a line each column, see `integrate.lines_of`
     limits: Matrix  # of the guards
     state: Floats  # changed in place
-    work: Floats  # room for columns, rows, and the state before a jump
+    work: Floats  # room for `integrate.Path`
 
 
 class Span(NamedTuple):

@@ -6,9 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP, Ints, MapRows, Matrix, Sizes
+from inerter.kernels.arrays import SHARP, Floats, Ints, MapRows, MarchShape, Matrix, Sizes
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.dense import add_block, block, count_squarings, exponential, product
+from inerter.kernels.dense import add_block, balance, block, count_squarings, exponential, product
+
+_ORDERS = 60  # of the series of a guard's sway, at most
+_NEGLIGIBLE = 1e-20  # terms relative to the guard: what they and all further ones add is below rounding
 
 
 class Channels(NamedTuple):
@@ -69,26 +72,45 @@ def into_knots(rows: Matrix, n: int, used: Ints, out: Matrix, top: int) -> None:
 
 
 @part(typed=True, apart=True)
-def _bound_sway(guards: Matrix, chain: Matrix, n: int, used: Ints, steps: Matrix, bends: int, top: int) -> None:
+def set_binary_units(A: Matrix, units: Floats) -> None:
+    """Fill `units` with powers of two that balance A: a change to them is exact."""
+    balance(A, units, np.empty(A.shape[0]))
+    for i in range(A.shape[0]):
+        units[i] = np.ldexp(1.0, int(np.floor(np.log2(units[i]))))
+
+
+@part(typed=True, apart=True)
+def _bound_sway(
+    guards: Matrix, chain: Matrix, units: Floats, n: int, used: Ints, steps: Matrix, bends: int, top: int
+) -> None:
     """One eighth of the largest second derivative of each guard over a step, as weights on absolute values.
 
-    Its first terms go to the rows from `bends` on as they are, if that is not negative.
+    The chain is over states in these units. Its first terms go to the rows from `bends` on as they are, if that is not
+    negative.
     """
-    k, columns = guards.shape[0], n + used.shape[0] + 1
-    term, power = np.zeros((columns, k)), guards
+    k, columns, size = guards.shape[0], n + used.shape[0] + 1, chain.shape[0]
+    term, power, plain, norm = np.zeros((columns, k)), np.empty((k, size)), np.empty((k, size)), 0.0
+    for i in range(k):
+        for j in range(size):
+            power[i, j] = guards[i, j] * units[j]
     for j in range(columns):
         for i in range(k):
             steps[j, top + i] = 0.0
-    for order in range(1, 60):
-        power = product(power, chain)
-        largest = 0.0
+    for j in range(size):
+        total = 0.0
+        for i in range(size):
+            total += abs(chain[i, j])
+        norm = max(norm, total)
+    for order in range(1, _ORDERS):
+        power, more = product(power, chain), False
         for i in range(k):
-            for j in range(chain.shape[0]):
+            largest, guard = 0.0, 0.0
+            for j in range(size):
                 power[i, j] /= order
-                largest = max(largest, abs(power[i, j]))
-        if largest == 0.0:
-            break
-        into_knots(power, n, used, term, 0)
+                plain[i, j] = power[i, j] / units[j]
+                largest, guard = max(largest, abs(power[i, j])), max(guard, abs(guards[i, j] * units[j]))
+            more = more or largest > _NEGLIGIBLE * guard
+        into_knots(plain, n, used, term, 0)
         weight, first = order * (order - 1) / 8.0, bends + (order - 2) * k
         for j in range(columns):
             for i in range(k):
@@ -96,6 +118,8 @@ def _bound_sway(guards: Matrix, chain: Matrix, n: int, used: Ints, steps: Matrix
                     steps[j, first + i] = weight * term[j, i]
                 else:
                     steps[j, top + i] += weight * abs(term[j, i])
+        if not more and order > 2.0 * norm:  # each further term is less than half of the one before
+            break
 
 
 @part(typed=True, apart=True)
@@ -121,12 +145,25 @@ def spectral_radius_bound(maps: Matrix, n: int) -> float:
     return float(np.exp(logarithm))
 
 
+@part(typed=True, apart=True)
+def fill_second_step(steps: Matrix, shape: MarchShape) -> None:
+    """Fill the lines of two steps: the second one follows from the state after the first."""
+    n, m, first = shape.states, shape.inputs, shape.states + shape.inputs + 1 + shape.jumps
+    once = block(steps, 0, n + m + 1, 0, shape.rows)
+    twice = product(block(once, 0, n + m + 1, 0, n), block(once, 0, n, 0, shape.rows))
+    add_block(steps, first, 0, block(twice, 0, n + m, 0, shape.rows), 1.0)
+    add_block(steps, first + n + m, 0, block(once, n, n + m + 1, 0, shape.rows), 1.0)
+    add_block(steps, first + n + 2 * m, 0, block(twice, n + m, n + m + 1, 0, shape.rows), 1.0)
+
+
 @kernel("steps of a mode", typed=True)
-def discretise(sizes: Sizes, first: MapRows, used: Ints, maps: Matrix, steps: Matrix, h: float) -> float:
+def discretise(
+    sizes: Sizes, first: MapRows, used: Ints, shape: MarchShape, maps: Matrix, steps: Matrix, h: float
+) -> float:
     """Exact flow of one mode over a step of length h, its guards and outputs there, and the guards' sway within it.
 
     The input over the step is a cubic: a chain of four integrators for every road and force that moves stands for it.
-    `first` rows are those of the parts of `maps`. Returns how far a Taylor series of the flow serves [s].
+    `first` rows are those of the parts of `maps`; `steps` is zero before. Returns how far a Taylor series serves [s].
     """
     n, nr, k = sizes.states, sizes.roads, sizes.elements
     moving = moving_channels(used)
@@ -140,18 +177,26 @@ def discretise(sizes: Sizes, first: MapRows, used: Ints, maps: Matrix, steps: Ma
     for c in range(moving.numbers.shape[0]):
         for j in range(3):
             chain[n + 4 * c + j, n + 4 * c + j + 1] = 1.0
-    exact = exponential(chain, count_squarings(chain))
+    units, balanced = np.empty(size), np.empty((size, size))
+    set_binary_units(chain, units)
+    for i in range(size):
+        for j in range(size):
+            balanced[i, j] = chain[i, j] * units[j] / units[i]
+    exact = exponential(balanced, count_squarings(balanced))
+    for i in range(size):
+        for j in range(size):
+            exact[i, j] *= units[i] / units[j]
     into_knots(block(exact, 0, n, 0, size), n, moving.used, steps, 0)
     into_knots(product(guards, exact), n, moving.used, steps, n)
     into_knots(guards, n, moving.used, steps, n + k)
     into_knots(product(outputs, exact), n, moving.used, steps, n + 2 * k)
-    columns, rows = n + used.shape[0] + 1, n + 2 * k + sizes.squares
-    for c in range(min(nr, steps.shape[0] - columns)):  # roads that jump: positions follow; with a force nothing does
+    rows = n + 2 * k + sizes.squares
+    for c in range(min(nr, shape.jumps)):  # roads that jump: positions follow; with a force nothing does
         for i in range(n):
-            steps[columns + c, i] = maps[i, n + nr + c]
-    if steps.shape[0] > columns:
+            steps[n + shape.inputs + 1 + c, i] = maps[i, n + nr + c]
+    if shape.jumps > 0:
         into_knots(outputs, n, moving.used, steps, rows)
         rows += sizes.squares
-    sways = steps.shape[1] - -(-k // 4) * 4
-    _bound_sway(guards, chain, n, moving.used, steps, rows if sways >= rows + SHARP * k else -1, sways)
+    _bound_sway(guards, balanced, units, n, moving.used, steps, rows if shape.sharp else -1, shape.rows)
+    fill_second_step(steps, shape)
     return 1.0 / max(spectral_radius_bound(maps, n), 1e-9)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from inerter.kernels.arrays import (
     BEFORE,
     BROKEN,
@@ -38,6 +40,7 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
     `watch`) and EVENTS_FULL it continues from the same place once there are more, the mode is built, or there is room.
     """
     place, numbers = run.motion.place[0], run.room.numbers
+    refused: Any = NONE
     while place.segment < stop:
         k = place.segment
         length = knots.time[k + 1] - knots.time[k]
@@ -50,11 +53,12 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
         knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
         while knots.special[place.special] < k:
             place.special += 1
-        if not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
+        if k != refused and not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
             m = place.mode
             lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
             span = Span(h, m, k, min(stop, knots.special[place.special]), place.settled)
-            place.segment = whole_steps(march, lines, knots, record, span)
+            refused = whole_steps(march, lines, knots, record, span)
+            place.segment = refused
             if place.segment > k:
                 continue
         code = _cross_knot(run, knots, record, account, length)

@@ -1,121 +1,227 @@
-"""Whole steps inside one mode, compiled for each size of system: constant loop bounds make them twice as fast."""
+"""Whole steps inside one mode, compiled for each size of system: constant loop bounds make them twice as fast.
+
+Steps are made and judged in blocks. Two steps follow from one state, so that the second need not wait for the first,
+and rows of a step are computed in groups that one instruction takes.
+"""
 
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
 from inerter.kernels.decorators import function_at, kernel, part
+from inerter.kernels.lanes import GROUP, as_numbers, in_groups, larger, multiply_add, smaller
+
+BLOCK = 16  # steps that are judged together
+_EXTREMES = 7  # rows of `Path.extremes`, see there
+_STATES, _INPUTS, _BENDS, _LEAST, _MOST, _OF_BLOCK, _OF_STEP = range(_EXTREMES)
 
 
-def round_up_to_four(rows: int) -> int:
-    """Smallest multiple of four that is at least `rows`."""
-    return -(-rows // 4) * 4
+class Path(NamedTuple):
+    """Work space of a march: numbers, and the same in groups."""
+
+    rows: Array  # (steps + 1, rows): state, guards and outputs at the end of each step, after the state at the start
+    row_groups: Array
+    inputs: Array  # (steps, inputs)
+    input_groups: Array
+    extremes: Array  # largest sizes of states, inputs and bends, extremes of guards, sways in the block and in a step
+    extreme_groups: Array
+    before: Array  # (steps, n + 1): state before the jump of an input, and 1 if there is one
+
+
+@part(borrowing=True, inside=True)
+def round_up(count: int) -> int:
+    """Smallest multiple of `GROUP` that is at least `count`."""
+    return (count + GROUP - 1) // GROUP * GROUP
 
 
 def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp: bool) -> tuple[int, int, int]:
-    """Columns of a step, and its rows: of what follows from them, and of the guards' sway."""
+    """Lines of the matrix of steps, and its rows: of what follows from them, and of the guards' sway.
+
+    Lines are those of a step, the jumps of the state with each input, and those of two steps.
+    """
     rows = n + 2 * elements + outputs * (2 if jumps else 1) + (SHARP * elements if sharp else 0)
-    return n + inputs + 1, round_up_to_four(rows), round_up_to_four(elements)
+    return 2 * n + 3 * inputs + 2 + jumps, round_up(rows), round_up(elements)
+
+
+def room_of(shape: MarchShape) -> int:
+    """Numbers in the work space of a march."""
+    inputs = round_up(shape.inputs)
+    widest = max(shape.rows, inputs, round_up(shape.elements))
+    return (BLOCK + 1) * shape.rows + BLOCK * inputs + _EXTREMES * widest + BLOCK * (shape.states + 1)
+
+
+@part(inside=True, borrowing=True)
+def path_in(work: Array, shape: MarchShape) -> Path:
+    """The work space in its parts."""
+    wide = round_up(shape.inputs)
+    rows, inputs = (BLOCK + 1, shape.rows), (BLOCK, wide)
+    extremes = (_EXTREMES, max(shape.rows, wide, round_up(shape.elements)))
+    second = rows[0] * rows[1]
+    third = second + inputs[0] * inputs[1]
+    return Path(
+        as_numbers(work, 0, rows),
+        in_groups(work, 0, rows),
+        as_numbers(work, second, inputs),
+        in_groups(work, second, inputs),
+        as_numbers(work, third, extremes),
+        in_groups(work, third, extremes),
+        as_numbers(work, third + extremes[0] * extremes[1], (BLOCK, shape.states + 1)),
+    )
 
 
 @part(inside=True, borrowing=True, fused=True)
-def apply_jumps(lines: MarchLines, knots: Knots, k: int, shape: MarchShape, v: Array, before: Array) -> bool:
-    """Apply the jumps of inputs at knot k to the positions, and keep the state before; True if an input jumps."""
-    leaps, columns = False, shape.states + shape.inputs + 1
+def fill_inputs(
+    knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, inputs: Array, count: int
+) -> None:
+    """Fill the used `flow.knot_numbers` of the inputs over `count` steps from knot k on."""
+    value, slope = knots.value[k : k + count], knots.slope[k : k + count]
+    next_value, next_slope = knots.value_before[k + 1 : k + count + 1], knots.slope_before[k + 1 : k + count + 1]
+    for b in range(count):
+        for j in range(shape.inputs):
+            c, number = numbers[j] // 4, numbers[j] % 4
+            if number == 0:
+                inputs[b, j] = value[b, c]
+            elif number == 1:
+                inputs[b, j] = next_value[b, c] - value[b, c]
+            elif number == 2:
+                inputs[b, j] = step * slope[b, c]
+            else:
+                inputs[b, j] = step * next_slope[b, c]
+
+
+@part(inside=True, borrowing=True, fused=True)
+def apply_jumps(jumps: Array, knots: Knots, k: int, path: Path, b: int, shape: MarchShape) -> None:
+    """Apply the jumps of inputs at knot k to the positions before step b, and keep the state before."""
+    n, leaps = shape.states, False
+    for i in range(n):
+        path.before[b, i] = path.rows[b, i]
     for c in range(shape.jumps):
-        leaps = leaps or knots.value[k, c] != knots.value_before[k, c]
-    if leaps:
-        for i in range(shape.states):
-            before[i] = v[i]
-        for c in range(shape.jumps):
-            rise = knots.value[k, c] - knots.value_before[k, c]
-            for i in range(shape.states):
-                v[i] += lines.steps[columns + c, i] * rise
-    return leaps
+        rise = knots.value[k, c] - knots.value_before[k, c]
+        leaps = leaps or rise != 0.0
+        for i in range(n):
+            path.rows[b, i] += jumps[c, i] * rise
+    path.before[b, n] = 1.0 if leaps else 0.0
 
 
 @part(inside=True, borrowing=True, fused=True)
-def fill_inputs(knots: Knots, k: int, step: float, shape: MarchShape, numbers: Array, v: Array) -> None:
-    """Fill `v` with the used `flow.knot_numbers` of the inputs over the step after knot k."""
-    for j in range(shape.inputs):
-        c, number, at = numbers[j] // 4, numbers[j] % 4, shape.states + j
-        if number == 0:
-            v[at] = knots.value[k, c]
-        elif number == 1:
-            v[at] = knots.value_before[k + 1, c] - knots.value[k, c]
-        elif number == 2:
-            v[at] = step * knots.slope[k, c]
-        else:
-            v[at] = step * knots.slope_before[k + 1, c]
+def follow(lines: Array, path: Path, b: int, steps: int, groups: Array, shape: MarchShape) -> None:
+    """Fill these groups of what follows from the state before step b and the inputs of so many `steps`."""
+    n, m = shape.states, shape.inputs
+    for g in groups:
+        total, other = lines[n + steps * m, g], 0.0
+        for s in range(steps):  # the inputs first, which need not wait for the state
+            for j in range(m):
+                total = multiply_add(lines[n + s * m + j, g], path.inputs[b + s, j], total)
+        for j in range(0, n - 1, 2):  # two sums, which need not wait for each other
+            total = multiply_add(lines[j, g], path.rows[b, j], total)
+            other = multiply_add(lines[j + 1, g], path.rows[b, j + 1], other)
+        if n % 2:
+            other = multiply_add(lines[n - 1, g], path.rows[b, n - 1], other)
+        path.row_groups[b + steps, g] = total + other
 
 
-@part(inside=True, borrowing=True, fused=True)
-def evaluate_step(steps: Array, v: Array, shape: MarchShape, y: Array) -> None:
-    """State, guards and outputs at the end of the step, and last the largest sway of each guard."""
-    columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
-    for i in range(0, shape.rows, 4):  # four rows at once, which one instruction does
-        y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-        for j in range(columns - 1, -1, -1):  # the inputs first, which need not wait for the state
-            y0 += steps[j, i] * v[j]
-            y1 += steps[j, i + 1] * v[j]
-            y2 += steps[j, i + 2] * v[j]
-            y3 += steps[j, i + 3] * v[j]
-        y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
-    for i in range(shape.rows, shape.rows + sways, 4):
-        y0, y1, y2, y3 = 0.0, 0.0, 0.0, 0.0
-        for j in range(columns):
-            size = abs(v[j])
-            y0 += steps[j, i] * size
-            y1 += steps[j, i + 1] * size
-            y2 += steps[j, i + 2] * size
-            y3 += steps[j, i + 3] * size
-        y[i], y[i + 1], y[i + 2], y[i + 3] = y0, y1, y2, y3
+@part(inside=True, borrowing=True)
+def find_largest(groups: Array, first: int, stop: int, out: Array) -> None:
+    """Fill `out` with the largest absolute value of each column in some rows; nan if the last one is."""
+    for g in range(groups.shape[1]):
+        most = abs(groups[first, g])
+        for b in range(first + 1, stop):
+            most = larger(most, abs(groups[b, g]))
+        out[g] = most
 
 
-@part(inside=True, borrowing=True, fused=True)
-def is_safe(limits: Array, shape: MarchShape, y: Array) -> bool:
-    """Whether no guard can be crossed within the step."""
-    safe, n = True, shape.states
-    bends = n + 2 * shape.elements + shape.squares * (2 if shape.jumps else 1)  # rows of the sway's first terms
-    terms = SHARP if shape.sharp else 0
-    for e in range(shape.elements):
-        end, start, sway = y[n + e], y[n + shape.elements + e], y[shape.rows + e]
-        for term in range(terms):
-            sway += abs(y[bends + term * shape.elements + e])
-        if not (min(start, end) - sway > limits[e, 0] and max(start, end) + sway < limits[e, 1]):
+@part(inside=True, borrowing=True)
+def find_extremes(groups: Array, first: int, stop: int, low: Array, high: Array) -> None:
+    """Fill `low` and `high` with the extremes of each column in some rows; nan if the last one is."""
+    for g in range(groups.shape[1]):
+        least, most = groups[first, g], groups[first, g]
+        for b in range(first + 1, stop):
+            least, most = smaller(least, groups[b, g]), larger(most, groups[b, g])
+        low[g], high[g] = least, most
+
+
+@part(inside=True, borrowing=True)
+def fill_sways(steps: Array, path: Path, first: int, stop: int, shape: MarchShape, out: Array) -> None:
+    """Fill `out` with bounds of each guard's sway within any of some steps."""
+    n, m, k, largest, groups = shape.states, shape.inputs, shape.elements, path.extremes, path.extreme_groups
+    bends = n + 2 * k + shape.squares * (2 if shape.jumps else 1)  # rows of the sway's first terms
+    find_largest(path.row_groups, first, stop, groups[_STATES])
+    find_largest(path.input_groups, first, stop, groups[_INPUTS])
+    if shape.sharp:
+        find_largest(path.row_groups, first + 1, stop + 1, groups[_BENDS])
+    for e in range(k):
+        sway = steps[n + m, shape.rows + e]
+        for j in range(n):
+            sway += steps[j, shape.rows + e] * largest[_STATES, j]
+        for j in range(m):
+            sway += steps[n + j, shape.rows + e] * largest[_INPUTS, j]
+        for term in range(SHARP if shape.sharp else 0):
+            sway += largest[_BENDS, bends + term * k + e]
+        out[e] = sway
+
+
+@part(inside=True, borrowing=True)
+def is_safe(limits: Array, low: Array, high: Array, sways: Array, shape: MarchShape) -> bool:
+    """Whether no guard can be crossed within steps whose rows are between `low` and `high`, with these sways."""
+    safe, n, k = True, shape.states, shape.elements
+    for e in range(k):
+        least, most = min(low[n + e], low[n + k + e]), max(high[n + e], high[n + k + e])
+        if not (least - sways[e] > limits[e, 0] and most + sways[e] < limits[e, 1]):
             safe = False
     return safe
 
 
-@part(inside=True, borrowing=True, fused=True)
-def record_jump(record: History, slot: int, counts: bool, shape: MarchShape, v: Array, y: Array) -> None:
-    """Replace the sample at a jump, and its squares if it `counts`, by those after the jump."""
-    if slot < record.states.shape[0]:
-        for i in range(shape.states):
-            record.states[slot, i] = v[i]
-    if counts:
-        for o in range(shape.squares):
-            at_start = shape.states + 2 * shape.elements + shape.squares + o
-            record.squares[o] += y[at_start] ** 2 - record.last[o]
+@part(inside=True, borrowing=True)
+def count_safe(limits: Array, steps: Array, path: Path, count: int, shape: MarchShape) -> int:
+    """Number of steps before the first one within which a guard might be crossed.
+
+    All are safe if the extremes of the guards over all of them are; else each is judged, by the sway of the whole
+    block, and by its own if it is not safe by that.
+    """
+    if shape.elements == 0:
+        return count
+    extremes, of_block, of_step = path.extremes, path.extremes[_OF_BLOCK], path.extremes[_OF_STEP]
+    fill_sways(steps, path, 0, count, shape, of_block)
+    find_extremes(path.row_groups, 1, count + 1, path.extreme_groups[_LEAST], path.extreme_groups[_MOST])
+    if not is_safe(limits, extremes[_LEAST], extremes[_MOST], of_block, shape):
+        for b in range(count):
+            row = path.rows[b + 1]
+            if not is_safe(limits, row, row, of_block, shape):
+                fill_sways(steps, path, b, b + 1, shape, of_step)
+                if not is_safe(limits, row, row, of_step, shape):
+                    return b
+    return count
 
 
 @part(inside=True, borrowing=True, fused=True)
-def record_step(record: History, slots: Array, k: int, span: Span, shape: MarchShape, v: Array, y: Array) -> None:
-    """Advance the state to the end of the step, and record its sample and squares."""
-    if k >= span.settled and slots[k + 1] >= 0:
-        for o in range(shape.squares):
-            record.last[o] = y[shape.states + 2 * shape.elements + o] ** 2
-            record.squares[o] += record.last[o]
-    for i in range(shape.states):
-        v[i] = y[i]
-    slot = slots[k + 1]
-    if slot >= 0 and slot < record.states.shape[0]:
-        record.visited[slot] = span.mode
-        for i in range(shape.states):
-            record.states[slot, i] = y[i]
+def add_squares(record: History, slots: Array, path: Path, k: int, count: int, span: Span, shape: MarchShape) -> None:
+    """Add the squares of the outputs at the ends of steps from knot k on; where an input jumps, those after it."""
+    at_end, at_start = shape.states + 2 * shape.elements, shape.states + 2 * shape.elements + shape.squares
+    for o in range(shape.squares):
+        total, last = record.squares[o], record.last[o]
+        for b in range(count):
+            if shape.jumps and path.before[b, shape.states] != 0.0 and slots[b] >= 0 and k + b > span.settled:
+                total += path.rows[b + 1, at_start + o] ** 2 - last
+            if slots[b + 1] >= 0 and k + b >= span.settled:
+                last = path.rows[b + 1, at_end + o] ** 2
+                total += last
+        record.squares[o], record.last[o] = total, last
+
+
+@part(inside=True, borrowing=True)
+def record_states(record: History, slots: Array, path: Path, count: int, span: Span, shape: MarchShape) -> None:
+    """Record the samples at the ends of steps, and the one before them if an input jumps there."""
+    for b in range(0 if shape.jumps and path.before[0, shape.states] != 0.0 else 1, count + 1):
+        slot = slots[b]
+        if slot >= 0 and slot < record.states.shape[0]:
+            if b > 0:
+                record.visited[slot] = span.mode
+            for i in range(shape.states):
+                record.states[slot, i] = path.rows[b, i]
 
 
 @part(typed=True, borrowing=True, inside=True, fused=True)
@@ -123,28 +229,47 @@ def march_steps(
     lines: MarchLines, knots: Knots, record: History, span: Span, shape: MarchShape, numbers: ConstantInts
 ) -> int:
     """Step while no guard can be crossed within the step; returns the first segment that needs event detection."""
-    columns, sways = shape.states + shape.inputs + 1, (shape.elements + 3) // 4 * 4
-    v, y = lines.work[:columns], lines.work[columns : columns + shape.rows + sways]
-    before = lines.work[columns + shape.rows + sways :]
-    for i in range(shape.states):
-        v[i] = lines.state[i]
-    v[columns - 1] = 1.0
-    k = span.first
-    while k < span.stop:
-        leaps = apply_jumps(lines, knots, k, shape, v, before)
-        fill_inputs(knots, k, span.step, shape, numbers, v)
-        evaluate_step(lines.steps, v, shape, y)
-        if not is_safe(lines.limits, shape, y):
-            if leaps:
-                for i in range(shape.states):
-                    v[i] = before[i]
-            break
-        if leaps and knots.slot[k] >= 0:
-            record_jump(record, knots.slot[k], k > span.settled, shape, v, y)
-        record_step(record, knots.slot, k, span, shape, v, y)
-        k += 1
-    for i in range(shape.states):
-        lines.state[i] = v[i]
+    n, one = shape.states, shape.states + shape.inputs + 1
+    path, columns = path_in(lines.work, shape), shape.rows + round_up(shape.elements)
+    steps, jumps = (
+        as_numbers(lines.steps, 0, (one, columns)),
+        as_numbers(lines.steps, one * columns, (shape.jumps, columns)),
+    )
+    single = in_groups(lines.steps, 0, (one, columns))
+    double = in_groups(lines.steps, (one + shape.jumps) * columns, (one + shape.inputs, columns))
+    groups = path.row_groups.shape[1]
+    with_states = max((n * groups + shape.rows - 1) // max(shape.rows, 1), 0)
+    every, own, others = range(groups), range(with_states), range(with_states, groups)
+    for i in range(n):
+        path.rows[0, i] = lines.state[i]
+    k, safe, count = span.first, 0, 0
+    while k < span.stop and safe == count:
+        count = min(BLOCK, span.stop - k)
+        slots = knots.slot[k : k + count + 1]
+        fill_inputs(knots, k, span.step, shape, numbers, path.inputs, count)
+        if shape.jumps:
+            for b in range(count):
+                apply_jumps(jumps, knots, k + b, path, b, shape)
+                follow(single, path, b, 1, every, shape)
+        else:
+            for b in range(0, count - 1, 2):
+                follow(single, path, b, 1, every, shape)
+                follow(double, path, b, 2, own, shape)
+                follow(single, path, b + 1, 1, others, shape)
+            if count % 2:
+                follow(single, path, count - 1, 1, every, shape)
+        safe = count_safe(lines.limits, steps, path, count, shape)
+        if shape.jumps and safe < count:
+            for i in range(n):
+                path.rows[safe, i] = path.before[safe, i]
+        if safe > 0:
+            add_squares(record, slots, path, k, safe, span, shape)
+            record_states(record, slots, path, safe, span, shape)
+        for i in range(n):
+            path.rows[0, i] = path.rows[safe, i]
+        k += safe
+    for i in range(n):
+        lines.state[i] = path.rows[0, i]
     return k
 
 
@@ -158,7 +283,7 @@ march_at = function_at(march_type)
 
 @part(borrowing=True)
 def march_with_sizes(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
-    """Whole steps by `march_steps` with sizes read at run time: the same numbers, at half the speed."""
+    """Whole steps by `march_steps` with sizes read at run time: the same numbers, but slower."""
     return march_steps(lines, knots, record, span, march.shape, march.numbers)
 
 

@@ -15,6 +15,7 @@ from inerter.kernels.decorators import instruction, numba_lanes
 
 Array = Any
 WIDTH = 16  # two registers of AVX-512
+GROUP = 8  # rows of a matrix side by side: one of them
 
 
 def _is_between(x: float, low: float, high: float) -> float:
@@ -37,6 +38,17 @@ def _larger(x: float, y: float) -> float:
 def larger(typing: Any, x: Any, y: Any) -> Any:
     """Compile `_larger`, in each lane."""
     return numba_lanes().larger(x, y)
+
+
+def _smaller(x: float, y: float) -> float:
+    """The smaller of two numbers; y if one is nan."""
+    return x if x < y else y
+
+
+@instruction(_smaller)
+def smaller(typing: Any, x: Any, y: Any) -> Any:
+    """Compile `_smaller`, in each lane."""
+    return numba_lanes().smaller(x, y)
 
 
 def _choose(condition: float, x: Any, y: Any) -> Any:
@@ -91,3 +103,30 @@ def _in_numbers(lanes: Array) -> Array:
 def in_numbers(typing: Any, lanes: Any) -> Any:
     """Compile `_in_numbers`."""
     return numba_lanes().in_numbers(lanes)
+
+
+def _multiply_add(a: Any, b: Any, c: Any) -> Any:
+    return a * b + c
+
+
+@instruction(_multiply_add)
+def multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Any:
+    """Compile a b + c, with one rounding where the processor has that."""
+    return numba_lanes().multiply_add(a, b, c)
+
+
+def _as_numbers(array: Array, first: int, shape: tuple[int, int]) -> Array:
+    """The numbers of an array from one on, as a matrix."""
+    return array.reshape(-1)[first : first + shape[0] * shape[1]].reshape(shape)
+
+
+@instruction(_as_numbers)
+def as_numbers(typing: Any, array: Any, first: Any, shape: Any) -> Any:
+    """Compile `_as_numbers`: where the shape is constant, so are the distances between the numbers."""
+    return numba_lanes().over_numbers(array, first, shape, 1)
+
+
+@instruction(_as_numbers)
+def in_groups(typing: Any, array: Any, first: Any, shape: Any) -> Any:
+    """Compile `_as_numbers` with `GROUP` columns side by side, as one column."""
+    return numba_lanes().over_numbers(array, first, shape, GROUP)

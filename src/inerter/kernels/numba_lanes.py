@@ -151,6 +151,16 @@ def larger(x: Any, y: Any) -> Definition:
     return kind(kind, kind), code
 
 
+def smaller(x: Any, y: Any) -> Definition:
+    """Definition of `lanes.smaller`."""
+    kind = _common(x, y)
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.select(builder.fcmp_ordered("<", *given), *given)
+
+    return kind(kind, kind), code
+
+
 def largest_lane(x: Any) -> Definition:
     """Definition of `lanes.largest_lane`: halves against each other."""
 
@@ -175,6 +185,11 @@ def root(x: Any) -> Definition:
 def fused_multiply_add(a: Any, b: Any, c: Any) -> Definition:
     """Definition of `double_double.fused_multiply_add`."""
     return _definition_of("llvm.fma", a, b, c)
+
+
+def multiply_add(a: Any, b: Any, c: Any) -> Definition:
+    """Definition of `lanes.multiply_add`."""
+    return _definition_of("llvm.fmuladd", a, b, c)
 
 
 def _definition_of(name: str, *operands: Any) -> Definition:
@@ -211,6 +226,19 @@ def in_numbers(lanes: Any) -> Definition:
     return kind(lanes), code
 
 
+def over_numbers(array: Any, first: Any, shape: Any, width: int) -> Definition:
+    """Definition of `lanes.in_groups`, and with groups of one number, that of `lanes.as_numbers`."""
+    kind = types.Array(lanes_type(width) if width > 1 else types.float64, shape.count, "C", aligned=False)
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        room, sizes = arrays.make_array(array)(context, builder, given[0]), cgutils.unpack_tuple(builder, given[2])
+        sizes[-1] = builder.sdiv(sizes[-1], cgutils.intp_t(width))
+        start = builder.ptrtoint(builder.gep(room.data, [given[1]]), cgutils.intp_t)
+        return _view(context, builder, room, start, kind, sizes, 8 * width)
+
+    return kind(array, types.int64, shape), code
+
+
 def _view(context: Any, builder: Any, room: Any, start: Any, kind: Any, sizes: list[Any], item: int) -> Any:
     """Array of another type in the memory of `room`, from an address on."""
     result, stride, strides = arrays.make_array(kind)(context, builder), cgutils.intp_t(item), list[Any]()
@@ -219,5 +247,6 @@ def _view(context: Any, builder: Any, room: Any, start: Any, kind: Any, sizes: l
         stride = builder.mul(stride, size)
     place, memory = builder.inttoptr(start, result.data.type), room.meminfo
     arrays.populate_array(result, place, sizes, strides, cgutils.intp_t(item), memory)
-    context.nrt.incref(builder, types.MemInfoPointer(types.voidptr), memory)
+    if context.enable_nrt:
+        context.nrt.incref(builder, types.MemInfoPointer(types.voidptr), memory)
     return result._getvalue()

@@ -142,7 +142,9 @@ class OverConditions(OfIndex):
 
     @property
     def title(self) -> str:
-        """Title of the index, with "mean" or "worst" over conditions."""
+        """Title of the index, with "mean" or "worst" over conditions where there are several."""
+        if len(self.conditions.conditions) == 1:
+            return self.index.title
         return f"{self.index.title}, {'worst' if self.worst else 'mean'} over conditions"
 
     def cases(self, vehicle: Vehicle) -> list[tuple[Vehicle, IndexLike]]:

@@ -37,6 +37,7 @@ from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.blas_threads import one_blas_thread
 
 Array = NDArray[np.float64]
 _DEFAULT = 8  # realisations
@@ -116,7 +117,7 @@ class ExpectedValue(FormerMethodNames):
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
-        with threads(self.jobs) as pool:
+        with one_blas_thread(), threads(self.jobs) as pool:
             return self._estimate(vehicle, index, pool)
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
@@ -124,7 +125,7 @@ class ExpectedValue(FormerMethodNames):
         names = list(points)
         columns = np.column_stack([points[name] for name in names]) if names else np.zeros((1, 0))
         result = np.full((columns.shape[0], len(indices)), np.nan)
-        with threads(self.jobs) as pool:
+        with one_blas_thread(), threads(self.jobs) as pool:
             for i, row in enumerate(columns.tolist()):
                 design = vehicle.with_values(dict(zip(names, row, strict=True))) if names else vehicle
                 for j, index in enumerate(indices):

@@ -18,7 +18,7 @@ class Note(str, Statement):
     parts: Parts
 
     def __new__(cls, *parts: str | float) -> Note:
-        """The parts, one after the other; numbers to six digits."""
+        """The parts, one after the other; numbers to four digits."""
         self = super().__new__(cls, text_of(parts))
         self.parts = parts
         return self
@@ -46,6 +46,6 @@ def text_of(parts: Parts) -> str:
     """The parts as text.
 
     >>> text_of(("c = ", 1234.5678))
-    'c = 1234.57'
+    'c = 1235'
     """
-    return "".join(part if isinstance(part, str) else format_number(part) for part in parts)
+    return "".join(part if isinstance(part, str) else format_number(part, 4) for part in parts)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -164,11 +164,9 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     if not whole.status.ok:
         return OutOfBandContribution(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
     norms, _ = linear.problem.correct_norms(system, whole.outputs)
-    lines = excitation.signal(0)
-    omega = 2.0 * np.pi * lines.frequencies
-    gains, sampled = _squared_gains(design, speeds, omega)
-    of_lines = 0.5 * (omega * lines.amplitudes) ** 2
-    inside, seen = of_lines @ gains, of_lines @ sampled
+    lines = _lines_of(excitation)
+    gains, sampled = _squared_gains(design, speeds)
+    inside, seen = lines.power @ gains, lines.power @ sampled
     added = (design.definition.drive.amplitude_density * norms) ** 2 - seen
     (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (excitation.period, design.longest))
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
@@ -183,14 +181,45 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
         return OutOfBandContribution(
             np.full(count, np.nan), unseen, share, within_reach, _almost_undamped(pole, design.longest)
         )
-    taken = (of_lines * (1.0 - _cubic(omega * STEP, omega * STEP) ** 2)) @ gains
+    taken = (lines.power * (1.0 - lines.kept**2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
     measured = road_errors(design.definition, system, pade_order, norms)
     return OutOfBandContribution(added, unseen, share * unlike, within_reach, status, measured=measured)
 
 
-def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array, Array]:
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """Lines of a road, which all designs share, and their images between the knots of a simulation."""
+
+    omega: Array  # [rad/s]
+    power: Array  # mean square of the velocity on each line
+    kept: Array  # share of each amplitude that remains
+    some: Array  # lines whose images are computed [rad/s]
+    images: Array  # (images, some): their angular frequencies [rad/s] ...
+    gained: Array  # ... and amplitudes, of displacements, over omega^4
+
+
+@lru_cache(maxsize=8)
+def _lines_of(excitation: RandomExcitation) -> _Lines:
+    """Lines of the realisations of an excitation."""
+    signal = excitation.signal(0)
+    omega = 2.0 * np.pi * signal.frequencies
+    some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
+    orders = np.array([*range(-_IMAGES, 0), *range(1, _IMAGES + 1)], dtype=float)
+    images = some + 2.0 * np.pi / STEP * orders[:, None]
+    return _Lines(
+        omega=omega,
+        power=0.5 * (omega * signal.amplitudes) ** 2,
+        kept=_cubic(omega * STEP, omega * STEP),
+        some=some,
+        images=images,
+        gained=_cubic(some * STEP, images * STEP)
+        / some**4,  # with the cube of the angle they grow, or the fourth power
+    )
+
+
+def _squared_gains(design: OnRoads, speeds: Array) -> tuple[Array, Array]:
     """Squared gains (lines, outputs) over all sources, and those of a simulation's samples, whose inputs are cubic
     between knots.
 
@@ -201,26 +230,26 @@ def _squared_gains(design: OnRoads, speeds: Array, omega: Array) -> tuple[Array,
     """
     linear, excitation = design.linear, design.excitation
     assert linear is not None
+    lines = _lines_of(excitation)
+    omega, sources = lines.omega, list(dict.fromkeys(linear.problem.sources))
     here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
-    for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
+    for i, source in enumerate(sources):
         if source in linear.problem.excesses:
             here[:, :, i] *= linear.problem.excesses[source].factor(omega)[:, None]
-    some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
     at_once = linear.at_inputs(speeds)
-    reached = [(name, linear.is_road(name)) for name in at_once.inputs]
-    images = np.zeros((some.size, len(at_once.outputs), len(reached)), dtype=complex)
-    for m in (*range(-_IMAGES, 0), *range(1, _IMAGES + 1)):
-        there = some + 2.0 * np.pi * m / STEP
-        falls = _cubic(some * STEP, there * STEP) / some**4  # with the cube of the angle they grow, or the fourth power
-        share = np.column_stack([falls * there if road else falls for _, road in reached])
-        images += modal_response(at_once, there) * share[:, None, :]
-    sampled = here * _cubic(omega * STEP, omega * STEP)[:, None, None]
-    for j, (name, road) in enumerate(reached):
-        smooth = np.column_stack([np.interp(omega, some, column) for column in images[:, :, j].T])
-        for i, source in enumerate(dict.fromkeys(linear.problem.sources)):
+    responses = modal_response(at_once, lines.images.ravel())
+    responses = responses.reshape(*lines.images.shape, len(at_once.outputs), len(at_once.inputs))
+    sampled = here * lines.kept[:, None, None]
+    for j, name in enumerate(at_once.inputs):
+        is_road = linear.is_road(name)
+        share = lines.gained * lines.images if is_road else lines.gained
+        images = np.einsum("ms,mso->so", share, responses[:, :, :, j])
+        smooth = np.column_stack([np.interp(omega, lines.some, column) for column in images.T])
+        smooth *= (omega ** (3 if is_road else 4))[:, None]
+        for i, source in enumerate(sources):
             there = [a for one in excitation.reached for a in one if (a.input, a.source) == (name, source)]
             arriving = sum((factor_of(a, omega) for a in there), np.zeros(omega.size, dtype=complex))
-            sampled[:, :, i] += (arriving * omega ** (3 if road else 4))[:, None] * smooth
+            sampled[:, :, i] += arriving[:, None] * smooth
     return np.sum(np.abs(here) ** 2, axis=2), np.sum(np.abs(sampled) ** 2, axis=2)
 
 

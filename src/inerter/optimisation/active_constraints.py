@@ -83,8 +83,10 @@ def with_limits(estimate: Estimate, held: Sequence[ConstraintResult]) -> Estimat
 
 def infeasible(held: Sequence[ConstraintResult], parameters: Mapping[str, float], units: Mapping[str, str]) -> Status:
     """Status of an infeasible problem, with the closest design and its parameters."""
-    missed = [one for one in held if not one.excess <= KEPT_COSTLY] or list(held)
-    limits = " with ".join(one.label for one in held)
+    labels = list(dict.fromkeys(one.label for one in held))  # a limit has the same one in all conditions
+    worst = [max((one for one in held if one.label == label), key=lambda one: one.excess) for label in labels]
+    missed = [one for one in worst if not one.excess <= KEPT_COSTLY] or worst
+    limits = " with ".join(labels)
     nearest = " and ".join(f"{one.limit.of.title} {format_quantity(one.value, one.limit.of.unit)}" for one in missed)
     at = ", ".join(f"{name} = {format_quantity(value, units[name])}" for name, value in parameters.items())
     return Status(

@@ -32,9 +32,9 @@ from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, Constrain
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
-from inerter.optimisation.threads import one_blas_thread
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.checkpoints import resume_or_compute
 from inerter.work.progress import report, within
 from inerter.work.running import running_on

@@ -31,7 +31,6 @@ from inerter.optimisation.constrained_search import ConstrainedProblem, refine_m
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, trust_region
 from inerter.optimisation.optimise import check_free, optimise
-from inerter.optimisation.threads import one_blas_thread
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.points import (
     FrontPoint,
@@ -43,6 +42,7 @@ from inerter.pareto_fronts.points import (
     thin_out_triangle,
 )
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words
+from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
@@ -63,7 +64,9 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
             for name in layouts(results)
             if (at := _infeasible_places_clause(results, name)) is not None
         ]
-        yield f"All designs found satisfy {format_list(limits)}.{''.join(none)}"
+        neglect = neglect_clause(study, study.optimise) if study.optimise is not None else ""
+        computed = f", computed {neglect}" if neglect else ""
+        yield f"All designs found satisfy {format_list(limits)}{computed}.{''.join(none)}"
 
 
 def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:

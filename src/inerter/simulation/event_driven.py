@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import prod
 from typing import Any
 
@@ -35,7 +36,7 @@ from inerter.kernels.arrays import (
 from inerter.kernels.crossing import ORDERS
 from inerter.kernels.discretise import discretise
 from inerter.kernels.events import evaluate, integrate
-from inerter.kernels.integrate import lines_of, march_of
+from inerter.kernels.integrate import lines_of, march_of, room_of
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import GuardRole, LinearRole
@@ -49,6 +50,7 @@ Matrix = NDArray[np.float64]
 MOST_ELEMENTS = 12
 _SEGMENTS, _PIECES = 200_000, 4000  # at most between two looks at the keyboard: some 10 ms
 _TERMS = 31  # of a series, at most
+_KEPT = 16  # machines, such as of one design on many roads
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _GAUSS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
@@ -99,14 +101,8 @@ class Integration:
         if self.count == self.modes.reach.shape[0]:
             more = (np.concatenate([array, np.zeros_like(array)]) for array in self.modes[1:])
             self.modes = Modes(self.modes.number, *more)
-        modes, m, self.count = self.modes, self.count, self.count + 1
-        modes.state[m], modes.number[_code(states)] = states, m
-        rows = (modes.state[m], modes.conditions[m], modes.maps[m], modes.reaction[m], modes.limits[m])
-        if not build(self.mechanics, Mode(*rows, modes.entry_limits[m])):
-            return False
-        sizes, first, step = self.mechanics.sizes, self.mechanics.rows, self.table.step
-        modes.reach[m] = discretise(sizes, first, self.used, modes.maps[m], modes.steps[m], step)
-        return True
+        self.count += 1
+        return _add_mode(self, self.modes, self.count - 1, states, self.table.step)
 
     def go_on_from(self, ending: FinalState) -> None:
         """Begin in the mode in which another integration of the same mechanism ended."""
@@ -252,34 +248,79 @@ def start(
     """
     prepare(KERNELS)
     check_elements(system)
-    rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
-    mechanics = _mechanics(system, rows, len(outputs))
-    sizes, used = mechanics.sizes, _used_knot_numbers(system, table, bool(rows))
     jumps = table.value.shape[1] if table.jumps else 0
-    sharp = any(element.switches_by(GuardRole.ELONGATION) for element in system.nonlinear_elements)
-    shape = (sizes.states, used.size, sizes.elements, sizes.squares, jumps, sharp)
-    columns, followed, swaying = lines_of(*shape)
-    record = _record(sizes, state, table.samples if keep else 0)
+    machine = _machine(system, tuple(outputs), account, table.moving, jumps, table.step)
+    sizes = machine.mechanics.sizes
     integration = Integration(
         system=system,
         table=table,
-        march=march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
-        mechanics=mechanics,
-        modes=_modes(mechanics, columns + jumps, followed + swaying),
+        march=machine.march,
+        mechanics=machine.mechanics,
+        modes=copy_of(machine.modes),
         begun=state,
-        used=used,
+        used=machine.used,
         motion=_motion(system, state, settled),
-        room=_room(sizes, table.value.shape[1], columns + followed + swaying + sizes.states),
+        room=_room(sizes, table.value.shape[1], room_of(machine.march.shape)),
         knots=knots(table),
-        record=record,
+        record=_record(sizes, state, table.samples if keep else 0),
         account=_account(system, account),
+        count=machine.count,
     )
-    if sizes.elements == 1 and np.isfinite(mechanics.limits).all() and mechanics.limits[0, 0] < mechanics.limits[0, 1]:
-        for s in (0, 1, -1):  # all three will be met: save the ways back to have them built
-            integration.build(np.array([s]))
     if after is not None and after.mechanism == system.mechanism:
         integration.go_on_from(after)
     return integration
+
+
+@dataclass(frozen=True, eq=False)
+class _Machine:
+    """What integrations of a system share whose tables have one step and move the same inputs."""
+
+    mechanics: Mechanics
+    march: March
+    used: NDArray[np.int64]
+    modes: Modes  # for integrations to copy: each adds its own
+    count: int  # modes that are built
+
+
+@lru_cache(maxsize=_KEPT)
+def _machine(
+    system: PiecewiseSystem, outputs: tuple[str, ...], account: bool, moving: tuple[bool, ...], jumps: int, step: float
+) -> _Machine:
+    """The machine of a system, kept for further runs; with all three modes if they will be met."""
+    rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
+    mechanics, used = _mechanics(system, rows, len(outputs)), _used_knot_numbers(system, moving, rows)
+    sizes, limits = mechanics.sizes, mechanics.limits
+    sharp = any(element.switches_by(GuardRole.ELONGATION) for element in system.nonlinear_elements)
+    shape = (sizes.states, used.size, sizes.elements, sizes.squares, jumps, sharp)
+    lines, followed, swaying = lines_of(*shape)
+    march, modes = (
+        march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
+        _modes(mechanics, lines, followed + swaying),
+    )
+    machine, count = _Machine(mechanics, march, used, modes, 0), 0
+    if sizes.elements == 1 and np.isfinite(limits).all() and limits[0, 0] < limits[0, 1]:
+        for state in (0, 1, -1):
+            _add_mode(machine, modes, count, np.array([state]), step)
+            count += 1
+    return replace(machine, count=count)
+
+
+def _add_mode(machine: _Machine | Integration, modes: Modes, m: int, states: NDArray[np.int64], step: float) -> bool:
+    """Fill mode m, in which the nonlinear elements are in these states; False if it is singular."""
+    modes.state[m], modes.number[_code(states)] = states, m
+    rows = (modes.state[m], modes.conditions[m], modes.maps[m], modes.reaction[m], modes.limits[m])
+    if not build(machine.mechanics, Mode(*rows, modes.entry_limits[m])):
+        return False
+    sizes, first, shape = machine.mechanics.sizes, machine.mechanics.rows, machine.march.shape
+    modes.reach[m] = discretise(sizes, first, machine.used, shape, modes.maps[m], modes.steps[m], step)
+    return True
+
+
+def copy_of(modes: Modes) -> Modes:
+    """Modes that can be added to."""
+    steps = aligned_zeros(*modes.steps.shape)
+    steps[:] = modes.steps
+    return Modes(*(array.copy() for array in modes))._replace(steps=steps)
 
 
 def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]], squares: int) -> Mechanics:
@@ -302,8 +343,8 @@ def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]
     )
 
 
-def _modes(mechanics: Mechanics, columns: int, rows: int) -> Modes:
-    """Room for modes, and for steps of so many columns and rows of each."""
+def _modes(mechanics: Mechanics, lines: int, rows: int) -> Modes:
+    """Room for modes, and for steps of so many lines and rows of each."""
     sizes, k = mechanics.sizes, mechanics.sizes.elements
     capacity = min(3**k, 9)
     return Modes(
@@ -314,7 +355,7 @@ def _modes(mechanics: Mechanics, columns: int, rows: int) -> Modes:
         reaction=np.zeros((capacity, sizes.states + k, sizes.massless + k)),
         limits=np.zeros((capacity, k, 2)),
         entry_limits=np.zeros((capacity, k, 2)),
-        steps=aligned_zeros(capacity, columns, rows),
+        steps=aligned_zeros(capacity, lines, rows),
         reach=np.zeros(capacity),
     )
 
@@ -378,16 +419,20 @@ def _account(system: PiecewiseSystem, wanted: bool) -> Account:
     return Account(wanted, through, *_GAUSS)
 
 
-def _used_knot_numbers(system: PiecewiseSystem, table: InputTable, outputs: bool) -> NDArray[np.int64]:
+def _used_knot_numbers(
+    system: PiecewiseSystem, moving: tuple[bool, ...], rows: Sequence[tuple[Matrix, Matrix, Matrix]]
+) -> NDArray[np.int64]:
     """Numbers of the knot values in use: none of an input at rest, and heights of a road only where needed."""
     n, roads = system.order, len(system.mechanism.roads)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     mechanics = system.mechanics
     heights = (
-        outputs or mechanics.balance[:, na + nw + n : na + nw + n + roads].any() or mechanics.lengths[:, n - na :].any()
+        any(on_u[:roads].any() for _, on_u, _ in rows)
+        or mechanics.balance[:, na + nw + n : na + nw + n + roads].any()
+        or mechanics.lengths[:, n - na :].any()
     )
-    numbers = range(4 * len(table.moving))
-    used = [i for i in numbers if table.moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]
+    numbers = range(4 * len(moving))
+    used = [i for i in numbers if moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]
     return np.array(used, dtype=np.int64)
 
 

@@ -190,6 +190,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
         if branch.label not in graph.silent:
             places.setdefault(branch.label, (branch, {i: 1.0}))
     found, lost = [], ~_positioned_nodes(mechanism, graph)
+    elongations = [b.nodes for b in graph.branches if _determines_elongation(b)]
     for label, (place, carriers) in places.items():
         total = np.zeros(len(graph.branches))
         total[list(carriers)] = list(carriers.values())
@@ -198,7 +199,7 @@ def _of_elements(mechanism: Mechanism, graph: Graph) -> list[Output]:
             Output(velocity_of(label), "m/s", f"velocity across {label}", **moved),
             Output(force_of(label), "N", f"force of {label}", forces=total),
         ]
-        if not np.any(place.nodes[lost]):
+        if not np.any(place.nodes[lost]) or any(np.array_equal(place.nodes, row) for row in elongations):
             moved = {"displacement": place.nodes, "road": place.roads}
             found.append(Output(stroke_of(label), "m", f"stroke of {label}", **moved))
     return found

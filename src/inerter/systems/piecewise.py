@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ from inerter.vehicle.mechanism import Mechanism, check_values
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 Matrix = NDArray[np.float64]
+_KEPT = 128  # rows of outputs
 _LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the larger
 
 
@@ -311,8 +313,9 @@ class _Frame:
         return slice(derivative * roads, (derivative + 1) * roads)
 
 
+@lru_cache(maxsize=_KEPT)
 def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix, Matrix]:
-    """An output as rows over the state, the inputs and eta."""
+    """An output as rows over the state, the inputs and eta, not to be written to; kept for further runs."""
     frame, count = _Frame(system), len(system.mechanism.coordinates)
     rows = motion(frame, output, len(system.graph.nodes))
     if output.displacement.size or output.road.size:
@@ -323,6 +326,8 @@ def output_rows(system: PiecewiseSystem, output: Output) -> tuple[Matrix, Matrix
     for i in np.flatnonzero(output.forces):
         add(rows, [output.forces[i] * row for row in frame.force(int(i))])
     on_eta, on_x, on_u = rows
+    for row in rows:
+        row.setflags(write=False)
     return on_x, on_u, on_eta
 
 

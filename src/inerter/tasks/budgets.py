@@ -13,10 +13,9 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import capital, format_list, index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.cases import Case
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
-from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import format_quantity
 from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
@@ -51,8 +50,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
     def compute(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
         """Break-even value of the element in the best design found."""
         design, baseline = (
-            study.design(layout).with_values(designs[Case(layout, self.index)].parameters)
-            for layout in (self.layout, str(study.baseline))
+            best_design(study, designs, layout, self.index) for layout in (self.layout, str(study.baseline))
         )
         method = study.method(budget_method(study), threads)
         found = element_break_even(study, design, baseline, self.index, self.parameter, method)

@@ -10,9 +10,9 @@ import numpy as np
 from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.cases import Case
+from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
+from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import format_decimals, format_number, format_share
 from inerter.methods.registry import decisive_method_clause
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
@@ -45,7 +45,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
         """Tolerance analysis of the best design found."""
         method = study.evaluate[0]
         found = tolerance_analysis(
-            study.design(self.layout).with_values(designs[Case(self.layout, self.index)].parameters),
+            best_design(study, designs, self.layout, self.index),
             study.over_conditions(self.index),
             study.method(method, threads),
             spread=study.spread(self.layout),
@@ -163,16 +163,16 @@ class Tolerances(Task[ToleranceAnswer]):
             own = [one for one in answers if one.index == index]
             title = index_title(data, index)
             known = [one for one in own if np.isfinite(one.numbers.get("quantile", np.nan))]
-            told = [_best_sentence(title, known, data.attrs["baseline"])] if known else []
+            told = [_best_sentence(title, known, data.attrs["baseline"], results.study)] if known else []
             told += [
-                f"No answer for {title} of {one.layout} tolerances: {one.message.rstrip('.')}."
+                f"No answer for {title} of {one.layout} with tolerances: {one.message.rstrip('.')}."
                 for one in own
                 if one not in known
             ]
             yield " ".join(told)
 
 
-def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None) -> str:
+def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str | None, study: Study) -> str:
     """Sentence on the layout with the lowest quantile, compared with the baseline and the best nominal layout."""
     by_quantile = sorted(known, key=lambda one: one.numbers["quantile"])
     best, nominal = by_quantile[0], min(known, key=lambda one: one.numbers["nominal"])
@@ -184,12 +184,14 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
         compared = f", {format_decimals(100.0 * part, 1)} % better than {base.layout} with its tolerances"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"
+    neglect = neglect_clause(study, best.method)
+    model = f" ({neglect})" if neglect else ""
     due = f", mostly due to {_shares(best)[0][1]}" if _shares(best) else ""
     order = f" Without tolerances {nominal.layout} is best." if nominal is not best else ""
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)
     return (
-        f"{certain}With tolerances {best.layout} is best for {title}: {format_share(SHARE)} of cases are below "
+        f"{certain}With tolerances{model} {best.layout} is best for {title}: {format_share(SHARE)} of cases are below "
         f"{quantile}{compared}; standard deviation {deviation}{due}, worst {worst}.{order}"
     )
 

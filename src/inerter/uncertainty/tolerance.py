@@ -19,7 +19,6 @@ from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.notebook import shown_by
-from inerter.optimisation.threads import one_blas_thread
 from inerter.uncertainty.distributions import (
     Scatter,
     elements_scatter,
@@ -32,6 +31,7 @@ from inerter.uncertainty.distributions import (
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]

@@ -107,8 +107,8 @@ function Verdict({ state, blank }) {
  * @param {{layouts: string[]}} props */
 const Stale = ({ layouts }) => layouts.length > 0 && html`<button type="button" class="stale"
   title=${`Values of ${layouts.join(", ")} were optimised before the study or its goal changed.`}
-  onClick=${() => /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>Values not
-  re-optimised: <u>optimise all layouts</u></button>`;
+  onClick=${() => /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>Values
+  not re-optimised: <u>optimise all layouts</u></button>`;
 
 /** The caveats, as many as there is room for; the others by a button that counts them.
  * @param {{caveats: Caveat[]}} props */

@@ -86,10 +86,12 @@ const CHANGES = {
   layoutAdded: (document, { name }) => {
     const values = { ...document.values, [name]: own(document.values, document.layout) ?? {} };
     const like = own(document.study.layouts, document.layout) ?? Object.keys(document.study.elements ?? {})[0] ?? "";
-    return standing(withEntry({ ...document, values, layout: name }, ["layouts", name], like));
+    const study = withBaseline(document.study, name);
+    return standing(withEntry({ ...document, study, values, layout: name }, ["layouts", name], like));
   },
   layoutRenamed: (document, { name }) => {
-    const { study, values, layout: old } = document;
+    const { values, layout: old } = document;
+    const study = withBaseline(document.study, name);
     const layouts = study.layouts ?? {};
     if (own(layouts, old) === undefined || own(layouts, name) !== undefined) return document;
     const renamed = { ...document, layout: name, values: keyRenamed(values, old, name),
@@ -123,6 +125,15 @@ const CHANGES = {
   designRemoved: (document, { name }) =>
     ({ ...document, designs: document.designs.filter((design) => design.name !== name) }),
 };
+
+/** The study with its baseline by name before a layout is called like a number: objects have such keys first, and the
+ * first layout is the baseline of a study that names none.
+ * @param {Study} study @param {string} name @returns {Study} */
+function withBaseline(study, name) {
+  const [first] = Object.keys(study.layouts ?? {});
+  const stays = !/^\d+$/.test(name) || first === undefined || study.study?.baseline !== undefined;
+  return stays ? study : { ...study, study: { ...study.study, baseline: first } };
+}
 
 /** The document after a change. @param {Document} document @param {Change} change @returns {Document} */
 export const after = (document, change) => CHANGES[change.type](document, change);

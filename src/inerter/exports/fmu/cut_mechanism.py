@@ -229,9 +229,9 @@ def _place(mechanism: Mechanism, graph: Graph, branch: Branch) -> tuple[dict[str
     weights = np.linalg.lstsq(rows.T, branch.nodes, rcond=None)[0]
     if np.abs(weights @ rows - branch.nodes).max() > 1e-9:
         raise ExportError(
-            f"An FMU cannot tell the elongation of the {branch.element.key} {branch.label!r}, which has only springs "
-            "at one end. Put a damper beside the spring, or leave friction and gaps out with linear=True, on the "
-            "command line --linear."
+            f"The elongation of the {branch.element.key} {branch.label!r} is unknown in an FMU: it has only springs "
+            "at one end. Put a damper in parallel with the spring, or leave friction and gaps out with linear=True, on "
+            "the command line --linear."
         )
     levers = {c.name: float(w) for c, w in zip(mechanism.coordinates, weights, strict=False) if abs(w) > 1e-9}
     return levers, {i: float(w) for i, w in zip(springs, weights[count:], strict=True) if abs(w) > 1e-9}

@@ -72,7 +72,7 @@ def equations_of(mechanism: Mechanism, inputs: tuple[str, ...], outputs: tuple[s
             parameters.append(
                 FmuParameter(mass_name(masses[name].name, masses[name].angle), masses[name].unit, values[name])
             )
-    return _joined(d, tuple(parameters))
+    return _join(d, tuple(parameters))
 
 
 def mass_name(coordinate: str, angle: bool) -> str:
@@ -80,7 +80,7 @@ def mass_name(coordinate: str, angle: bool) -> str:
     return f"{coordinate}_{'moment_of_inertia' if angle else 'mass'}"
 
 
-def _joined(d: Descriptor, parameters: tuple[FmuParameter, ...]) -> Equations:
+def _join(d: Descriptor, parameters: tuple[FmuParameter, ...]) -> Equations:
     S, R, F, Y_eta, Y_x, Y_u = (stack.astype(float) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
     rates = np.zeros((len(S), d.X_x.shape[0], S.shape[2] + R.shape[2] + F.shape[2]))
     rates[0] = np.hstack([d.X_eta, d.X_x, d.X_u])

@@ -18,7 +18,7 @@ from inerter.exports.fmu.switching import (
     SwitchingSystem,
     reaction_quantities,
     rows_by_name,
-    stacked,
+    stack_rows,
     with_laws,
 )
 from inerter.exports.named_system import NamedQuantity, NamedSystem
@@ -36,8 +36,8 @@ HOW_TO_COUPLE = (
     "the accelerations at once: solve for them with the directional derivatives or the output inertance. Where "
     "coupling_ratio = inertance (1/upper_mass + 1/lower_mass) is one or more, accelerations of the step before "
     "make the host diverge. The rate of an acceleration over a step, from the step before or from a repetition "
-    "after a rollback, makes the coupling of second order; where the force jumps within a step, mean_force says "
-    "what the masses have felt."
+    "after a rollback, makes the coupling of second order; where the force jumps within a step, mean_force gives its "
+    "impulse."
 )
 
 
@@ -126,28 +126,28 @@ def _equations(cut: CutMechanism, states: int) -> Equations | None:
     forces = slice(first, first + count)
     at = [cut.outputs().index(f"{end}_acceleration") for end in ENDS]
 
-    def moved(rows: Matrix) -> Matrix:
+    def exchange(rows: Matrix) -> Matrix:
         parts = np.split(rows, [base.unknowns, first, first + count], axis=2)
         return np.concatenate([parts[0], parts[2], parts[1], np.zeros_like(parts[2]), parts[3]], axis=2)
 
-    given = moved(base.outputs[:, at])
+    given = exchange(base.outputs[:, at])
     given[0, :, forces.start + count : forces.stop + count] -= np.eye(count)
-    outputs = moved(base.outputs)
+    outputs = exchange(base.outputs)
     rows = rows_by_name(cut, outputs, first + count)
     own = [i for i, one in enumerate(base.parameters) if one.name not in {mass_name(end, False) for end in ENDS}]
     masses = [1 + i for i in range(len(base.parameters)) if i not in own]
     weights = np.array([base.parameters[i - 1].value for i in masses])
 
-    def fixed(stack: Matrix) -> Matrix:
+    def fix_masses(stack: Matrix) -> Matrix:
         """Without slices of the masses of the ends, which are numbers, and with the impulse as a state."""
         constant = stack[:1] + np.tensordot(weights, stack[masses], 1)[None]
         return with_impulse(np.concatenate([constant, stack[[1 + i for i in own]]]), first + count)
 
     force = cut.complete(rows)[_OUTPUT][:, None]
     return Equations(
-        fixed(np.concatenate([moved(base.balance), given], axis=1)),
-        fixed(np.concatenate([moved(base.rates), force], axis=1)),
-        fixed(force),
-        fixed(stacked(cut.motions(rows, base), outputs)),
+        fix_masses(np.concatenate([exchange(base.balance), given], axis=1)),
+        fix_masses(np.concatenate([exchange(base.rates), force], axis=1)),
+        fix_masses(force),
+        fix_masses(stack_rows(cut.motions(rows, base), outputs)),
         tuple(base.parameters[i] for i in own),
     )

@@ -170,11 +170,11 @@ def _equations(cut: CutMechanism, states: int, chosen: Sequence[str]) -> Equatio
         base,
         balance=with_heights(base.balance, place, roads),
         rates=np.concatenate([with_heights(base.rates, place, roads), heights], axis=1),
-        outputs=stacked([found[name] for name in chosen], heights),
-        motions=stacked(cut.motions(rows, base), heights),
+        outputs=stack_rows([found[name] for name in chosen], heights),
+        motions=stack_rows(cut.motions(rows, base), heights),
     )
 
 
-def stacked(rows: Sequence[Matrix], like: Matrix) -> Matrix:
+def stack_rows(rows: Sequence[Matrix], like: Matrix) -> Matrix:
     """Stacks of rows as one, of the shape of another in all but the number of rows."""
     return np.stack(rows, axis=1) if rows else like[:, :0]

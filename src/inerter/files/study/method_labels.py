@@ -28,6 +28,13 @@ def method_labels(study: Study) -> dict[str, str]:
     return {method: words if count[words] == 1 else _apart(words, method) for method, words in told.items()}
 
 
+def neglect_clause(study: Study, method: str) -> str:
+    """Nonlinear effects of the layouts that a method neglects, such as "without friction"; empty if none."""
+    seen = _SEEN[nonlinearities_of(method)]
+    without = [word for word, by in _losses(study).items() if by not in seen]
+    return f"without {' or '.join(without)}" if without else ""
+
+
 def _losses(study: Study) -> dict[str, GuardRole]:
     """Nonlinear effects of the layouts that linear analysis neglects, with the kind of guard of each: force first."""
     used = [study.elements[name] for name in elements_used(study) if name in study.elements]

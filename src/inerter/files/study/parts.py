@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
 import numpy as np
 
 from inerter.errors import InerterError, StatusKind
-from inerter.optimisation.threads import one_blas_thread
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.pool import KILLS
 from inerter.work.progress import within
 

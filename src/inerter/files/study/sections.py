@@ -294,7 +294,7 @@ class Settings:
     )
     limits: tuple[StudyLimit, ...] = key(
         LimitsCodec(),
-        "Constraints on indices or static stiffness that every design must satisfy.",
+        "Constraints on indices (r.m.s. values and peak gains) or static stiffness that every design must satisfy.",
         'subject_to = { tyre-load = { at_most = "600 N" } }',
         default=(),
         name="subject_to",

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
+from inerter.errors import DesignError, StatusKind
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.task_registry import TASKS
@@ -24,8 +25,17 @@ if TYPE_CHECKING:
     from inerter.files.common.problem import Problem
     from inerter.files.study.study import Study
     from inerter.table import Table
+    from inerter.vehicle.vehicle import Vehicle
 
 Designs = Mapping[Case, Outcome]
+
+
+def best_design(study: Study, designs: Designs, layout: str, index: str) -> Vehicle:
+    """The best design of a layout for an index; raises `DesignError` if none is feasible."""
+    outcome = designs[Case(layout, index)]
+    if outcome.kind == StatusKind.INFEASIBLE.value:
+        raise DesignError(f"{layout} has no feasible design for {index}.")
+    return study.design(layout).with_values(outcome.parameters)
 
 
 @dataclass(frozen=True, kw_only=True)

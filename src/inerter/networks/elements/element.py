@@ -43,7 +43,7 @@ class Element(Network):
     linear: ClassVar[LinearRole]
     switch: ClassVar[SwitchRole | None] = None
     statistical: ClassVar[StatisticalRole] = StatisticalRole.ITSELF
-    effect: ClassVar[str] = ""  # effect neglected in linear analysis, such as "play"; default: the kind
+    effect: ClassVar[str] = ""  # effect neglected in linear analysis, such as "backlash"; default: the kind
     # to design
     may_vanish: ClassVar[bool] = False  # whether zero is allowed, as for a friction or a gap without effect
     tried: ClassVar[tuple[float, float] | None] = None  # search range of a break-even value if the value is zero

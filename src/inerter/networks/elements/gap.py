@@ -35,7 +35,7 @@ class Gap(Element):
     switch: ClassVar[SwitchRole] = SwitchRole(
         GuardRole.ELONGATION, "lower contact", "open", "upper contact", spent=("lower end", "in the gap", "upper end")
     )
-    effect: ClassVar[str] = "play"
+    effect: ClassVar[str] = "backlash"
     may_vanish: ClassVar[bool] = True
     tried: ClassVar[tuple[float, float]] = (1e-6, 1e-2)
     drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a pin between two jaws

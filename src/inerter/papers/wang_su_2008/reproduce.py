@@ -15,7 +15,6 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study.running import StudyResult, result_names, run_study
 from inerter.kernels.prepare import prepare
-from inerter.optimisation.threads import one_blas_thread
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
 from inerter.papers.wang_su_2008.judging import Claim, Evidence
@@ -25,6 +24,7 @@ from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.simulation.event_driven import KERNELS
+from inerter.work.blas_threads import one_blas_thread
 from inerter.work.journal import Journal
 from inerter.work.pool import Pool, worker_pool
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 _FRESH = """
-from inerter.optimisation.threads import one_blas_thread
+from inerter.work.blas_threads import one_blas_thread
 with one_blas_thread():
     import scipy.linalg, scipy.optimize
     from threadpoolctl import threadpool_info

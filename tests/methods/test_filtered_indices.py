@@ -18,6 +18,7 @@ from strategies import paper_half_car, paper_quarter_car
 import inerter as it
 from inerter import Damper, Filter, Friction, Inerter, Spring, free
 from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.notes import parts_of
 from inerter.methods.realisations import realisation_seeds
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
@@ -172,7 +173,9 @@ def test_statistical_linearisation_is_the_norm_with_its_dampers():
     found = it.evaluate(series(100.0), index, method)
     assert found.status.ok
     assert found.notes == it.evaluate(series(100.0), J1, method).notes
-    (damping,) = (float(note.split("damper of ")[1].split()[0]) for note in found.notes if "damper of" in note)
+    (damping,) = (
+        part for note in found.notes if "damper of" in note for part in parts_of(note) if isinstance(part, float)
+    )
     damped = paper_quarter_car(k | Damper(7353.0) - shaft - (Inerter(328.72) | Damper(damping)))
     assert found.value == pytest.approx(it.evaluate(damped, index, it.Norm()).value, rel=1e-6)
     opened_up = paper_quarter_car(k | Damper(free(1e3, 5e4, "c")) - shaft - (Inerter(328.72) | Friction(100.0)))

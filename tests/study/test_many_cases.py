@@ -129,7 +129,7 @@ def test_the_order_in_which_outcomes_come_is_no_matter(tmp_path: Path) -> None:
         gathered.enter(Outcome(**json.loads(json.dumps(outcome.to_json()))))
     other = gathered.dataset()
     assert other.identical(one)
-    low, high = (f"{end(o.notes[0][1] for o in shuffled):.6g}" for end in (min, max))
+    low, high = (f"{end(o.notes[0][1] for o in shuffled):.4g}" for end in (min, max))
     assert one.attrs["notes"].splitlines() == [f"S1, S2: c taken as {low} to {high} N s/m", "S1, S2: left out"]
     assert gathered.n_failures == sum(o.kind != "ok" for o in shuffled)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,11 @@ SHOWS = """values => Object.entries(values).every(([index, value]) =>
   Math.abs(document.querySelector(`td[data-index=${index}]`)?.dataset.value / value - 1) < 1e-6)"""
 
 
+def searches(served: Served) -> list[dict[str, Any]]:
+    """The searches that the server has done, does or will do."""
+    return [job for job in json.loads(served.get("work"))["work"] if job["kind"] == "search"]
+
+
 @pytest.mark.campaign
 def test_networks_of_a_search_are_taken_into_the_editor(
     served: Served, visitors: Callable[..., Visitor], tmp_path: Path
@@ -47,11 +53,15 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     form.locator("[name=layout]").select_option("any")
     boxes = form.locator("[name=index]")
     assert [box.is_checked() for box in boxes.all()] == [True, True, False]  # those of the trade-off
+    before = {job["id"] for job in searches(served)}  # the server has the jobs of other tests too
     form.get_by_role("button", name="Begin").click()
-    job_row = page.locator(".job").first
-    page.wait_for_selector(".job[data-state=done]", timeout=120_000)
-    (job,) = [job for job in json.loads(served.get("work"))["work"] if job["kind"] == "search"]
-    found = json.loads(served.get(f"work/{job['id']}/result"))
+    deadline = time.monotonic() + 120.0
+    while not (done := [job for job in searches(served) if job["id"] not in before and job["state"] == "done"]):
+        assert time.monotonic() < deadline, searches(served)
+        time.sleep(0.2)
+    found = json.loads(served.get(f"work/{done[0]['id']}/result"))
+    job_row = page.locator(".job[data-state=done]", has_text="Search").first
+    job_row.locator("circle.point").first.wait_for(state="attached")
     front = max(found["front"]["fronts"], key=lambda one: one["elements"])["points"]
 
     def shows(row: Any, values: dict[str, float]) -> None:

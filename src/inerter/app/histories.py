@@ -139,16 +139,16 @@ def motion_of(run: Trajectory, mechanism: Mechanism) -> dict[str, Any]:
     time = np.arange(run.time[0], run.time[-1] + 0.5 / _FRAMES, 1.0 / _FRAMES)
     inside = elongations(run, mechanism)
 
-    def sampled(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    def sample(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.round(np.interp(time, run.time, values), _PLACES)
 
-    at = {name: sampled(run[output]) for name, output in _coordinate_outputs(mechanism).items()}
+    at = {name: sample(run[output]) for name, output in _coordinate_outputs(mechanism).items()}
     return {
         "time": np.round(time, _PLACES),
         "coordinates": {c.name: at[c.name] for c in mechanism.coordinates},
         "roads": {r.name: at[r.name] for r in mechanism.roads},
         "elements": {
-            mount: {label: sampled(values) for label, values in elements.items()} for mount, elements in inside.items()
+            mount: {label: sample(values) for label, values in elements.items()} for mount, elements in inside.items()
         },
     }
 

@@ -273,7 +273,7 @@ def start(
 
 @dataclass(frozen=True, eq=False)
 class _Machine:
-    """What integrations of a system share whose tables have one step and move the same inputs."""
+    """Parts that integrations of a system share, if their tables have one step and move the same inputs."""
 
     mechanics: Mechanics
     march: March

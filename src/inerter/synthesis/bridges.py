@@ -99,7 +99,7 @@ def _others(top: Numbers, bottom: Numbers, x: Decimal) -> tuple[Decimal, Decimal
 
 
 def _condition(top: Numbers, bottom: Numbers, x: Decimal) -> Decimal:
-    """What is left of the condition on the middle coefficients for a damper x, over the size of its terms."""
+    """Residual of the condition on the middle coefficients for a damper x, over the size of its terms."""
     y, z, size, over = _others(top, bottom, x)
     product = bottom[0] * bottom[2] / ((x + y + z) * (y + z))  # k m for polynomials of size 1
     terms = product * size**2, -bottom[1] * size * over, x * (y + z) * over**2

@@ -94,11 +94,11 @@ def once_per_structure(answer: Callable[[Mechanism], _Answer]) -> Callable[[Mech
     known = lru_cache(maxsize=128)(lambda structure: answer(structure.mechanism))
 
     @wraps(answer)
-    def remembered(mechanism: Mechanism) -> _Answer:
+    def look_up(mechanism: Mechanism) -> _Answer:
         structure = structure_of(mechanism)
         return answer(mechanism) if structure is None else known(structure)
 
-    return remembered
+    return look_up
 
 
 class _DependsOnValuesError(Exception):

@@ -29,7 +29,7 @@ from inerter.vehicle.vehicle import Vehicle
 
 
 class PlotSource(Enum):
-    """What a plot is of, with the file that has it."""
+    """Subject of a plot, with the file that has it."""
 
     DESIGNS = "a study file, or a folder with its results"
     MOTION = "a simulation file, or a folder with its results"

@@ -61,7 +61,7 @@ def _opened(visitor: Visitor, name: str) -> None:
 def _follows(visitor: Visitor, first: str, other: str) -> list[Any]:
     """What of the first study is to be seen when another one is opened whose answers do not come."""
     page = visitor.page
-    before, title = page.evaluate(SHOWN), page.input_value(".title")
+    before, title = page.evaluate(SHOWN), page.input_value("input.title")
     assert before["numbers"] or before["texts"], first  # what a method cannot answer has a sentence
     with held(visitor):
         visitor.open(EXAMPLES / f"{other}.toml")
@@ -76,7 +76,7 @@ def _follows(visitor: Visitor, first: str, other: str) -> list[Any]:
                 found.append((first, other, tab, shown))
         assert page.locator(".answers[data-being=coming]").count() == 1, (first, other)
         for _ in range(3 if other == SIMULATED else 1):  # which chooses a layout besides
-            if page.input_value(".title") != title:
+            if page.input_value("input.title") != title:
                 page.get_by_role("button", name="Undo").click()
                 page.evaluate(FRAMES)
         page.wait_for_function("() => document.querySelector('.answers[data-being=current]')")

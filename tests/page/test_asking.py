@@ -240,7 +240,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     study.write_text(_two_struts())
     drop(visitor, study)
     page.wait_for_selector("text=dropped.toml is open")
-    assert page.input_value(".title") == "All fixed"
+    assert page.input_value("input.title") == "All fixed"
 
     folder = tmp_path / "results"
     (folder / "figures").mkdir(parents=True)
@@ -250,7 +250,7 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     (folder / "summary.csv").write_text("layout,index\n")
     drop(visitor, folder)
     page.wait_for_selector("text=study.resolved.toml is open")
-    assert page.input_value(".title") == "From a folder"
+    assert page.input_value("input.title") == "From a folder"
 
     record = tmp_path / "noise.csv"
     rows = (f"{i / 1000},{i % 7},{(i * i) % 11}" for i in range(400))
@@ -278,7 +278,7 @@ def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -
     drop(visitor, tmp_path / "half_car_friction")
     page.wait_for_selector("text=simulation.toml is open as a study of its vehicle")
     request = load_simulation(EXAMPLES / "half_car_friction.toml")
-    wait_until(lambda: page.input_value(".title") == request.title)
+    wait_until(lambda: page.input_value("input.title") == request.title)
     found = visitor.values()
     comfort = it.RideComfort(it.Road(roughness=request.roughness, speed=request.speed))
     assert found == {"J1": it.evaluate(request.design(), comfort, it.Norm()).value}

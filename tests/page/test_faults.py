@@ -287,7 +287,7 @@ def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, nam
     quoted = json.dumps(name, ensure_ascii=False)
     text = study_text('indices = ["J1"]', title=f"title = {quoted}")
     _open(visitor, tmp_path, "marked", text)
-    assert page.input_value(".title") == name
+    assert page.input_value("input.title") == name
     _fill(visitor, "elements.k", f"5 {name}")
     page.wait_for_selector("[data-place='elements.k'] .problem")
     _rename(visitor, "k", name)

@@ -86,7 +86,7 @@ def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page.wait_for_selector("#open-menu[open]")
     page.keyboard.press("Escape")
     page.wait_for_selector("#open-menu[open]", state="detached")
-    page.fill(".title", "o1?v")  # what is typed is text
+    page.fill("input.title", "o1?v")  # what is typed is text
     assert page.locator("dialog[open], #verdict details[open]").count() == 0
     page.locator("[data-place='elements.c'] input[type=range]").focus()
     before = page.get_attribute("[id='entry elements.c']", "title")

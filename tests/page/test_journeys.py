@@ -264,7 +264,7 @@ def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
     page.locator(".element[data-name=b]").click()
     page.get_by_role("tab", name="Road").click()
     page.evaluate("() => { document.getElementById('part-menu').open = true; }")
-    for field in ("#element-name", ".title", "label:has-text('for [s]') input"):
+    for field in ("#element-name", "input.title", "label:has-text('for [s]') input"):
         page.locator(field).fill("12")
         page.evaluate(
             """() => {

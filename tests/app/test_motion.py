@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import page_vehicles
@@ -11,7 +12,9 @@ from app.conftest import DOCUMENT, ask, changed
 from starlette.testclient import TestClient
 
 import inerter as it
+from inerter.app.designs import one_design
 from inerter.app.documents import study_from
+from inerter.app.histories import history
 from inerter.simulation.elongations import elongations
 
 VALUES = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 50.0}}
@@ -52,6 +55,19 @@ def test_one_output_is_that_of_all_and_another_one_takes_no_other_run(
         assert one["peaks"] == {signal["name"]: whole["peaks"][signal["name"]]}
     first = ask(client, "panel/history", output="nothing", **asked)
     assert [each["name"] for each in first["signals"]] == [whole["signals"][0]["name"]]
+
+
+def test_a_road_that_has_changed_is_driven_anew() -> None:
+    """The document of a measured road stays the same when its file changes; its roughness does not."""
+    body = {"study": DOCUMENT, "design": DESIGN, "seed": 3, "duration": 0.5}
+    study = study_from(DOCUMENT)
+    assert study.road is not None
+    for road in (study.road, it.Road(4.0 * study.road.roughness, study.road.speed)):
+        each = replace(study, road=road)
+        told = history(each, one_design(each, body), body)
+        car = study.design("S3").with_values(VALUES["S3"])
+        run = it.simulate(car, road=it.multisine(road, seed=3), duration=0.5, step=told["step"])
+        assert told["rms"]["tyre_load"] == run.rms("tyre_load")
 
 
 def test_the_baseline_is_on_the_same_road_and_changes_nothing_else(client: TestClient) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from collections import deque
 from collections.abc import Mapping
 from typing import Any
 
@@ -54,7 +54,7 @@ def _history_or_status(study: Study, design: Design | None, body: Mapping[str, A
 
 def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[str, Any]:
     asked = simulation_request(study, design, body)
-    run, mechanism = _run_once(asked, design, body), design.mechanism
+    run, mechanism = _run_once(asked), design.mechanism
     names = _names(mechanism, body)
     shaded = state_intervals(run)
     return {
@@ -81,18 +81,16 @@ def _names(mechanism: Mechanism, body: Mapping[str, Any]) -> list[str]:
     return [body["output"]] if body["output"] in known else known[:1]
 
 
-_runs: dict[str, Trajectory] = {}  # the last ones, of which another output may be asked for
+_runs: deque[tuple[SimulationRequest, Trajectory]] = deque(maxlen=_KEPT)  # of which another output may be asked for
 
 
-def _run_once(asked: SimulationRequest, design: Design, body: Mapping[str, Any]) -> Trajectory:
-    """Run of a request, or the same of before."""
-    key = json.dumps([body["study"], design.layout, design.values, asked.duration, asked.step, body.get("seed")])
-    if key not in _runs:
-        run = asked.run()
-        for old in list(_runs)[: 1 - _KEPT]:
-            _runs.pop(old, None)
-        _runs[key] = run
-    return _runs[key]
+def _run_once(asked: SimulationRequest) -> Trajectory:
+    """Run of a request, or that of an equal one before."""
+    known = next((run for before, run in _runs if before == asked), None)
+    if known is None:
+        known = asked.run()
+        _runs.append((asked, known))
+    return known
 
 
 def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) -> SimulationRequest:

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import xarray as xr
-
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.cli.reading import time_interval
@@ -19,9 +17,8 @@ from inerter.files.common.folder import check_single, single
 from inerter.files.common.suggest import some
 from inerter.files.simulation import running as simulations
 from inerter.files.simulation.loading import load_simulation
-from inerter.files.study import running as studies
-from inerter.files.study.chosen_design import chosen_design
-from inerter.files.study.loading import load_study
+from inerter.files.study.chosen_design import chosen_designs, load_results
+from inerter.files.study.running import DATASET
 
 _BY = "plot"
 _SUFFIXES = (".svg", ".pdf", ".png")
@@ -80,8 +77,7 @@ def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, 
 
 def _designs(source: Path, options: PlotOptions) -> tuple[DesignsToPlot, tuple[Path, ...]]:
     """The layouts that were named, or all, with their best values for an index."""
-    known = list(load_study(source / studies.RESOLVED if source.is_dir() else source).layouts)
-    chosen = {name: chosen_design(source, name, options.index, options.point) for name in options.layout or known}
+    chosen = chosen_designs(source, options.layout, options.index, options.point)
     first = next(iter(chosen.values()))
     vehicles = {name: design.vehicle() for name, design in chosen.items()}
     return DesignsToPlot(vehicles, first.study.index(first.case.index), options.input, options.only), first.inputs
@@ -99,11 +95,6 @@ def _motion(source: Path, options: PlotOptions) -> tuple[MotionToPlot, tuple[Pat
 
 
 def _results(source: Path, options: PlotOptions) -> tuple[ResultsToPlot, tuple[Path, ...]]:
-    path = source / studies.DATASET
     if not source.is_dir():
         raise StudyError(f"{source}: expected {PlotSource.RESULTS.value}. Run the study: inerter run {source}")
-    try:
-        with xr.open_dataset(path, engine="h5netcdf") as data:
-            return ResultsToPlot(data.load(), options.index), (path,)
-    except (OSError, KeyError, ValueError) as error:
-        raise StudyError(f"{path}: cannot be read as results ({error}).") from None
+    return ResultsToPlot(load_results(source), options.index), (source / DATASET,)

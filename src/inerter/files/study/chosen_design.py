@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -55,9 +56,36 @@ def chosen_design(source: Path, layout: str | None, index: str | None, point: in
 
     Raises `StudyError` for a source that is neither, and for an unknown or missing layout, index or point.
     """
+    return _chosen_design(_load(source), source, layout, index, point)
+
+
+def chosen_designs(
+    source: Path, layouts: Sequence[str], index: str | None, point: int | None
+) -> dict[str, ChosenDesign]:
+    """The designs of some layouts by their names, all without `layouts`, as `chosen_design` has one."""
+    study = _load(source)
+    return {name: _chosen_design(study, source, name, index, point) for name in layouts or study.layouts}
+
+
+def load_results(source: Path, variables: Sequence[str] | None = None) -> xr.Dataset:
+    """Dataset of a folder of results, or some of its variables; raises `StudyError` if it cannot be read."""
+    try:
+        with xr.open_dataset(source / DATASET, engine="h5netcdf") as data:
+            return (data if variables is None else data[list(variables)]).load()
+    except (OSError, KeyError, ValueError) as error:
+        raise StudyError(f"{source / DATASET}: cannot be read as results ({error}).") from None
+
+
+def _load(source: Path) -> Study:
     study = load_study(source / RESOLVED if source.is_dir() else source)
     if problems := list(unchosen_problems(study)):
         raise refusal(study.path, problems)
+    return study
+
+
+def _chosen_design(
+    study: Study, source: Path, layout: str | None, index: str | None, point: int | None
+) -> ChosenDesign:
     chosen = _choose("layout", layout, list(study.layouts), source)
     is_free = bool(study.design(chosen).free_values())
     asked = _choose("index", index, list(study.indices), source) if is_free or index else study.indices[0]
@@ -103,11 +131,7 @@ def _search_values(study: Study, case: Case) -> dict[str, float]:
 
 def _read(folder: Path, study: Study, case: Case) -> dict[str, float]:
     """Values of the results in a folder."""
-    try:
-        with xr.open_dataset(folder / DATASET, engine="h5netcdf") as data:
-            found = data["parameter_value"].load()
-    except (OSError, KeyError, ValueError) as error:
-        raise StudyError(f"{folder / DATASET}: cannot be read as results ({error}).") from None
+    found = load_results(folder, ["parameter_value"])["parameter_value"]
     at = np.unravel_index(case.point, tuple(len(sweep.values) for sweep in study.sweeps)) if study.sweeps else ()
     place = {sweep.label: int(i) for sweep, i in zip(study.sweeps, at, strict=True)}
     try:

@@ -280,6 +280,12 @@ def test_frequent_units_are_those_of_pint(unit: str) -> None:
         assert (registry.parse_units(name).dimensionality == one.dimensionality) == (others == base), name
 
 
+def test_a_number_without_unit_is_compared_without_the_library_of_units(monkeypatch):
+    monkeypatch.setattr(units, "_registry", None)
+    assert not units.are_compatible("mm", units.PURE)
+    assert units.are_compatible(units.PURE, units.PURE)
+
+
 def test_a_library_that_is_half_imported_by_another_thread_makes_no_unit_unknown(monkeypatch):
     """As pint while another thread imports dask: Python raises once."""
     faults = [ImportError("cannot import name 'annotate' from partially initialized module 'dask.base'")]

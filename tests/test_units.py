@@ -281,6 +281,7 @@ def test_frequent_units_are_those_of_pint(unit: str) -> None:
 
 
 def test_a_number_without_unit_is_compared_without_the_library_of_units(monkeypatch):
+    units._dimension.cache_clear()
     monkeypatch.setattr(units, "_registry", None)
     assert not units.are_compatible("mm", units.PURE)
     assert units.are_compatible(units.PURE, units.PURE)

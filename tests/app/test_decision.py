@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.test_work import until
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -164,3 +165,57 @@ def test_every_example_has_a_verdict(name: str) -> None:
 def _indices(body: dict[str, Any]) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = answer_panel("indices", body)["designs"]
     return found
+
+
+def test_the_digest_of_a_problem_is_that_of_its_optimum_until_the_problem_is_another_one(client: TestClient) -> None:
+    """Whether by the panel or a job; the names of elements and layouts, titles and other layouts change nothing."""
+    elements = {**DOCUMENT["elements"], "b": "100 kg"}
+    light = {**DOCUMENT, "elements": elements}
+
+    def other(**tables: Any) -> Any:
+        """The document with other entries of its tables."""
+        return {**light, **{name: {**light[name], **table} for name, table in tables.items()}}
+
+    def digests(document: Any, index: str = "J1") -> list[str]:
+        rows = ask(client, "panel/decision", study=document, index=index)["rows"]
+        return [row["problem_digest"] for row in sorted(rows, key=lambda row: row["layout"])]
+
+    first, third = digests(light)
+    assert len({first, third, *digests(light, "J3")}) == 4
+    body = {"study": light, "layouts": ["S1"], "indices": ["J1"]}
+    (panel,) = ask(client, "panel/optimise", **body)["designs"]
+    assert panel["problem_digests"] == [first]
+    assert digests({**other(study={"baseline": "S3"}), "title": "Another"}) == [first, third]
+    lighter = digests(other(elements={"b": "90 kg"}))
+    assert lighter[0] == first
+    assert lighter[1] != third
+    renamed = ask(client, "study/rename", study=light, names={"c": "damper", "k": "parts"})["study"]
+    assert digests(renamed) == [first, third]
+    several = (
+        other(vehicle={"sprung_mass": "300 kg"}),
+        other(road={"speed": "20 m/s"}),
+        other(elements={"c": {"from": "1 kN s/m", "to": "100 kN s/m"}}),
+        other(layouts={"S1": "c"}),
+        other(study={"subject_to": {"J3": {"at_most": "1 kN"}}}),
+    )
+    assert len({first, *(digests(document)[0] for document in several)}) == 6
+    assert digests(other(elements={"c": "2 kN s/m", "b": DOCUMENT["elements"]["b"]}))[0] == ""  # nothing may vary
+
+
+def test_designs_of_sweeps_and_fronts_solve_the_problems_of_their_studies(client: TestClient) -> None:
+    elements = {"k": "20 kN/m", "c": DOCUMENT["elements"]["c"]}
+    study = {**DOCUMENT, "elements": elements, "layouts": {"S1": "k | c"}}
+
+    def digest(document: Any, index: str) -> str:
+        return str(ask(client, "panel/decision", study=document, index=index)["rows"][0]["problem_digest"])
+
+    def result(**body: Any) -> Any:
+        number = ask(client, "work", study=study, **body)["id"]
+        until(client, number, "done")
+        return client.get(f"/api/work/{number}/result").json()
+
+    swept = result(kind="sweep", sweep={"k": {"from": "10 kN/m", "to": "40 kN/m", "points": 2}}, indices=["J3"])
+    there = [{**study, "elements": {**elements, "k": f"{k} kN/m"}} for k in (10, 40)]
+    assert [row["problem_digests"] for row in swept["designs"]] == [[digest(one, "J3")] for one in there]
+    (front,) = result(kind="front", indices=["J1", "J3"], points=3)["fronts"]
+    assert front["problem_digests"] == [digest(study, "J1"), digest(study, "J3")]

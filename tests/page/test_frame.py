@@ -70,6 +70,34 @@ def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor
 
 
 @pytest.mark.campaign
+def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
+    served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    """What they were optimised for is kept with them."""
+    visitor = visitors(served).visit()
+    page = visitor.page
+    visitor.settled()
+    stale = page.locator("#verdict .stale")
+    page.fill("[id='entry vehicle.sprung_mass']", "320 kg")
+    page.keyboard.press("Enter")
+    stale.wait_for()
+    page.reload()
+    stale.wait_for()
+    stale.click()
+    stale.wait_for(state="detached")
+    page.get_by_role("tab", name="Jobs").click()
+    front = page.locator("form.begin", has_text="Trade-off front")
+    front.locator("input[name=points]").fill("3")
+    front.get_by_role("button", name="Begin").click()
+    page.get_by_role("button", name="Take this point").first.click()
+    visitor.settled()
+    assert stale.count() == 0  # a point of a front of J1 and J3 is one for J1
+    page.fill("[id='entry vehicle.sprung_mass']", "330 kg")
+    page.keyboard.press("Enter")
+    stale.wait_for()
+
+
+@pytest.mark.campaign
 def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()

@@ -33,23 +33,28 @@ export function goalOf({ view, history }) {
   return indices.includes(view.index) ? view.index : indices[0];
 }
 
-/** The best values that were found of a layout, as long as the study and its goal are the same.
+/** The best values that were found of a layout, as long as they solve the problem that is asked now.
  * @param {State} state @param {string} layout @returns {{[name: string]: string}} */
-export const bestOf = (state, layout) => (isStale(state, layout) ? {} : (own(state.best, layout)?.values ?? {}));
-
-/** The layouts whose values were optimised for another vehicle, road, network or goal. @param {State} state */
-export const staleLayouts = (state) =>
-  Object.keys(state.history.present.study.layouts ?? {}).filter((layout) => isStale(state, layout));
-
-/** Whether the last optimum of a layout is no longer that of its study and goal. @param {State} state
- * @param {string} layout */
-function isStale(state, layout) {
-  const found = own(state.best, layout);
-  if (found === undefined) return false;
-  const { study } = state.history.present;
-  const problem = (/** @type {Study} */ { title: _, ...asked }) => askedOf(state, { study: asked }, layout);
-  return found.index !== goalOf(state) || (found.study !== study && problem(found.study) !== problem(study));
+export function bestOf(state, layout) {
+  const { problems, values } = own(state.history.present.optima, layout) ?? NO_OPTIMUM;
+  return problems.length === 1 && problems[0] === problemOf(state, layout) ? values : {};
 }
+
+/** The layouts whose values were optimised for another vehicle, road, network or goal, by what the library says that
+ * they were and now are optimised for. @param {State} state */
+export const staleLayouts = (state) => Object.keys(state.history.present.study.layouts ?? {}).filter((layout) => {
+  const { problems } = own(state.history.present.optima, layout) ?? NO_OPTIMUM;
+  const problem = problemOf(state, layout);
+  return problem !== "" && problems.length > 0 && !problems.includes(problem);
+});
+
+/** @type {import("./state/document.js").Optimum} */
+const NO_OPTIMUM = { problems: [], values: {} };
+
+/** The digest of what an optimum of a layout is asked for; empty where nothing varies, or while it is not known.
+ * @param {State} state @param {string} layout @returns {string} */
+const problemOf = (state, layout) => answerOf(state, "decision").value?.rows
+  .find((/** @type {any} */ row) => row.layout === layout)?.problem_digest ?? "";
 
 /** The design that is edited and the one that it is compared with; that one alone if it is edited.
  * @param {Document} document */

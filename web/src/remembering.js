@@ -41,12 +41,13 @@ export async function unpacked(text) {
 /** A document of what was read, as far as it is one. @param {any} read @returns {Document | null} */
 export function documentFrom(read) {
   if (read === null || typeof read !== "object" || typeof read.study !== "object" || read.study === null) return null;
-  const { study, layout, strut, values, ranges, designs } = { ...empty(), ...read };
+  const { study, layout, strut, values, optima, ranges, designs } = { ...empty(), ...read };
   return {
     study,
     layout: String(layout),
     strut: strut === null ? null : String(strut),
     values: values ?? {},
+    optima: Object.fromEntries(Object.entries(optima ?? {}).filter(([, of]) => Array.isArray(of?.problems))),
     ranges: ranges ?? {},
     designs: Array.isArray(designs) ? designs : [],
   };

@@ -51,9 +51,9 @@ export function takeOptima(store, designs, gesture = null, of = null) {
     const other = `a layout ${best.layout} that has ${Object.keys(values).join(", ")} free`;
     return `${doubts}These are values of ${other}, which is not in the study that is open; nothing was changed.`;
   }
-  const all = Object.fromEntries(taken.map(({ best, values }) => [best.layout, values]));
-  store.change({ type: "valuedAll", values: all }, gesture);
-  if (of === study) store.dispatch({ type: "optimised", study, index: taken[0].best.index, values: all });
+  const optima = Object.fromEntries(taken.map(({ best, values }) =>
+    [best.layout, { problems: best.problem_digests ?? [], values }]));
+  store.change({ type: "optimised", optima }, gesture);
   return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
     best.layout + atBounds(best)).join(", ")}.`;
 }

@@ -14,6 +14,7 @@ import {
   placed,
   withUnit,
 } from "../src/state/scale.js";
+import { documentFrom } from "../src/remembering.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited } from "../src/panels/asked.js";
 import { judging, quickMethod } from "../src/methods.js";
@@ -47,7 +48,8 @@ const CHANGES = [
   { type: "placed", place: ["vehicle", "sprung_mass"], value: "200 kg" },
   { type: "placed", place: ["title"], value: undefined },
   { type: "valued", layout: "S1", values: { c: "3 kN s/m" } },
-  { type: "valuedAll", values: { S1: { c: "3 kN s/m" }, S2: { c: "7 kN s/m" } } },
+  { type: "optimised", optima: { S1: { problems: ["a"], values: { c: "3 kN s/m" } },
+    S2: { problems: ["b"], values: { c: "7 kN s/m" } } } },
   { type: "ranged", place: "elements.k", from: "1 kN/m", to: "1 MN/m" },
   { type: "freed", place: ["elements", "b"], name: "b", from: "1 kg", to: "2000 kg" },
   { type: "fixed", place: ["elements", "c"], name: "c", text: "4 kN s/m" },
@@ -411,17 +413,33 @@ test("a number without a unit has the unit that stands there, and a road class t
     assert.equal(completed(typed, before), text);
 });
 
-test("optimised values are stale once the vehicle or the goal is another one, not once the title is", () => {
-  const values = { S1: { c: "3 kN s/m" }, S2: { c: "7 kN s/m" } };
+test("values are stale while the library says that another problem is asked than they solve", () => {
   const study = { ...STUDY, study: { ...STUDY.study, indices: ["J1", "J3"] } };
-  let state = reduce(initial(), { type: "changed", change: { type: "opened", study } });
-  state = reduce(state, { type: "parted", parts: partsOf(study) });
-  assert.deepEqual(staleLayouts(state), []);
-  state = reduce(state, { type: "optimised", study, index: "J1", values });
-  const changed = (/** @type {any} */ change) => reduce(state, { type: "changed", change });
-  assert.deepEqual(staleLayouts(changed({ type: "placed", place: ["title"], value: "truck" })), []);
-  const heavier = changed({ type: "placed", place: ["vehicle", "sprung_mass"], value: "320 kg" });
-  assert.deepEqual([staleLayouts(heavier), bestOf(heavier, "S2")], [["S1", "S2"], {}]);
-  assert.deepEqual(staleLayouts(changed({ type: "placed", place: ["elements", "b"], value: "200 kg" })), ["S2"]);
-  assert.deepEqual(staleLayouts(reduce(state, { type: "viewed", view: { index: "J3" } })), ["S1", "S2"]);
+  const optimum = (/** @type {string[]} */ ...problems) => ({ problems, values: { c: "3 kN s/m" } });
+  const opened = { ...initial(), about: { ...ABOUT, indices: [] } };
+  /** @param {any} state @param {{[layout: string]: string}} digests what the library says that is asked */
+  const decided = (state, digests) => {
+    const rows = Object.entries(digests).map(([layout, problem_digest]) => ({ layout, problem_digest }));
+    const question = questions(state).find(({ panel }) => panel === "decision")?.key ?? "";
+    return reduce(state, { type: "answered", panel: "decision", question, value: { rows } });
+  };
+  const changed = (/** @type {any} */ state, /** @type {any[]} */ ...changes) =>
+    changes.reduce((now, change) => reduce(now, { type: "changed", change }), state);
+  const optima = { S1: optimum("a"), S2: optimum("b", "c") }; // S2 is a point of a front
+  const state = changed(opened, { type: "opened", study }, { type: "optimised", optima });
+  assert.deepEqual(staleLayouts(state), []); // nothing is known yet
+  assert.deepEqual(staleLayouts(decided(state, { S1: "a", S2: "c" })), []);
+  assert.deepEqual(bestOf(decided(state, { S1: "a", S2: "c" }), "S1"), { c: "3 kN s/m" });
+  const other = decided(state, { S1: "d", S2: "d" });
+  assert.deepEqual([staleLayouts(other), bestOf(other, "S1")], [["S1", "S2"], {}]);
+  assert.deepEqual(staleLayouts(decided(state, { S1: "", S2: "b" })), []); // nothing of S1 may vary
+  const document = documentFrom(JSON.parse(JSON.stringify(state.history.present)));
+  const restored = changed(opened, { type: "restored", document });
+  assert.deepEqual(staleLayouts(decided(restored, { S1: "d", S2: "b" })), ["S1"]);
+  const renamed = changed(state, { type: "selected", layout: "S1" }, { type: "layoutRenamed", name: "first" });
+  assert.deepEqual(staleLayouts(decided(renamed, { first: "d", S2: "b" })), ["first"]);
+  const undone = reduce(state, { type: "undone" });
+  assert.deepEqual(staleLayouts(decided(undone, { S1: "d", S2: "d" })), []); // no optimum is there
+  const odd = documentFrom({ study, optima: { S1: null, S2: { problems: "b" } } });
+  assert.deepEqual(odd?.optima, {});
 });

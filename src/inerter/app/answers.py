@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import baseline_of, designs_of, one_design
+from inerter.app.designs import baseline_of, designs_of, one_design, problem_digest
 from inerter.app.documents import study_for
 from inerter.app.histories import history
 from inerter.app.panels import PANELS
@@ -206,6 +206,7 @@ def _describe_outcome(study: Study, outcome: Outcome) -> Answer:
         **outcome.to_json(),
         "notes": ["".join(map(str, note)) for note in outcome.notes],
         "texts": texts_of(study, outcome.parameters),
+        "problem_digests": [problem_digest(study, outcome.layout, outcome.index)],
     }
 
 

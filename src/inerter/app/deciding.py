@@ -9,7 +9,7 @@ from math import inf, isfinite, log, nan
 from typing import Any
 
 from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
-from inerter.app.designs import Design, baseline_of, designs_of, one_design
+from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
 from inerter.app.index_values import limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
@@ -160,6 +160,7 @@ class _DesignComparison:
             "rank": rank,
             **{key: told[0][key] for key in keys if key not in ("index", "title", "unit")},
             "unchosen": list(design.unchosen),
+            "problem_digest": problem_digest(self.study, design.layout, self.indices[0]),
             "is_baseline": result.is_baseline,
             "others": [{key: one[key] for key in keys} for one in told[1:]],
             "limits": limits,

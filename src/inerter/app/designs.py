@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +11,7 @@ from math import isfinite, sqrt
 from typing import Any
 
 from inerter.errors import DesignError
+from inerter.files.study.limits import limits_in
 from inerter.files.study.study import Study
 from inerter.methods.composite_index import IndexLike
 from inerter.networks.elements import Free
@@ -17,6 +20,7 @@ from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
 Values = Mapping[str, "str | float"]
+_NAME = re.compile(r"'(\w+)'")
 
 
 @dataclass(frozen=True)
@@ -75,6 +79,23 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     }
     unchosen = tuple(key for key in all_free if key not in values)
     return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen, all_free)
+
+
+def problem_digest(study: Study, layout: str, index: str) -> str:
+    """Digest of the problem that an optimum of a layout solves; empty without a design variable.
+
+    It depends on vehicle, network, bounds, objective and limits, and not on the names of elements.
+    """
+    vehicle = study.design(layout)
+    if not vehicle.free_values():
+        return ""
+    numbers: dict[str, str] = {}
+
+    def numbered(name: re.Match[str]) -> str:
+        return numbers.setdefault(name[1], f"#{len(numbers)}") if name[1] in study.elements else name[0]
+
+    problem = repr((vehicle, study.resolve_index(index, layout), limits_in(study)))
+    return hashlib.sha256(_NAME.sub(numbered, problem).encode()).hexdigest()[:16]
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:

@@ -9,6 +9,7 @@ from typing import Any
 import xarray as xr
 
 from inerter.app.answers import Body, texts_of
+from inerter.app.designs import problem_digest
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.atomic_io import write_text
@@ -60,6 +61,7 @@ def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
         )
     return {
         "layout": found.layout,
+        "problem_digests": [problem_digest(study, found.layout, index) for index in study.trade_off],
         "points": points,
         "jumps": found.jumps,
         "knee": found.knee,

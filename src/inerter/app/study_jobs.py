@@ -13,7 +13,7 @@ from typing import Any
 from inerter.app.answers import optimum
 from inerter.app.comparing import compare_designs
 from inerter.app.deciding import margins_of
-from inerter.app.designs import designs_of
+from inerter.app.designs import designs_of, problem_digest
 from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.kinds import RESULTS, JobStopped, Tell
@@ -92,8 +92,12 @@ def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
 
 
 def _as_data(result: StudyResult) -> Any:
-    """Results as `inerter run --json` prints them."""
-    return json.loads("".join(as_text(result)))
+    """Results as `inerter run --json` prints them, with the digests of the problems that the designs solve."""
+    data, study = json.loads("".join(as_text(result))), result.study
+    for design in data["designs"]:
+        here = study.at([design[sweep.label] for sweep in study.sweeps])
+        design["problem_digests"] = [problem_digest(here, design["layout"], design["index"])]
+    return data
 
 
 def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:

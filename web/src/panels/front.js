@@ -20,7 +20,8 @@ import { Files } from "./files.js";
  * @typedef {Outcome & {values: {[index: string]: any}, texts: {[name: string]: string}, network?: string,
  * improvements?: {[index: string]: number | null}}} Point */
 /** `knee`: the place of the knee among the points.
- * @typedef {Outcome & {layout: string, knee: number | null, points: Point[]}} Front */
+ * @typedef {Outcome & {layout: string, knee: number | null, points: Point[],
+ * problem_digests?: string[]}} Front */
 /** An index with its title and unit. @typedef {{index: string, title: string, unit: string}} Index */
 /** A point among all: `number` among those of its front, from 1 on.
  * @typedef {{front: Front, point: Point, number: number, isKnee: boolean}} Entry */
@@ -71,8 +72,9 @@ export function FrontResult({ store, api, job }) {
   /** @type {Front[]} */
   const fronts = result.fronts;
   /** @param {Entry} entry */
-  const take = ({ front: { layout }, point: { texts, status, message } }) => {
-    takeAndTell(store, { layout, index: indices.map(({ index }) => index).join(" against "), texts, status, message });
+  const take = ({ front: { layout, problem_digests }, point: { texts, status, message } }) => {
+    takeAndTell(store, { layout, index: indices.map(({ index }) => index).join(" against "), texts, status, message,
+      problem_digests });
     if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout });
   };
   return html`<${FrontView} indices=${indices} fronts=${fronts} take=${take}

@@ -2,8 +2,8 @@
 // next.
 //
 // `study` is the file, as JSON of its TOML tables, with quantities as they were written. What a file does not hold
-// stands
-// beside it: the present values of free elements (by layout), the ranges of sliders, designs by name.
+// stands beside it: the present values of free elements and the last optimum by layout, ranges of sliders, designs by
+// name.
 
 /** @typedef {{from: string, to: string, [more: string]: unknown}} Range */
 /** @typedef {string | Range | {[key: string]: unknown}} ElementEntry */
@@ -12,15 +12,18 @@
  * elements?: {[name: string]: ElementEntry}, layouts?: {[name: string]: LayoutEntry}, study?: {[key: string]: any}}}
  * Study */
 /** @typedef {{[layout: string]: {[element: string]: string}}} Values */
-/** @typedef {{name: string, study: Study, layout: string, values: Values}} Design */
-/** @typedef {{study: Study, layout: string, strut: string | null, values: Values, ranges: {[place: string]: {from:
- * string, to: string}}, designs: Design[]}} Document */
+/** Values that are the best of a layout, and digests of the problems that they solve: one, or one for each index of a
+ * front. @typedef {{problems: string[], values: {[element: string]: string}}} Optimum */
+/** @typedef {{[layout: string]: Optimum}} Optima */
+/** @typedef {{name: string, study: Study, layout: string, values: Values, optima?: Optima}} Design */
+/** @typedef {{study: Study, layout: string, strut: string | null, values: Values, optima: Optima,
+ * ranges: {[place: string]: {from: string, to: string}}, designs: Design[]}} Document */
 
 /** @typedef {{type: "opened", study: Study}
  *  | {type: "restored", document: Document}
  *  | {type: "placed", place: string[], value: unknown}
  *  | {type: "valued", layout: string, values: {[element: string]: string}}
- *  | {type: "valuedAll", values: Values}
+ *  | {type: "optimised", optima: Optima}
  *  | {type: "ranged", place: string, from: string, to: string}
  *  | {type: "freed", place: string[], name: string, from: string, to: string, method?: string}
  *  | {type: "fixed", place: string[], name: string, text: string}
@@ -40,7 +43,8 @@
  *  | {type: "designRemoved", name: string}} Change */
 
 /** What is there when nothing was opened. @returns {Document} */
-export const empty = () => ({ study: {}, layout: "", strut: null, values: {}, ranges: {}, designs: [] });
+export const empty = () => ({ study: {}, layout: "", strut: null, values: {}, optima: {}, ranges: {},
+  designs: [] });
 
 /** @type {{[type: string]: (document: Document, change: any) => Document}} */
 const CHANGES = {
@@ -49,7 +53,8 @@ const CHANGES = {
   placed: (document, { place, value }) => withEntry(document, place, value),
   valued: (document, { layout, values }) =>
     ({ ...document, values: { ...document.values, [layout]: { ...own(document.values, layout), ...values } } }),
-  valuedAll: (document, { values }) => ({ ...document, values: { ...document.values, ...values } }),
+  optimised: (document, { optima }) => ({ ...document, optima: { ...document.optima, ...optima },
+    values: { ...document.values, ...mapValues(optima, ({ values }) => values) } }),
   ranged: (document, { place, from, to }) => ({ ...document, ranges: { ...document.ranges, [place]: { from, to } } }),
   freed: (document, { place, name, from, to, method }) => {
     const entry = entryAt(document.study, place);
@@ -80,27 +85,31 @@ const CHANGES = {
   networkTaken: (document, { layout, entry, elements, values }) => {
     const study = { ...document.study, elements: { ...document.study.elements, ...elements } };
     const chosen = { ...document.values, [layout]: { ...own(document.values, layout), ...values } };
-    return standing(withEntry({ ...document, study, layout, values: chosen }, ["layouts", layout], entry));
+    const optima = without(document.optima, layout);
+    return standing(withEntry({ ...document, study, layout, values: chosen, optima }, ["layouts", layout], entry));
   },
   selected: (document, { layout, strut }) => standing({ ...document, layout, strut: strut ?? null }),
   layoutAdded: (document, { name }) => {
     const values = { ...document.values, [name]: own(document.values, document.layout) ?? {} };
+    const optimum = own(document.optima, document.layout);
+    const optima = optimum ? { ...document.optima, [name]: optimum } : document.optima;
     const like = own(document.study.layouts, document.layout) ?? Object.keys(document.study.elements ?? {})[0] ?? "";
     const study = withBaseline(document.study, name);
-    return standing(withEntry({ ...document, study, values, layout: name }, ["layouts", name], like));
+    return standing(withEntry({ ...document, study, values, optima, layout: name }, ["layouts", name], like));
   },
   layoutRenamed: (document, { name }) => {
-    const { values, layout: old } = document;
+    const { values, optima, layout: old } = document;
     const study = withBaseline(document.study, name);
     const layouts = study.layouts ?? {};
     if (own(layouts, old) === undefined || own(layouts, name) !== undefined) return document;
     const renamed = { ...document, layout: name, values: keyRenamed(values, old, name),
-      study: { ...study, layouts: keyRenamed(layouts, old, name) } };
+      optima: keyRenamed(optima, old, name), study: { ...study, layouts: keyRenamed(layouts, old, name) } };
     return study.study?.baseline === old ? withEntry(renamed, ["study", "baseline"], name) : renamed;
   },
   layoutRemoved: (document) => {
-    const { study, values, layout } = document;
-    const rest = withEntry({ ...document, values: without(values, layout) }, ["layouts", layout], undefined);
+    const { study, layout } = document;
+    const [values, optima] = [without(document.values, layout), without(document.optima, layout)];
+    const rest = withEntry({ ...document, values, optima }, ["layouts", layout], undefined);
     return standing(study.study?.baseline === layout ? withEntry(rest, ["study", "baseline"], undefined) : rest);
   },
   strutsParted: (document, { struts }) => {
@@ -113,14 +122,15 @@ const CHANGES = {
   elementRenamed: (document, { old, name, study }) => elementRenamed(document, old, name, study),
   elementRemoved: (document, { name }) => withEntry(document, ["elements", name], undefined),
   designKept: (document, { name }) => {
-    const { study, layout, values } = document;
+    const { study, layout, values, optima } = document;
     const others = document.designs.filter((design) => design.name !== name);
-    return { ...document, designs: [...others, { name, study, layout, values }] };
+    return { ...document, designs: [...others, { name, study, layout, values, optima }] };
   },
   designTaken: (document, { name }) => {
     const design = document.designs.find((each) => each.name === name);
     if (design === undefined) return document;
-    return standing({ ...document, study: design.study, layout: design.layout, values: design.values });
+    const { study, layout, values, optima = {} } = design;
+    return standing({ ...document, study, layout, values, optima });
   },
   designRemoved: (document, { name }) =>
     ({ ...document, designs: document.designs.filter((design) => design.name !== name) }),
@@ -183,6 +193,7 @@ export function nextLayout(document) {
  * @param {Document} document @param {string} old @param {string} name @param {Study} study @returns {Document} */
 function elementRenamed(document, old, name, study) {
   const values = mapValues(document.values, (of) => keyRenamed(of, old, name));
+  const optima = mapValues(document.optima, (of) => ({ ...of, values: keyRenamed(of.values, old, name) }));
   const [before, after] = [`elements.${old}`, `elements.${name}`];
   const ranges = Object.fromEntries(
     Object.entries(document.ranges).map(([place, range]) => {
@@ -190,7 +201,7 @@ function elementRenamed(document, old, name, study) {
       return [inside ? after + place.slice(before.length) : place, range];
     }),
   );
-  return standing({ ...document, values, ranges, study });
+  return standing({ ...document, values, optima, ranges, study });
 }
 
 /** What a table itself has by a name; a name such as `constructor` is one like any other. @param {any} table

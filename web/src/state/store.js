@@ -2,7 +2,7 @@
 // nothing else changes anything.
 
 import { answered, asked, turned } from "./answers.js";
-import { after, empty, isChange, mapValues, without } from "./document.js";
+import { after, empty, isChange, without } from "./document.js";
 import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
 
@@ -24,16 +24,14 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * where it is none of them; `output`: of the motion, the first where it is empty; `ghosts`: designs whose responses are
  * drawn too; `method`: by which is judged, the quick one where it is empty; `against`: what others are compared with;
  * `across`: the drawing over the width of the page; `tall`: the tabs over the height of it */
-/** Values that are the best of a layout. @typedef {{study: Study, index: string, values: {[name: string]: string}}}
- * Optimum */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
- * known, by their texts. `best`: the last optimum of each layout; `lit`: the element that is pointed at; `typed`: what
- * was typed into a field, and is not taken over.
+ * known, by their texts. `turn`: how many documents have taken the place of another one. `lit`: the element that is
+ * pointed at; `typed`: what was typed into a field, and is not taken over.
  * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
  * choosing: Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
- * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, best: {[layout: string]: Optimum},
+ * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, turn: number,
  * lit: string | null, records: any[], view: View,
  * about: any, connection: Connection, messages: Message[], typed: Typed | null}} State */
 
@@ -46,7 +44,6 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "sought", panel: string, parameters: any}
  *  | {type: "choosing", study: Study}
  *  | {type: "chosen", study: Study}
- *  | {type: "optimised", study: Study, index: string, values: {[layout: string]: {[name: string]: string}}}
  *  | {type: "lit", name: string | null}
  *  | {type: "measured", quantities: {[key: string]: {value?: number, sentence?: string}}}
  *  | {type: "parted", parts: Parts}
@@ -71,7 +68,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @returns {State} */
 export const initial = () => ({
   history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
-  parts: null, trees: {}, best: {}, lit: null, records: [], about: null, connection: "connecting", messages: [],
+  parts: null, trees: {}, turn: 0, lit: null, records: [], about: null, connection: "connecting", messages: [],
   typed: null,
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
@@ -85,7 +82,7 @@ const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another 
 /** The state with another document in it: nothing that was said or answered of the one before is about it.
  * @param {State} state @param {DocumentHistory} history @returns {State} */
 const elsewhere = (state, history) =>
-  ({ ...state, history, answers: turned(state.answers), messages: [], typed: null });
+  ({ ...state, history, turn: state.turn + 1, answers: turned(state.answers), messages: [], typed: null });
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
@@ -106,8 +103,6 @@ const STEPS = {
   sought: (state, { panel, parameters }) => ({ ...state, sought: { ...state.sought, [panel]: parameters } }),
   choosing: (state, { study }) => ({ ...state, choosing: study }),
   chosen: (state, { study }) => (state.choosing === study ? { ...state, choosing: null } : state),
-  optimised: (state, { study, index, values }) =>
-    ({ ...state, best: { ...state.best, ...mapValues(values, (of) => ({ study, index, values: of })) } }),
   lit: (state, { name }) => (state.lit === name ? state : { ...state, lit: name }),
   measured: (state, { quantities }) => ({ ...state, quantities: { ...state.quantities, ...quantities } }),
   parted: (state, { parts }) => ({ ...state, parts, trees: { ...treesIn(parts), ...state.trees } }),

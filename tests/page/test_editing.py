@@ -182,3 +182,34 @@ def test_an_element_is_marked_wherever_it_is(visitor: Any) -> None:
         page.mouse.move(2, 400)
         page.wait_for_function(f"before => ({picture})() === before", arg=before)
         assert page.locator(".amount.chosen, .element.lit").count() == 0
+
+
+AT_ONCE = """([layout, text]) => {
+  document.querySelector(`.answers .pick[title=${layout}]`).click();
+  const field = document.getElementById("entry elements.c");
+  field.focus();
+  document.execCommand("insertText", false, text);
+  return new Promise((done) => setTimeout(() => {
+    field.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+    done();
+  }));
+}"""
+
+
+@pytest.mark.campaign
+def test_what_is_typed_right_after_a_click_belongs_to_the_layout_that_was_clicked(visitor: Any) -> None:
+    page = visitor.page
+    visitor.settled()
+
+    def shown(layout: str) -> str:
+        page.locator(f".answers .pick[title={layout}]").click()
+        page.wait_for_selector(f".values h3:has-text('Strut {layout}')")
+        return str(page.get_attribute("[id='entry elements.c']", "title"))
+
+    layouts = page.locator(".answers .pick").evaluate_all("all => all.map(each => each.title)")
+    values = {layout: shown(layout) for layout in layouts}
+    for number, layout in enumerate(layouts):
+        values[layout] = f"{1000 + number} N s/m"
+        page.evaluate(AT_ONCE, [layout, values[layout]])
+        page.wait_for_function("text => document.getElementById('entry elements.c').title === text", arg=values[layout])
+        assert {each: shown(each) for each in layouts} == values

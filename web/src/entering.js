@@ -10,9 +10,11 @@ import { takenApart } from "./state/scale.js";
  * `sentence` why it is none. @typedef {{id: string, text: string, unit: string, change: Change,
  * sentence?: string}} Typed */
 
-/** Takes over what was typed in the place of `before`. @param {Store} store
- * @param {{id: string, unit: string, before: string}} field @param {string} text @param {Change} change */
-export function enter(store, { id, unit, before }, text, change) {
+/** Takes over what was typed in the place of `before`, unless another document has come since `turn`.
+ * @param {Store} store @param {{id: string, unit: string, before: string, turn: number}} field
+ * @param {string} text @param {Change} change */
+export function enter(store, { id, unit, before, turn }, text, change) {
+  if (turn !== store.get().turn) return;
   if (isOf(store.get(), unit, before, text)) store.change(change);
   else store.dispatch({ type: "typed", typed: { id, text, unit, change } });
 }

@@ -6,7 +6,7 @@ import "./vehicles/vehicles.css";
 import "./plots/plots.css";
 import { Lost, createApi } from "./api.js";
 import { isUnauthorised, keepAsking } from "./asking.js";
-import { Page } from "./page.js";
+import { Page, keepDrawing } from "./page.js";
 import { html } from "./parts/html.js";
 import { fromAddress, keepRemembering, remembered, unpacked } from "./remembering.js";
 import { createStore } from "./state/store.js";
@@ -100,7 +100,7 @@ async function compiled() {
 }
 
 const place = /** @type {HTMLElement} */ (document.getElementById("page"));
-render(html`<${Page} store=${store} api=${api} enter=${enter} />`, place);
+keepDrawing(store, () => render(html`<${Page} store=${store} api=${api} enter=${enter} />`, place));
 keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()), () => findWork(store, api));
 keepRemembering(store);
 void connect();

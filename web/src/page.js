@@ -38,17 +38,7 @@ const TABS = [
 
 /** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
 export function Page({ store, api, enter }) {
-  const [, setState] = useState(store.get());
   const [keys, setKeys] = useState(false);
-  useEffect(() => {
-    const { soon, now } = inFrames(() => setState(store.get()));
-    for (const act of ACTS) addEventListener(act, now, { capture: true });
-    const leave = store.subscribe(soon);
-    return () => {
-      leave();
-      for (const act of ACTS) removeEventListener(act, now, { capture: true });
-    };
-  }, [store]);
   useEffect(() => listen(store, api, () => setKeys(true)), [store, api]);
   const state = store.get();
   const blank = Object.keys(state.history.present.study).length === 0;
@@ -74,21 +64,23 @@ export function Page({ store, api, enter }) {
 
 const ACTS = ["keydown", "click", "change", "submit"];
 
-/** At most one call a frame, so that sixty steps of a slider draw what a screen can show. What a key or a button
- * does is about what is drawn: a call that is due comes before it, `now`, however late the frame is.
- * @param {() => void} told */
-function inFrames(told) {
-  let due = false;
+/** Draws the page whenever the state is another one, at most once a frame, so that sixty steps of a slider draw what a
+ * screen can show. What a key or a button does is about what is drawn: what is due comes before it, however late the
+ * frame is; and what it did is drawn after it at once, before anything is typed into what is there no longer.
+ * @param {Store} store @param {() => void} draw */
+export function keepDrawing(store, draw) {
+  let due = true;
   const now = () => {
     if (!due) return;
     due = false;
-    told();
+    draw();
   };
-  const soon = () => {
+  for (const act of ACTS) for (const capture of [true, false]) addEventListener(act, now, { capture });
+  store.subscribe(() => {
     if (!due) requestAnimationFrame(now);
     due = true;
-  };
-  return { soon, now };
+  });
+  now();
 }
 
 /** @param {{store: Store}} props */

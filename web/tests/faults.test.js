@@ -47,7 +47,7 @@ for (const name of NAMES) {
 }
 
 const OPEN = { type: "opened", study: { ...studyWith("b"), elements: { c: "1 kN s/m", b: "1 kg" } } };
-const FIELD = { id: "elements.c", unit: "N s/m", before: "1 kN s/m" };
+const FIELD = { turn: 1, id: "elements.c", unit: "N s/m", before: "1 kN s/m" };
 
 /** A store with this study, and what is typed into the field of its damper. @param {string} text */
 function typedInto(text) {
@@ -95,6 +95,16 @@ for (const text of ["5 kg", "12 furlong", "much", "7", "9 lbf s/ft"]) {
     assert.equal(damper(store), FIELD.before);
   });
 }
+
+test("what was typed for a study is not taken over into another one that came meanwhile", () => {
+  const store = createStore();
+  store.change(/** @type {any} */ (OPEN));
+  store.change(/** @type {any} */ (OPEN));
+  enter(store, FIELD, "2 kN s/m", { type: "placed", place: ["elements", "c"], value: "2 kN s/m" });
+  assert.equal(damper(store), FIELD.before);
+  enter(store, { ...FIELD, turn: 2 }, "2 kN s/m", { type: "placed", place: ["elements", "c"], value: "2 kN s/m" });
+  assert.equal(damper(store), "2 kN s/m");
+});
 
 test("a layout called like a number does not become the baseline", () => {
   const opened = after(empty(), { type: "opened", study: studyWith("S2") });

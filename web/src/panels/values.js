@@ -42,7 +42,7 @@ export function ValuesPanel({ store, api }) {
   const names = new Set(other.map(({ path }) => path[1]));
   const sections = [...new Set(rows.map(({ path }) => path[0]))].filter((section) => section !== ELEMENTS);
   /** @param {NumberRow[]} several */
-  const amounts = (several) => several.map((row) => html`<${AmountRow} key=${idOf(row)} store=${store}
+  const amounts = (several) => several.map((row) => html`<${AmountRow} key=${`${layout} ${idOf(row)}`} store=${store}
     amount=${amountOf(state, row)} chosen=${chosen !== null && row.name === chosen}
     lit=${state.lit !== null && row.path[0] === ELEMENTS && row.path[1] === state.lit}
     wide=${several.some((each) => labelOf(each).length > SHORT)} />`);
@@ -193,6 +193,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
     && Math.abs(upper) > Math.abs(lower);
   const wrong = wronglyTyped(state, id);
   const problems = wrong ? [{ sentence: wrong }] : problemsOf(state).filter((problem) => isAt(problem, place));
+  const { turn } = state;
   const gesture = `slide ${id}`;
   /** @param {number} next */
   const slide = (next) => {
@@ -230,7 +231,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
-      done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text }, value, set(value))} />
+      done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />
     ${row.may_be_free && html`<input type="checkbox" checked=${free} aria-label=${`${label} may vary`}
       onChange=${vary} />`}
     ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
@@ -251,10 +252,11 @@ function Bounds({ store, amount }) {
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
   const id = place.join(".");
+  const { turn } = store.get();
   /** @param {string} value @param {"from" | "to"} end */
   const setEnd = (value, end) => {
     const next = { ...range, [end]: value };
-    enter(store, { id, unit: row.unit, before: range[end] }, value, free ? { type: "placed", place, value: next }
+    enter(store, { id, unit: row.unit, before: range[end], turn }, value, free ? { type: "placed", place, value: next }
       : { type: "ranged", place: id, ...next });
   };
   return html`<details class="bounds">
@@ -295,14 +297,15 @@ function dragged({ currentTarget, clientX: begun, pointerId, button, pointerType
   for (const name of ["pointerup", "pointercancel"]) field.addEventListener(name, end, { signal: over.signal });
 }
 
-/** A text that is taken over with Enter or on leaving; while nobody is in it, it shows no more digits than fit, and can
- * be dragged. @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void,
+/** A text that is taken over with Enter or on leaving, to where it belonged when it was begun; while nobody is in
+ * it, it shows no more digits than fit, and can be dragged.
+ * @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void,
  * drag?: ((event: PointerEvent) => void) | false}} props */
 export function Entry({ id, label, text, wrong = false, done, drag = false }) {
-  const [typed, setTyped] = useState(/** @type {string | null} */ (null));
+  const [typed, setTyped] = useState(/** @type {{now: string, before: string, done: typeof done} | null} */ (null));
   const [inside, setInside] = useState(false);
   const finish = () => {
-    if (typed !== null && typed.trim() !== text) done(completed(typed.trim(), text));
+    if (typed !== null && typed.now.trim() !== typed.before) typed.done(completed(typed.now.trim(), typed.before));
     setTyped(null);
   };
   /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost.
@@ -314,9 +317,9 @@ export function Entry({ id, label, text, wrong = false, done, drag = false }) {
     setInside(true);
   };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text}
-    value=${typed ?? (inside ? text : printed(brief(text)))}
+    value=${typed?.now ?? (inside ? text : printed(brief(text)))}
     aria-invalid=${wrong} autocomplete="off" spellcheck=${false} onPointerDown=${drag}
-    onInput=${textHandler(setTyped)} onFocus=${enter}
+    onInput=${textHandler((now) => setTyped({ before: text, done, ...typed, now }))} onFocus=${enter}
     onBlur=${() => {
       finish();
       setInside(false);

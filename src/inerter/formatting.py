@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from inerter.units import PURE
@@ -337,6 +337,16 @@ def join_units(text: str) -> str:
     ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
     """
     return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
+
+
+def format_list(words: Sequence[str]) -> str:
+    """Words one after another, as a sentence has them."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def capital(text: str) -> str:
+    """The text as the beginning of a sentence."""
+    return text[:1].upper() + text[1:]
 
 
 def _scale(size: float, unit: str, digits: int = _DIGITS) -> Scale:

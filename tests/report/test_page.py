@@ -17,6 +17,7 @@ from inerter.figures.layouts import draw_layouts
 from inerter.figures.study import draw_study
 from inerter.files.study.loading import load_study
 from inerter.report.page import environment, report, write_report
+from inerter.report.problem_statement import index_rows
 from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
@@ -229,3 +230,29 @@ def test_networks_are_drawn_where_the_question_is(study, tmp_path):
     names = Counter(value for key, value in page.attributes if key == "id")
     assert set(names.values()) == {1}
     assert asked.count("This drawing is wider than the screen") == len(study.layouts)
+
+
+def test_an_index_of_several_outputs_says_how_they_are_combined():
+    """The sentences on a half car, each held to the sum of norms of single outputs that it states."""
+    half = load_study(EXAMPLES / "half-car.toml")
+    told = dict(index_rows(half))
+    assert told["Dynamic tyre load (J3)"] == "sum of the r.m.s. values of tyre front load and tyre rear load"
+    assert told["Ride comfort (J1)"].startswith("sum of the r.m.s. values of sprung acceleration and ")
+    lever = float(told["Ride comfort (J1)"].split(" and ")[1].removesuffix(" m/rad times pitch acceleration"))
+    parts = {
+        "J3": {"tyre_front_load": 1.0, "tyre_rear_load": 1.0},
+        "J1": {"sprung_acceleration": 1.0, "pitch_acceleration": lever},
+    }
+    car = it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, *[it.Spring(60e3) | it.Damper(3e3)] * 2)
+    for name, outputs in parts.items():
+        index = half.index(name)
+        single = [it.RandomResponse({output: 1.0}, index.road) for output in outputs]
+        rms = [it.evaluate(car, one, it.Norm()).value for one in single]
+        total = sum(weight * each for weight, each in zip(outputs.values(), rms, strict=True))
+        assert it.evaluate(car, index, it.Norm()).value == pytest.approx(total, rel=1e-10)
+
+
+def test_a_peak_gain_says_from_what_to_what(study):
+    assert dict(index_rows(study))["Dynamic load carrying (J5)"] == (
+        "largest gain over frequency from sprung force to sprung displacement"
+    )

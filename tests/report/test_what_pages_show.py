@@ -15,6 +15,7 @@ from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_tex
 import inerter as it
 from inerter.figures.study import study_figures
 from inerter.figures.style import style_context
+from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.roads import MeasuredLine
 from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
@@ -321,7 +322,8 @@ def test_a_budget_is_told_with_both_ends_of_the_range_that_it_is_the_end_of(stud
 @pytest.mark.parametrize("rows", [1, 12, 13, 40])
 def test_long_tables_of_facts_may_go_on_on_the_next_sheet(study, tmp_path, rows):
     elements = {f"k{i}": it.Spring(1e3 + i) for i in range(rows)}
-    page = report(designs(), replace(study, elements=elements), tmp_path)
+    layouts = {"S1": StrutLayout({"strut": " | ".join(elements)})}
+    page = report(designs(), replace(study, elements=elements, layouts=layouts), tmp_path)
     table = re.search(r'<table class="([^"]*)">\s*<caption><span>Elements', page)
     assert table
     assert table[1].split() == ["facts", *(["short"] if rows <= 12 else [])]

@@ -15,10 +15,9 @@ from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult, improvement_bound
 from inerter.errors import Status
-from inerter.figures.labels import format_list
 from inerter.files.study.limits import key_in_words
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity, typeset
+from inerter.formatting import format_list, format_quantity, typeset
 from inerter.methods.compare import Comparison
 from inerter.methods.registry import brief_words_of, decisive_method_clause
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress

@@ -27,6 +27,7 @@ from inerter.files.study.tasks import tasks
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.conclusions import conclusion_sentences
+from inerter.report.problem_statement import index_rows
 from inerter.report.sections import design_sections, task_sections
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text, wrap_text
@@ -75,15 +76,20 @@ def run(
             print(text, end="")
     else:
         road = roads_sentence(loaded)
-        head = [*wrap_text(loaded.title), *(wrap_text(f"{road}.") if road else []), ""]
+        sums = [f"{title}: {what}." for title, what in index_rows(loaded, combined=True)]
+        head = [line for text in (loaded.title, *([f"{road}."] if road else []), *sums) for line in _hanging(text)]
         sections = [*design_sections(result.data), *task_sections(loaded, result.data, result.answers)]
-        print("\n".join([*head, section_text(sections)]))
+        print("\n".join([*head, "", section_text(sections)]))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         told = conclusion_sentences(result.data, loaded, result.answers)
-        print("\n".join(["", *(line for text in told for line in wrap_text(text, subsequent_indent="  "))]))
+        print("\n".join(["", *(line for text in told for line in _hanging(text))]))
     _report_failures(result)
     return (result.status,)
+
+
+def _hanging(text: str) -> list[str]:
+    return wrap_text(text, subsequent_indent="  ")
 
 
 def _pace(study: Study) -> Pace:

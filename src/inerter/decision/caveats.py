@@ -9,7 +9,7 @@ from math import isfinite
 
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import StatusKind
-from inerter.figures.labels import capital, format_list
+from inerter.formatting import capital, format_list
 from inerter.statements import Severity, Statement
 
 Over = Callable[[DesignResult, DesignResult], Improvement | None]

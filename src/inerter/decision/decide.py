@@ -9,7 +9,7 @@ from math import isfinite
 
 from inerter.decision.caveats import Caveat, Contest, Over, caveats_of, unchosen_clause, unknown_limits
 from inerter.decision.results import DesignResult, Improvement
-from inerter.figures.labels import capital, format_list
+from inerter.formatting import capital, format_list
 from inerter.methods.ties import equally_least
 from inerter.statements import Severity, Statement
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isclose
 
-from inerter.figures.labels import format_list, title_with_name
+from inerter.figures.labels import title_with_name
 from inerter.files.study.limits import key_in_words
 from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity, format_share
+from inerter.formatting import format_list, format_quantity, format_share
 from inerter.methods.method import NonlinearitySupport
 from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of
 from inerter.networks.elements import Free

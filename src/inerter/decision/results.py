@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.figures.labels import NOTICEABLE, capital, title_with_name
-from inerter.formatting import format_percent, format_quantity
+from inerter.figures.labels import NOTICEABLE, title_with_name
+from inerter.formatting import capital, format_percent, format_quantity
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from inerter.figures.labels import (
     axis_label,
     by_method,
-    capital,
     compared_layouts,
     index_title,
     indices,
@@ -26,7 +25,7 @@ from inerter.figures.labels import (
     title_with_name,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
-from inerter.formatting import choose_scale, format_percent, typeset
+from inerter.formatting import capital, choose_scale, format_percent, typeset
 
 Array = NDArray[np.float64]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,9 @@ import numpy as np
 from inerter.errors import Status, StatusKind
 from inerter.formatting import (
     Scale,
+    capital,
     choose_scale,
+    format_list,
     format_percent,
     format_quantity,
     is_prefixed,
@@ -207,16 +208,6 @@ def flat_range(entry: xr.Dataset) -> str:
     low, high = float(entry["parameter_low"]), float(entry["parameter_high"])
     unit = str(entry["parameter_unit"].item())
     return f"{format_quantity(low, unit)} to {format_quantity(high, unit)}" if high > WIDE_RANGE * low else ""
-
-
-def format_list(words: Sequence[str]) -> str:
-    """Words one after another, as a sentence has them."""
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def capital(text: str) -> str:
-    """The text as the beginning of a sentence."""
-    return text[:1].upper() + text[1:]
 
 
 def axis_label(what: str, unit: str) -> str:

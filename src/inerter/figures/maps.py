@@ -16,7 +16,6 @@ from inerter.figures.designs import IMPROVEMENT, WORST
 from inerter.figures.labels import (
     NOTICEABLE,
     axis_label,
-    capital,
     compared_layouts,
     held_back,
     index_title,
@@ -28,7 +27,7 @@ from inerter.figures.labels import (
     title_with_name,
 )
 from inerter.figures.style import log_axis, suits_log_axis
-from inerter.formatting import choose_scale, format_number, typeset
+from inerter.formatting import capital, choose_scale, format_number, typeset
 
 Array = NDArray[np.float64]
 

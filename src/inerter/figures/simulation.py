@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import StudyError
 from inerter.figures.curves import thin_curve
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
-from inerter.formatting import choose_scale, format_number, format_range
+from inerter.formatting import capital, choose_scale, format_number, format_range
 from inerter.networks.elements.roles import GuardRole
 from inerter.systems.outputs import force_of
 

@@ -20,7 +20,6 @@ from inerter.figures.labels import (
     by_which,
     compared_layouts,
     criteria,
-    format_list,
     held_back,
     index_title,
     indices,
@@ -37,7 +36,7 @@ from inerter.figures.labels import (
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
-from inerter.formatting import format_number
+from inerter.formatting import format_list, format_number
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side

@@ -17,7 +17,6 @@ from inerter.figures.designs import IMPROVEMENT, WORST
 from inerter.figures.labels import (
     axis_label,
     by_method,
-    capital,
     compared_layouts,
     held_back,
     index_title,
@@ -32,7 +31,7 @@ from inerter.figures.labels import (
     title_with_name,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
-from inerter.formatting import choose_scale
+from inerter.formatting import capital, choose_scale
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,14 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
+from inerter.formatting import format_list, format_quantity
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter, as_filter
-from inerter.systems.input_paths import InputPath
+from inerter.systems.input_paths import InputPath, inputs_of
 from inerter.systems.linear import LinearSystem
+from inerter.systems.outputs import unit_of
+from inerter.units import PURE, combine_units
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]
@@ -92,6 +95,31 @@ class IndexDefinition:
         """Whether the index is a peak gain; else it is made of r.m.s. values."""
         return self.combination is Combination.PEAK_GAIN
 
+    def describe(self, mechanism: Mechanism) -> str:
+        """What is computed, with outputs and inputs in words; `mechanism` as for `definition`.
+
+        >>> import inerter as it
+        >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)).mechanism()
+        >>> it.TyreLoad(it.Road(5e-7, 25.0)).definition(car).describe(car)
+        'r.m.s. value of tyre load'
+        >>> it.LoadCarrying().definition(car).describe(car)
+        'largest gain over frequency from sprung force to sprung displacement'
+        """
+        excited = self.drive.excited_mechanism(mechanism)
+        outputs = [
+            f"{_factor(one.weight, self.unit, unit_of(excited, [one.output]))}{'filtered ' * (passed is not None)}"
+            f"{_words(one.output)}"
+            for one, passed in zip(self.outputs, self.filters, strict=True)
+        ]
+        listed = format_list(outputs)
+        if self.is_peak:
+            inputs = format_list([*map(_words, inputs_of(self.input_paths(mechanism)))])
+            return f"largest gain over frequency from {inputs} to {listed}"
+        if len(outputs) == 1:
+            return f"r.m.s. value of {listed}"
+        of = "sum" if self.combination is Combination.SUM_OF_RMS else "root of the sum of the squares"
+        return f"{of} of the r.m.s. values of {listed}"
+
     def combine(self, rms: Array, weights: Array) -> Array:
         """Index from r.m.s. values (..., outputs) and weights (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
@@ -107,6 +135,18 @@ class IndexDefinition:
     def input_paths(self, mechanism: Mechanism) -> tuple[InputPath, ...]:
         """Input paths of the excitation in the order of their delays; `mechanism` is the excited one."""
         return tuple(sorted(self.drive.input_paths(mechanism), key=lambda path: path.delay))
+
+
+def _factor(weight: float, unit: str, of: str) -> str:
+    """The weight of an output in the unit `of`, in an index in `unit`; empty for one."""
+    if weight == 1.0:
+        return ""
+    return f"{format_quantity(weight, combine_units(unit or PURE, '/', of or PURE))} times "
+
+
+def _words(name: str) -> str:
+    """An output or input in words."""
+    return name.replace("_", " ")
 
 
 class DescribedIndex(Protocol):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from inerter.errors import RecordError, UnitError
-from inerter.formatting import format_quantity
+from inerter.formatting import format_list, format_quantity
 from inerter.records.channels import Channel
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
@@ -55,9 +55,9 @@ def check_present(source: str, chosen: Mapping[str, Channel], given: Mapping[str
     bare = {role: c for role, c in chosen.items() if role not in given and not c.unit.strip()}
     if len(bare) < 2:
         return
-    *others, last = (repr(channel.name) for channel in bare.values())
+    channels = format_list([repr(channel.name) for channel in bare.values()])
     raise RecordError(
-        f"{source}: {', '.join(others)} and {last} have no unit. Name their units, such as ",
+        f"{source}: {channels} have no unit. Name their units, such as ",
         *(Remedy(Action.UNITS, tuple((role, EXAMPLES[role]) for role in bare)), "."),
     )
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray as xr
 
-from inerter.figures.labels import format_list, infeasible, layouts, one_method, swept_words
+from inerter.figures.labels import infeasible, layouts, one_method, swept_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
-from inerter.formatting import format_quantity
+from inerter.formatting import format_list, format_quantity
 from inerter.report.index_summary import sweep_headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.problem_statement import limit_words, of_each

@@ -14,7 +14,6 @@ from inerter.figures.labels import (
     by_method,
     by_which,
     compared_layouts,
-    format_list,
     index_title,
     index_unit,
     indices,
@@ -29,7 +28,7 @@ from inerter.figures.labels import (
     swept_words,
     title_with_name,
 )
-from inerter.formatting import format_percent, format_quantity
+from inerter.formatting import format_list, format_percent, format_quantity
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import decisive_method_clause
 from inerter.methods.ties import equally_least

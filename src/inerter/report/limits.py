@@ -9,7 +9,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
-    format_list,
     index_title,
     indices,
     infeasible,
@@ -20,7 +19,7 @@ from inerter.figures.labels import (
     swept_words,
     title_with_name,
 )
-from inerter.formatting import format_share
+from inerter.formatting import format_list, format_share
 from inerter.report.problem_statement import of_each
 from inerter.table import Column, Content, Quantity, Row, Table, cells
 

@@ -6,7 +6,6 @@ import xarray as xr
 
 from inerter.figures.labels import (
     by_method,
-    capital,
     compared_layouts,
     design_quantity,
     improvement_text,
@@ -19,7 +18,7 @@ from inerter.figures.labels import (
     swept_places,
     title_with_name,
 )
-from inerter.formatting import Scale, choose_scale
+from inerter.formatting import Scale, capital, choose_scale
 from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table, columns
 

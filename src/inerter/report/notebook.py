@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from inerter.errors import OK, Status
-from inerter.figures.labels import capital
-from inerter.formatting import format_number, format_quantity, format_with_interval
+from inerter.formatting import capital, format_number, format_quantity, format_with_interval
 from inerter.identification.fit import Fit
 from inerter.methods.compare import Comparison
 from inerter.methods.method import Estimate

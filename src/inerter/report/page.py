@@ -13,7 +13,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.atomic_io import write_text
-from inerter.figures.labels import capital, swept_places
+from inerter.figures.labels import swept_places
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
@@ -22,13 +22,14 @@ from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer
-from inerter.formatting import join_units, typeset
+from inerter.formatting import capital, join_units, typeset
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.problem_statement import (
     computation,
     condition_rows,
     element_rows,
     further_rows,
+    index_rows,
     indices_asked,
     layout_rows,
     vehicle_rows,
@@ -86,6 +87,7 @@ def report(
             ],
             vehicle=vehicle_rows(study),
             on_road=study.road is not None,
+            definitions=index_rows(study),
             elements=element_rows(study),
             further=further_rows(study),
             layouts=layout_rows(study),

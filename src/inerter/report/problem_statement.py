@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.field_metadata import Field, fields_of
-from inerter.figures.labels import capital, format_list, index_title, indices, infeasible, title_with_name
+from inerter.figures.labels import index_title, indices, infeasible, title_with_name
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import StudyLimit, each_of, key_in_words
 from inerter.files.study.method_labels import method_labels
@@ -19,7 +19,7 @@ from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
-from inerter.formatting import format_number, format_quantity, format_share
+from inerter.formatting import capital, format_list, format_number, format_quantity, format_share
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
@@ -160,6 +160,19 @@ def layout_rows(study: Study) -> list[LayoutText]:
     for name, layout in study.layouts.items():
         texts = set(layout.struts.values())
         rows.append(LayoutText(name, name == study.baseline, {"": texts.pop()} if len(texts) == 1 else layout.struts))
+    return rows
+
+
+def index_rows(study: Study, *, combined: bool = False) -> list[tuple[str, str]]:
+    """The indices by title, each with what it is; with `combined` only those of several outputs."""
+    mechanism = study.design(next(iter(study.layouts))).mechanism()
+    rows = []
+    for name in dict.fromkeys([*study.indices, *study.trade_off]):
+        index = study.index(name)
+        definition = index.definition(mechanism)
+        if len(definition.outputs) > 1 or not combined:
+            title = capital(title_with_name(index.title, name))
+            rows.append((title, definition.describe(mechanism)))
     return rows
 
 

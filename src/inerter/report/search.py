@@ -9,7 +9,6 @@ from typing import Any
 
 import inerter
 from inerter.atomic_io import write_text
-from inerter.figures.labels import capital, format_list
 from inerter.figures.search import FRONTIER, best_networks_figure, front_figure
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
@@ -28,12 +27,19 @@ from inerter.files.study.search_tables import (
     real_networks_table,
 )
 from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
-from inerter.formatting import format_percent, format_quantity
+from inerter.formatting import capital, format_list, format_percent, format_quantity
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
 from inerter.report.json_data import json_data
 from inerter.report.page import PageFigure, environment, inline, with_contents
-from inerter.report.problem_statement import condition_rows, element_rows, further_rows, layout_rows, vehicle_rows
+from inerter.report.problem_statement import (
+    condition_rows,
+    element_rows,
+    further_rows,
+    index_rows,
+    layout_rows,
+    vehicle_rows,
+)
 from inerter.report.sections import Section
 from inerter.table import records
 
@@ -181,6 +187,7 @@ def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
             headlines=[*search_sentences(found), *([f"{road}."] if (road := roads_sentence(study)) else [])],
             vehicle=vehicle_rows(study),
             on_road=study.road is not None,
+            definitions=index_rows(study),
             elements=element_rows(study),
             further=further_rows(study),
             layouts=layout_rows(study),

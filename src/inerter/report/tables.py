@@ -9,7 +9,6 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import (
     by_method,
     by_which,
-    capital,
     compared_layouts,
     design_quantity,
     flat_range,
@@ -29,7 +28,7 @@ from inerter.figures.labels import (
     title_with_name,
 )
 from inerter.files.study.running import DATASET, SUMMARY
-from inerter.formatting import Scale, choose_scale, format_number, format_percent, format_quantity
+from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
 from inerter.report.index_summary import best_layout, extremes, is_compared, place_text
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 

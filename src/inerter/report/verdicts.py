@@ -17,7 +17,6 @@ from inerter.figures.labels import (
     bound_of,
     by_method,
     error_of,
-    format_list,
     index_title,
     index_unit,
     indices,
@@ -26,7 +25,7 @@ from inerter.figures.labels import (
     methods,
 )
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity
+from inerter.formatting import format_list, format_quantity
 from inerter.methods.registry import brief_words_of, decisive_method_clause
 from inerter.methods.ties import ACCURACY
 from inerter.report.index_summary import best_layouts, margins_of

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import capital, format_list, index_title
+from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
-from inerter.formatting import format_quantity
+from inerter.formatting import capital, format_list, format_quantity
 from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
 from inerter.networks.elements import Tied

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.errors import StatusKind
-from inerter.figures.labels import format_list
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.limits import key_in_words, limits_in
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.formatting import format_quantity, label_with_unit
+from inerter.formatting import format_list, format_quantity, label_with_unit
 from inerter.methods.registry import decisive_method_clause
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from matplotlib.axes import Axes
 
 from inerter.errors import DesignError
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_curve_legend, single_axes
 from inerter.figures.style import colour, style_context
+from inerter.formatting import capital
 from inerter.pareto_fronts.front import ParetoFront
 
 

@@ -11,7 +11,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from inerter.errors import DesignError, StudyError
-from inerter.figures.labels import format_list
 from inerter.figures.plots.admittance import plot_admittance
 from inerter.figures.plots.bode import plot_bode
 from inerter.figures.plots.network import plot_network
@@ -21,6 +20,7 @@ from inerter.figures.plots.responses import Response
 from inerter.figures.plots.step_response import plot_step_response
 from inerter.figures.plots.trajectory import plot_loop, plot_trajectory
 from inerter.figures.study import study_figures
+from inerter.formatting import format_list
 from inerter.indices.definition import Index
 from inerter.networks.elements.algebra import Network
 from inerter.registry import Registry

@@ -8,10 +8,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from inerter.errors import StudyError
-from inerter.figures.labels import compared_layouts, format_list, indices, layouts, one_method, swept_places
+from inerter.figures.labels import compared_layouts, indices, layouts, one_method, swept_places
 from inerter.figures.maps import index_maps
 from inerter.figures.style import new_figure, style_context
 from inerter.figures.sweeps import sweep_curves
+from inerter.formatting import format_list
 
 
 def plot_sweep(results: xr.Dataset, index: str, *, axes: Sequence[Axes] | None = None) -> list[Axes]:

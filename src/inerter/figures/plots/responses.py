@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import DesignError, LinearSystemError
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import curve_looks, words_of
 from inerter.files.study.responses import gain_unit, source_unit
+from inerter.formatting import capital
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.response import frequency_response, resonant_range

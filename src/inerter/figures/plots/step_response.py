@@ -7,10 +7,11 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_curve_legend, curve_looks, single_axes, words_of
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import style_context
+from inerter.formatting import capital
 from inerter.systems.assemble import state_space
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
-from inerter.figures.labels import axis_label, capital
+from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_legend_above, single_axes
 from inerter.figures.style import colour, new_figure, style_context
-from inerter.formatting import choose_scale, format_range
+from inerter.formatting import capital, choose_scale, format_range
 from inerter.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]

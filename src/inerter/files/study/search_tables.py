@@ -7,7 +7,7 @@ from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from inerter.errors import StatusKind
-from inerter.formatting import format_percent, format_quantity, label_with_unit
+from inerter.formatting import capital, format_percent, format_quantity, label_with_unit
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Quantity, Row, Table, cells, columns
 
@@ -44,7 +44,7 @@ def inerters_table(study: Study, one: LayoutSearch) -> Table:
 def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tuple[int, FoundNetwork]]) -> Table:
     is_compared = isfinite(one.baseline)
     heads = [
-        *columns(_capital(counted), one.index, "Gain", *([f"On {study.baseline}"] if is_compared else [])),
+        *columns(capital(counted), one.index, "Gain", *([f"On {study.baseline}"] if is_compared else [])),
         Column("Network", prose=True),
     ]
     rows, before = [], nan
@@ -53,7 +53,7 @@ def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tup
         texts = [None if isnan(gain) else format_percent(gain) for gain in gains]
         rows.append(Row(cells(f"{count}", Quantity(network.value, network.unit), *texts, network.layout)))
         before = network.value
-    return Table(f"{_capital(one.heading)}: best network for each number of {counted}", heads, rows)
+    return Table(f"{capital(one.heading)}: best network for each number of {counted}", heads, rows)
 
 
 def ranking_table(study: Study, one: LayoutSearch) -> Table:
@@ -72,7 +72,7 @@ def ranking_table(study: Study, one: LayoutSearch) -> Table:
         content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, agreement, *values)
         rows.append(Row(content, status=_doubt(found)))
     count = len(one.result.ranking)
-    what = f"{_capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
+    what = f"{capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
     return Table(f"{what} (* at a bound)" if _any_at_bound(one.result.ranking[:RANKED]) else what, heads, rows)
 
 
@@ -155,7 +155,7 @@ def front_networks_table(study: Study, one: LayoutFront) -> Table:
             for values, unit in zip(zip(*(point.values for point in own), strict=True), one.result.units, strict=True)
         ]
         rows.append(Row(cells(f"{own[0].n_elements}", *ends, f"{len(own)}", network)))
-    return Table(f"{_capital(one.heading)}: networks on the Pareto front", heads, rows)
+    return Table(f"{capital(one.heading)}: networks on the Pareto front", heads, rows)
 
 
 def front_points_table(study: Study, one: LayoutFront) -> Table:
@@ -166,7 +166,7 @@ def front_points_table(study: Study, one: LayoutFront) -> Table:
         values = [Quantity(value, unit) for value, unit in zip(point.values, one.result.units, strict=True)]
         status = "" if point.status.ok else str(point.status)
         rows.append(Row(cells(f"{number}", *values, f"{point.n_elements}", point.layout), status=status))
-    return Table(f"{_capital(one.heading)}: the Pareto front over all networks", heads, rows)
+    return Table(f"{capital(one.heading)}: the Pareto front over all networks", heads, rows)
 
 
 def front_sizes_table(study: Study, one: LayoutFront) -> Table:
@@ -178,7 +178,7 @@ def front_sizes_table(study: Study, one: LayoutFront) -> Table:
         values = [Quantity(value, unit) for value, unit in zip(least, one.result.units, strict=True)]
         networks = ", ".join(dict.fromkeys(point.layout for point in front))
         rows.append(Row(cells(f"up to {count}", *values, networks)))
-    return Table(f"{_capital(one.heading)}: Pareto fronts by number of elements", heads, rows)
+    return Table(f"{capital(one.heading)}: Pareto fronts by number of elements", heads, rows)
 
 
 def front_table(found: StudySearch) -> Table:
@@ -232,7 +232,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
             f"{each.agreed} of {each.starts}" if each.starts else None,
         ]
         rows.append(Row(cells(*content), status="" if each.ok else each.status_text))
-    return Table(f"{_capital(one.heading)}: the best networks with real inerters", heads, rows)
+    return Table(f"{capital(one.heading)}: the best networks with real inerters", heads, rows)
 
 
 def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
@@ -302,7 +302,3 @@ def _doubt(found: FoundNetwork) -> str:
 
 def _any_at_bound(found: tuple[FoundNetwork, ...]) -> bool:
     return any(network.active_bounds for network in found)
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

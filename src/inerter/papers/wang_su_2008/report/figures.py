@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from inerter.figures.identification import MotionCurve, response_figure, time_figure
-from inerter.figures.labels import axis_label, capital, index_title, index_unit, indices
+from inerter.figures.labels import axis_label, index_title, index_unit, indices
 from inerter.figures.style import LayoutStyle, add_legend, colour, log_axis, new_figure, save, style_context
-from inerter.formatting import choose_scale
+from inerter.formatting import capital, choose_scale
 from inerter.papers.wang_su_2008.paper import (
     FIGURE_8,
     FIGURE_9,

@@ -105,7 +105,7 @@ def _page(found: Reproduction, folder: Path) -> str:
         .get_template("reproduction.html")
         .render(
             title=PAPER.title,
-            summary=_summary(found),
+            headlines=_summary(found),
             linear=linear_tables(found),
             simulated=simulated_tables(found),
             designs=design_tables(found),

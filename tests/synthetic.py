@@ -84,11 +84,12 @@ def limited(data: xr.Dataset, active: np.ndarray, missed: np.ndarray) -> xr.Data
     """
     dims, limits = data["status"].dims, ["suspension-travel at most 9 mm", "tyre-load at most 1.3 kN"]
     size = np.where(active | missed[..., None], 1.0, 0.8) * np.where(missed[..., None], 1.2, 1.0)
-    each = {"limit.each": ("limit", ["", ""])}
+    words = ["r.m.s. suspension travel at most 9 mm", "r.m.s. dynamic tyre load at most 1.3 kN"]
+    each = {"limit.each": ("limit", ["", ""]), "limit.words": ("limit", words)}
     data = data.assign_coords(limit=limits, limit_unit=("limit", ["m", "N"]), **each)
     data = data.assign(
         **{"limit.part": ((*dims, "limit"), np.full(size.shape, "", dtype=object))},
-        limit_value=((*dims, "limit"), size * [9e-3, 1300.0]),
+        limit_value=((*dims, "limit"), size * [9e-3, 1300.0], {"basis": ""}),
         limit_active=((*dims, "limit"), active | missed[..., None]),
         limit_cost=((*dims, "limit"), np.where(active, -0.4, 0.0)),
         status=(dims, np.where(missed, "infeasible: no feasible design was found", "ok").astype(object)),

@@ -120,7 +120,7 @@ def test_a_design_that_breaks_a_limit_is_not_the_best(client: TestClient, stiffn
     assert (rows["S3"]["rank"] is None) == (not kept)
     text = " ".join(sentences(told))
     assert ("S3 breaks" in text and "static stiffness of strut at least 60 kN/m (20 kN/m)" in text) == (not kept)
-    assert "suspension travel at most 8 mm" in told["goal"]["sentence"]
+    assert "r.m.s. suspension travel at most 8 mm" in told["goal"]["sentence"]
 
 
 def test_a_value_at_its_bound_is_told(client: TestClient) -> None:

@@ -137,7 +137,7 @@ def test_what_nothing_keeps_is_said_with_the_nearest_that_is():
     best = it.optimise(quarter(), J1, NORM, subject_to=[it.at_most(J3, 490.0)])
     assert best.status.kind is it.StatusKind.INFEASIBLE
     assert best.limits[0].value == pytest.approx(it.optimise(quarter(), J3, NORM).value, rel=1e-6)
-    assert "dynamic tyre load at most 490 N" in best.status.message
+    assert "r.m.s. dynamic tyre load at most 490 N" in best.status.message
     assert "501.2 N" in best.status.message
     assert np.isnan(best.limits[0].sensitivity)
 
@@ -235,7 +235,7 @@ def test_weighted_comfort_with_a_limit_on_travel():
             logs.append(np.log(up / down) / 2e-4)
         slopes.append(np.array(logs))
     assert slopes[0] == pytest.approx(best.limits[0].sensitivity * slopes[1], abs=1e-6)
-    assert best.sensitivities == {"suspension travel at most 3 mm": best.limits[0].sensitivity}
+    assert best.sensitivities == {"r.m.s. suspension travel at most 3 mm": best.limits[0].sensitivity}
 
 
 @pytest.mark.parametrize("seed", sampled(range(4), [0]))

@@ -467,11 +467,11 @@ def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
     visitor.wait_for_text("k | c - b")
     visitor.page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
     told = visitor.page.locator(".limits li").first.inner_text()
-    assert told == "kept: suspension-travel at most 8 mm; it is 8 mm"
+    assert told == "kept: r.m.s. suspension travel at most 8 mm; it is 8 mm"
     visitor.page.fill("[id='entry elements.k']", "20 kN/m")
     visitor.page.keyboard.press("Enter")
     visitor.page.wait_for_selector(".limits .bad")
-    assert visitor.page.locator(".limits .bad").last.inner_text().startswith("broken: static-stiffness")
+    assert visitor.page.locator(".limits .bad").last.inner_text().startswith("broken: static stiffness")
 
 
 @pytest.mark.campaign

@@ -182,7 +182,7 @@ def test_a_design_that_keeps_a_limit_by_an_inaccurate_value_is_not_sure(tmp_path
     doubtful = judged_study(tmp_path, LIMITED)
     assert doubtful["headline"].startswith("Not certain: S2 is ")
     for name in ("S1", "S2"):
-        said = f"of {name} is unreliable (inaccurate: the constraint dynamic tyre load at most 900 N"
+        said = f"of {name} is unreliable (inaccurate: the constraint r.m.s. dynamic tyre load at most 900 N"
         assert said in doubtful["headline"]
     assert all(one["status"].startswith("inaccurate") for one in doubtful["json"]["designs"])
 

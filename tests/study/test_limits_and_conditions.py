@@ -24,10 +24,13 @@ from inerter.files.study.cases import Outcome, cases, run_case
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.parts import run_part
 from inerter.files.study.quantity_texts import write_resolved
+from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
+from inerter.indices.registry import INDICES
 from inerter.networks.elements.values import NAME
 from inerter.report.conclusions import conclusion_sentences
+from inerter.report.limits import limit_tables
 from inerter.report.page import report
 from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
@@ -122,8 +125,45 @@ def test_a_limit_that_nothing_keeps_is_named_once_over_conditions() -> None:
     grip = it.TyreLoad(it.Road(5e-7, 25.0))
     limits = [it.at_most(it.Conditions([it.Condition(1.0, road={"speed": v})]).mean(grip), 10.0) for v in (15.0, 30.0)]
     message = it.optimise(car, grip, it.Norm(), subject_to=limits, seed=0).status.message
-    assert message.startswith("no feasible design within the bounds for dynamic tyre load at most 10 N; closest: ")
+    assert message.startswith(
+        "no feasible design within the bounds for r.m.s. dynamic tyre load at most 10 N; closest: "
+    )
     assert "over conditions" not in message
+
+
+@pytest.mark.parametrize("symbol", list(INDICES))
+def test_the_words_of_a_limit_say_whether_its_value_is_a_peak(symbol: str) -> None:
+    road = it.Road(5e-7, 25.0)
+    given = {"road": road, "excitation": road, "element": "k", "outputs": {"tyre_load": 1.0}}
+    given |= {"input": "sprung_force", "output": "sprung_displacement"}
+    index = INDICES[symbol](**{key: given[key] for key in INDICES[symbol].__dataclass_fields__ if key in given})
+    car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(60e3, "k") | it.Damper(2e3)).mechanism()
+    definition = index.definition(car)
+    is_ratio = definition.unit == "" and not definition.is_peak  # whose name says it all
+    words = "peak " if definition.is_peak else "" if is_ratio else "r.m.s. "
+    assert str(it.at_most(index, 1.0)).startswith(words or index.title)
+
+
+@pytest.mark.parametrize(
+    ("methods", "sections", "words"),
+    [
+        ('["norm"]', "", ""),
+        ('["norm", "expected-value"]', "", "; values without friction"),
+        ('["expected-value"]', "", "; values without friction"),
+        ('["norm"]', TWO, "; values in the worst condition"),
+        ('["norm", "expected-value"]', TWO, "; values without friction, in the worst condition"),
+    ],
+)
+def test_a_table_of_limits_says_how_its_values_are_computed(
+    load: Callable[..., Study], methods: str, sections: str, words: str
+) -> None:
+    settings = (
+        f'indices = ["J1"]\noptimise = "norm"\nevaluate = {methods}\nsubject_to = {{ J3 = {{ at_most = "1 kN" }} }}'
+    )
+    study = load(settings, sections, f'{FREE}\nf = "10 N"', layouts='S1 = "k | c"\nS3 = "k | c - (b | f)"')
+    (table,) = limit_tables(dataset(study, {}))
+    mean = ", mean over conditions" if sections else ""
+    assert table.caption == f"Limits of the designs that are best for ride comfort{mean} (J1){words}"
 
 
 @pytest.mark.parametrize("part", [BudgetPart("S3", "J1", "f"), TolerancePart("S3", "J1")])
@@ -396,7 +436,10 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
         assert found == pytest.approx(alone[part], rel=1e-6)
         assert found == pytest.approx(max(alone.values()), rel=1e-6)
         assert it.evaluate(design, study.index(limit), it.Norm()).value > 1.1 * found
-    said, told = limit.replace("-", " "), terminal_text(result.data)
+    said = {"J3": "r.m.s. dynamic tyre load (J3)", "tyre-load": "r.m.s. dynamic tyre load"}.get(
+        limit, "r.m.s. suspension travel"
+    )
+    told = terminal_text(result.data)
     assert max(map(len, told.splitlines())) <= WIDTH
     named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
     page = report(result.data, study, tmp_path)
@@ -414,5 +457,5 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
     assert (entry["each"], entry["part"], entry["value"]) == (f"each {kind}" if kind else "", part, found)
     (shown,) = limits_at(study, design_of(study, "S1", data["parameters"]), "norm")
     assert shown["part"] in (outputs or {"": ""})
-    named = f"{limit}, {shown['part']}, at most " if kind else f"{limit} at most "
+    named = f"{said}, {shown['part']}, at most " if kind else f"{said} at most "
     assert shown["title"].startswith(named)

@@ -15,7 +15,6 @@ from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult, improvement_bound
 from inerter.errors import Status
-from inerter.files.study.limits import key_in_words
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity, typeset
 from inerter.methods.compare import Comparison
@@ -199,10 +198,9 @@ def _with_remedy(method: str, status: Status) -> Status:
 def _limit_result(told: Answer) -> LimitResult:
     """Limit of a design as a decision compares it."""
     value, limit = told["value"], told["limit"]
-    part = f", {told['part']}," if told["part"] else ""
     side = f"{told['sense'].replace('_', ' ')} {format_quantity(limit, told['unit'], digits=12)}"
     excess = inf
     if isfinite(value) and value > 0.0 and limit > 0.0:
         beyond = log(value / limit)
         excess = {"at_most": beyond, "at_least": -beyond}.get(told["sense"], abs(beyond))
-    return LimitResult(f"{key_in_words(told['of'])}{part}", side, told["text"], told["kept"], excess, told["message"])
+    return LimitResult(told["quantity"], side, told["text"], told["kept"], excess, told["message"])

@@ -9,7 +9,7 @@ from typing import Any
 
 from inerter.app.designs import Design
 from inerter.errors import Status, StatusKind
-from inerter.files.study.limits import StudyLimit, limits_in, part_words
+from inerter.files.study.limits import StudyLimit, limited_quantity_words, limits_in, part_words
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
 from inerter.formatting import format_quantity
@@ -46,10 +46,10 @@ _remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leav
 def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
     """Limits of a study at a design, each with the value closest to it, by the method of that name."""
     pairs = zip(study.limits, limits_in(study), strict=True)
-    return [_limit(one, several, design.vehicle, study.method(name)) for one, several in pairs]
+    return [_limit(study, one, several, design.vehicle, study.method(name)) for one, several in pairs]
 
 
-def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
+def _limit(study: Study, said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
     try:
         single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
         held = [ConstraintResult(limit, estimate_index(vehicle, limit.of, method), False, 0.0) for limit in single]
@@ -58,11 +58,13 @@ def _limit(said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Met
         kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)
     except FAILURES as error:
         part, worst, kept = "", Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error))), None
+    words = limited_quantity_words(study, said.of, part)
     return {
         "of": said.of,
         "sense": said.sense,
         "limit": said.value,
-        "title": said.label if not part else said.label.replace(said.of, f"{said.of}, {part},", 1),
+        "quantity": words,
+        "title": f"{words} {said.sense.replace('_', ' ')} {format_quantity(said.value, said.unit, digits=12)}",
         "part": part,
         "unit": said.unit,
         "value": worst.value,

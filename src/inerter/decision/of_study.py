@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isclose
 
-from inerter.figures.labels import title_with_name
-from inerter.files.study.limits import key_in_words
+from inerter.files.study.limits import limit_words
 from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity, format_share
+from inerter.indices.names import title_with_name
 from inerter.methods.method import NonlinearitySupport
 from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of
 from inerter.networks.elements import Free
@@ -39,10 +39,7 @@ def goal_sentence(study: Study, index: str, method: str) -> str:
     quantile = (
         "" if study.quantile is None else f", at the {format_share(study.quantile, 4)} quantile of its tolerances"
     )
-    limits = [
-        f"{key_in_words(one.of)} {one.sense.replace('_', ' ')} {format_quantity(one.value, one.unit, digits=12)}"
-        for one in study.limits
-    ]
+    limits = [f"{limit_words(study, one)} {format_quantity(one.value, one.unit, digits=12)}" for one in study.limits]
     within = f", with {format_list(limits)}" if limits else ""
     what = title_with_name(study.index(index).title, index)
     return f"Lowest {what}{over}{quantile}{within}, by {brief_words_of(method)}."

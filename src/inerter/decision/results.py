@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 
 from inerter.errors import OK, Status, StatusKind
-from inerter.figures.labels import NOTICEABLE, title_with_name
+from inerter.figures.labels import NOTICEABLE
 from inerter.formatting import capital, format_percent, format_quantity
+from inerter.indices.names import title_with_name
 
 
 @dataclass(frozen=True)

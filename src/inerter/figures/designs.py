@@ -22,10 +22,10 @@ from inerter.figures.labels import (
     method_label,
     methods,
     one_method,
-    title_with_name,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 from inerter.formatting import capital, choose_scale, format_percent, typeset
+from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from inerter.figures.labels import axis_label, criteria, criterion_title, criterion_unit, layouts, title_with_name
+from inerter.figures.labels import axis_label, criteria, criterion_title, criterion_unit, layouts
 from inerter.figures.style import LayoutStyle, layout_styles
 from inerter.formatting import capital, choose_scale
+from inerter.indices.names import title_with_name
 
 
 def pairs(results: xr.Dataset) -> list[tuple[str, str]]:

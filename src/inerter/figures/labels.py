@@ -166,15 +166,6 @@ def index_unit(results: xr.Dataset, index: str) -> str:
     return str(results["index_unit"].sel(index=index).item())
 
 
-def title_with_name(title: str, name: str, form: str = "{} ({})") -> str:
-    """Title of an index with its name in the study, unless the title contains the name.
-
-    >>> title_with_name("ride comfort", "J1"), title_with_name("dynamic tyre load", "tyre-load")
-    ('ride comfort (J1)', 'dynamic tyre load')
-    """
-    return title if name.replace("-", " ") in title else form.format(title, name)
-
-
 def criteria(results: xr.Dataset) -> list[str]:
     """Names of the indices of the trade-off; empty for a study without one."""
     names: list[str] = results["criterion"].values.tolist() if "front_value" in results else []

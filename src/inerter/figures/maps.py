@@ -24,10 +24,10 @@ from inerter.figures.labels import (
     swept_label,
     swept_places,
     swept_scale,
-    title_with_name,
 )
 from inerter.figures.style import log_axis, suits_log_axis
 from inerter.formatting import capital, choose_scale, format_number, typeset
+from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 

@@ -14,11 +14,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from inerter.figures.labels import axis_label, title_with_name
+from inerter.figures.labels import axis_label
 from inerter.figures.networks import draw_networks
 from inerter.figures.style import add_legend, colour, marker, new_figure, save, style_context
 from inerter.files.study.searching import LayoutFront, LayoutSearch, StudySearch, searched_mounts
 from inerter.formatting import capital, choose_scale, typeset_quantity
+from inerter.indices.names import title_with_name
 from inerter.network_search.front_results import FrontNetwork
 from inerter.networks.elements import Network
 

@@ -30,13 +30,13 @@ from inerter.figures.labels import (
     one_method,
     swept_places,
     swept_words,
-    title_with_name,
     trade_off_title,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 from inerter.formatting import format_list, format_number
+from inerter.indices.names import title_with_name
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side

@@ -28,10 +28,10 @@ from inerter.figures.labels import (
     swept_element,
     swept_label,
     swept_scale,
-    title_with_name,
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 from inerter.formatting import capital, choose_scale
+from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 

@@ -181,6 +181,16 @@ class Index(DescribedIndex, Protocol):
         ...
 
 
+def quantity_words(index: DescribedIndex) -> str:
+    """Quantity of which an index is a value: its `quantity`, such as "r.m.s. suspension travel", else its title.
+
+    >>> import inerter as it
+    >>> quantity_words(it.TyreLoad(it.Road(5e-7, 25.0)))
+    'r.m.s. dynamic tyre load'
+    """
+    return str(getattr(index, "quantity", index.title))
+
+
 @dataclass(frozen=True)
 class OfIndex:
     """Base of composed indices with the symbol, unit and frequency response of one index."""
@@ -191,6 +201,11 @@ class OfIndex:
     def symbol(self) -> str:
         """Symbol of the index."""
         return str(self.index.symbol)
+
+    @property
+    def quantity(self) -> str:
+        """Quantity of the index in words, with the rest of the own title."""
+        return str(self.title).replace(self.index.title, quantity_words(self.index), 1)  # type: ignore[attr-defined]
 
     @property
     def unit(self) -> str:

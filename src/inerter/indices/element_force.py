@@ -31,6 +31,7 @@ class ElementForce:
     element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-force"
     title = "force of an element"
+    quantity = "r.m.s. force of an element"
     unit = "N"
     response = "force of an element per road velocity"
 

@@ -31,6 +31,7 @@ class ElementStroke:
     element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-stroke"
     title = "stroke of an element"
+    quantity = "r.m.s. stroke of an element"
     unit = "m"
     response = "stroke of an element per road velocity"
 

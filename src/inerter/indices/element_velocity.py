@@ -31,6 +31,7 @@ class ElementVelocity:
     element: str = field(metadata=choice_field((), "Name of the element.", example="c", of_element=True))
     symbol = "element-velocity"
     title = "velocity across an element"
+    quantity = "r.m.s. velocity across an element"
     unit = "m/s"
     response = "velocity across an element per road velocity"
 

@@ -37,6 +37,7 @@ class LoadCarrying:
     )
     symbol = "J5"
     title = "dynamic load carrying"
+    quantity = "peak displacement per force"
     unit = "m/N"
     response = "displacement per force"  # of the body, or of what a mechanism carries
 

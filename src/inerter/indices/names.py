@@ -34,3 +34,12 @@ def index_words() -> dict[str, str]:
         of_class = _BEGINNING.sub("-", kind.__name__).lower()
         found[symbol] = getattr(kind, "key", symbol if of_class in found.values() else of_class)
     return found
+
+
+def title_with_name(title: str, name: str, form: str = "{} ({})") -> str:
+    """Title of an index with its name in the study, unless the title contains the name.
+
+    >>> title_with_name("ride comfort", "J1"), title_with_name("dynamic tyre load", "tyre-load")
+    ('ride comfort (J1)', 'dynamic tyre load')
+    """
+    return title if name.replace("-", " ") in title else form.format(title, name)

@@ -55,6 +55,7 @@ class RandomResponse:
     )
     symbol = "random-response"
     title = "random response"
+    quantity = "r.m.s. random response"
     unit = ""  # that of its outputs
     response = "gain from excitation"
 

@@ -44,6 +44,7 @@ class RideComfort:
     )
     symbol = "J1"
     title = "ride comfort"
+    quantity = "r.m.s. body acceleration"
     unit = "m/s^2"
     response = "body acceleration per road velocity"
 

@@ -29,6 +29,7 @@ class SuspensionTravel:
     road: Road | Excitation
     symbol = "suspension-travel"
     title = "suspension travel"
+    quantity = "r.m.s. suspension travel"
     unit = "m"
     response = "travel per road velocity"
 

@@ -35,6 +35,7 @@ class TyreLoad:
     )
     symbol = "J3"
     title = "dynamic tyre load"
+    quantity = "r.m.s. dynamic tyre load"
     unit = "N"
     response = "tyre force per road velocity"
 

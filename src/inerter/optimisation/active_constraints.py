@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import Status, StatusKind, worst_of
 from inerter.formatting import format_quantity
+from inerter.indices.definition import quantity_words
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.optimisation.constrained_search import KEPT_COSTLY, ConstrainedProblem, sensitivities
@@ -87,7 +88,9 @@ def infeasible(held: Sequence[ConstraintResult], parameters: Mapping[str, float]
     worst = [max((one for one in held if one.label == label), key=lambda one: one.excess) for label in labels]
     missed = [one for one in worst if not one.excess <= KEPT_COSTLY] or worst
     limits = " with ".join(labels)
-    nearest = " and ".join(f"{one.limit.of.title} {format_quantity(one.value, one.limit.of.unit)}" for one in missed)
+    nearest = " and ".join(
+        f"{quantity_words(one.limit.of)} {format_quantity(one.value, one.limit.of.unit)}" for one in missed
+    )
     at = ", ".join(f"{name} = {format_quantity(value, units[name])}" for name, value in parameters.items())
     return Status(
         StatusKind.INFEASIBLE,

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
 from inerter.formatting import format_quantity
-from inerter.indices.definition import Combination, Index, IndexDefinition, OfIndex
+from inerter.indices.definition import Combination, Index, IndexDefinition, OfIndex, quantity_words
 from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
@@ -38,7 +38,7 @@ class Limit:
     >>> import inerter as it
     >>> limit = it.at_most(it.TyreLoad(it.Road(5e-7, 25.0)), 500.0)
     >>> isinstance(limit, it.Limit), str(limit)
-    (True, 'dynamic tyre load at most 500 N')
+    (True, 'r.m.s. dynamic tyre load at most 500 N')
     """
 
     of: IndexLike
@@ -56,7 +56,7 @@ class Limit:
             )
 
     def __str__(self) -> str:
-        return f"{self.of.title} {self.sense.value} {format_quantity(self.value, self.of.unit)}"
+        return f"{quantity_words(self.of)} {self.sense.value} {format_quantity(self.value, self.of.unit)}"
 
 
 def at_most(index: IndexLike, value: float) -> Limit:
@@ -64,7 +64,7 @@ def at_most(index: IndexLike, value: float) -> Limit:
 
     >>> import inerter as it
     >>> str(it.at_most(it.SuspensionTravel(it.Road(5e-7, 25.0)), 0.01))  # m
-    'suspension travel at most 10 mm'
+    'r.m.s. suspension travel at most 10 mm'
     """
     return Limit(index, Sense.AT_MOST, value)
 
@@ -74,7 +74,7 @@ def at_least(index: IndexLike, value: float) -> Limit:
 
     >>> import inerter as it
     >>> str(it.at_least(it.TyreLoad(it.Road(5e-7, 25.0)), 300.0))
-    'dynamic tyre load at least 300 N'
+    'r.m.s. dynamic tyre load at least 300 N'
     """
     return Limit(index, Sense.AT_LEAST, value)
 
@@ -84,7 +84,7 @@ def equal(index: IndexLike, value: float) -> Limit:
 
     >>> import inerter as it
     >>> str(it.equal(it.TyreLoad(it.Road(5e-7, 25.0)), 300.0))
-    'dynamic tyre load equal to 300 N'
+    'r.m.s. dynamic tyre load equal to 300 N'
     """
     return Limit(index, Sense.EQUAL, value)
 

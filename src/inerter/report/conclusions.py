@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import infeasible, layouts, one_method, swept_words
+from inerter.files.study.limits import is_swept, limit_words, limited_quantity_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
@@ -16,7 +17,6 @@ from inerter.files.study.tasks import Answer, TaskResults, by_task
 from inerter.formatting import format_list, format_quantity
 from inerter.report.index_summary import sweep_headlines
 from inerter.report.plausibility import result_warnings
-from inerter.report.problem_statement import limit_words, of_each
 from inerter.report.speeds import speed_sentences
 from inerter.report.verdicts import verdict_sentences
 
@@ -49,10 +49,9 @@ def conclusion_sentences(
 
 def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
     """Sentence on the constraints, and on layouts without a feasible design."""
-    swept = {sweep.words for sweep in study.sweeps}
     limits = [
         f"{limit_words(study, one)} "
-        + ("the swept value" if one.words in swept else format_quantity(one.value, one.unit))
+        + ("the swept value" if is_swept(study, one) else format_quantity(one.value, one.unit))
         for one in study.limits
     ]
     missed = infeasible(results)
@@ -93,7 +92,7 @@ def _closest_design_clause(results: xr.Dataset, study: Study) -> str:
     of = str(values["design"].values[best][0])
     parts = results["limit.part"].stack(design=("layout", "index")).transpose("design", "limit").values[best].tolist()
     told = [
-        f"{of_each(limit.of, part)} {format_quantity(float(value), limit.unit)}"
+        f"{limited_quantity_words(study, limit.of, part)} {format_quantity(float(value), limit.unit)}"
         for limit, value, part in zip(study.limits, values.values[best], parts, strict=True)
     ]
     return f"; closest: {of} with {format_list(told)}"

@@ -26,9 +26,9 @@ from inerter.figures.labels import (
     swept_places,
     swept_text,
     swept_words,
-    title_with_name,
 )
 from inerter.formatting import format_list, format_percent, format_quantity
+from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import decisive_method_clause
 from inerter.methods.ties import equally_least

@@ -17,10 +17,9 @@ from inerter.figures.labels import (
     swept_places,
     swept_text,
     swept_words,
-    title_with_name,
 )
 from inerter.formatting import format_list, format_share
-from inerter.report.problem_statement import of_each
+from inerter.indices.names import title_with_name
 from inerter.table import Column, Content, Quantity, Row, Table, cells
 
 _MOST_RANGES = 3  # of swept values, in a remark
@@ -41,22 +40,18 @@ def _table(results: xr.Dataset, index: str) -> Table:
         described = _describe_swept_limit if swept else _describe_limit
         for limit in limits:
             contents = described(_entry(results, name, index, limit), index)
-            rows.append(Row(cells(name, _limit_text(results, limit), *contents)))
+            rows.append(Row(cells(name, str(results["limit.words"].sel(limit=limit).item()), *contents)))
         if swept:
             entry = _entry(results, name, index)
             rows.append(Row(cells(name, "all limits", *_describe_infeasible(entry))))
     caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
+    if basis := results["limit_value"].attrs["basis"]:
+        caption = f"{caption}; values {basis}"
     labels = [Column("Layout"), Column("Limit", words=True)]
     if swept:
         heads = [*labels, Column("Active", words=True), Column("Where", prose=True)]
         return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
     return Table(caption, [*labels, Column("Value"), Column("Effect of the limit", prose=True)], rows)
-
-
-def _limit_text(results: xr.Dataset, limit: str) -> str:
-    """Limit in words, with the part to which it applies if to each separately."""
-    name, space, value = limit.partition(" ")
-    return f"{of_each(name, str(results['limit.each'].sel(limit=limit).item()))}{space}{value}"
 
 
 def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:

@@ -16,9 +16,9 @@ from inerter.figures.labels import (
     method_label,
     methods,
     swept_places,
-    title_with_name,
 )
 from inerter.formatting import Scale, capital, choose_scale
+from inerter.indices.names import title_with_name
 from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table, columns
 

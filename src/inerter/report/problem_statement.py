@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.field_metadata import Field, fields_of
-from inerter.figures.labels import index_title, indices, infeasible, title_with_name
+from inerter.figures.labels import index_title, indices, infeasible
 from inerter.files.common.vehicles import vehicle_words
-from inerter.files.study.limits import StudyLimit, each_of, key_in_words
+from inerter.files.study.limits import limit_words
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.places import places
 from inerter.files.study.quantity_texts import as_written
@@ -20,6 +20,7 @@ from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.formatting import capital, format_list, format_number, format_quantity, format_share
+from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
@@ -129,16 +130,6 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
     for task in tasks():
         given |= task.description(study)
     return [(what, ", ".join(told)) for what, told in given.items() if told]
-
-
-def of_each(name: str, each: str) -> str:
-    """Limited quantity in words, with the part to which the limit applies if to each separately."""
-    return f"{key_in_words(name)}, {each}," if each else key_in_words(name)
-
-
-def limit_words(study: Study, limit: StudyLimit) -> str:
-    """Limited quantity and sense of the limit, in words."""
-    return f"{of_each(limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
 
 
 def condition_rows(study: Study) -> list[tuple[str, str, str]]:

@@ -89,6 +89,7 @@ def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [
         {
             "limit": limit,
+            "words": str(data["limit.words"].values[i]),
             "each": str(data["limit.each"].values[i]),
             "part": str(entry["limit.part"].values[i]),
             "value": json_data(float(entry["limit_value"].values[i])),

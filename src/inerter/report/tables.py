@@ -25,10 +25,10 @@ from inerter.figures.labels import (
     swept_places,
     swept_scale,
     swept_words,
-    title_with_name,
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
+from inerter.indices.names import title_with_name
 from inerter.report.index_summary import best_layout, extremes, is_compared, place_text
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 

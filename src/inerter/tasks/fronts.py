@@ -11,7 +11,7 @@ import numpy as np
 
 from inerter.errors import StatusKind
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.limits import key_in_words, limits_in
+from inerter.files.study.limits import limits_in
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
@@ -104,7 +104,8 @@ class Fronts(Task[FrontAnswer]):
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Indices of the trade-off, by the heading of the report."""
-        return {"Trade-off": [" against ".join(map(key_in_words, study.trade_off))] if study.trade_off else []}
+        names = [name.replace("-", " ") for name in study.trade_off]
+        return {"Trade-off": [" against ".join(names)] if names else []}
 
     def add_to_dataset(self, study: Study, data: xr.Dataset, answers: Sequence[FrontAnswer]) -> xr.Dataset:
         """Dataset with the fronts: dimensions layout, front_point, criterion, and parameter."""

@@ -15,7 +15,8 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.formatting import format_quantity
-from inerter.indices.names import index_names
+from inerter.indices.definition import quantity_words
+from inerter.indices.names import index_names, title_with_name
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
@@ -45,6 +46,11 @@ class StudyLimit:
     def words(self) -> str:
         """Quantity of the limit and its sense, as text."""
         return f"{self.of} {self.sense.replace('_', ' ')}"
+
+    @property
+    def place(self) -> str:
+        """Label of the place of its value in a study file."""
+        return ".".join((*_PLACE, self.of, self.sense))
 
     @property
     def label(self) -> str:
@@ -187,9 +193,28 @@ def _unit(study: Study, of: str) -> str:
     return study.unit(of)
 
 
-def key_in_words(words: str) -> str:
-    """Name of a file key in words: static-stiffness.strut becomes static stiffness of strut."""
-    return words.replace("-", " ").replace(".", " of ")
+def limited_quantity_words(study: Study, of: str, part: str = "") -> str:
+    """Limited quantity in words, such as "r.m.s. suspension travel"; with the part in which it is limited."""
+    section, _, mount = of.partition(".")
+    known = section == _STIFFNESS
+    words = f"static stiffness of {mount}" if known else title_with_name(quantity_words(study.index(of)), of)
+    return f"{words}, {part}," if part else words
+
+
+def limit_words(study: Study, limit: StudyLimit) -> str:
+    """Limited quantity and sense of the limit, in words."""
+    return f"{limited_quantity_words(study, limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
+
+
+def is_swept(study: Study, limit: StudyLimit) -> bool:
+    """Whether the study sweeps the value of a limit."""
+    return limit.place in {sweep.label for sweep in study.sweeps}
+
+
+def limit_text(study: Study, limit: StudyLimit) -> str:
+    """The limit in words with its value; `(swept)` where the study sweeps it."""
+    value = "(swept)" if is_swept(study, limit) else format_quantity(limit.value, limit.unit, digits=12)
+    return f"{limit_words(study, limit)} {value}"
 
 
 def quantity_limited(study: Study, of: str) -> IndexLike:

@@ -35,6 +35,14 @@ def neglect_clause(study: Study, method: str) -> str:
     return f"without {' or '.join(without)}" if without else ""
 
 
+def limit_basis(study: Study) -> str:
+    """Method by which the values of limits are computed, if the study has several, and the condition; may be empty."""
+    by = []
+    if study.optimise is not None and set(study.methods) != {study.optimise}:
+        by = [neglect_clause(study, study.optimise) or f"by {brief_words_of(study.optimise)}"]
+    return ", ".join([*by, *["in the worst condition"] * bool(study.conditions)])
+
+
 def _losses(study: Study) -> dict[str, GuardRole]:
     """Nonlinear effects of the layouts that linear analysis neglects, with the kind of guard of each: force first."""
     used = [study.elements[name] for name in elements_used(study) if name in study.elements]

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
-from inerter.files.study.limits import each_of
-from inerter.files.study.method_labels import method_labels
+from inerter.files.study.limits import each_of, is_swept, limit_text
+from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed
@@ -226,9 +226,9 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "index_title": ("index", [index.title for index in indices.values()]),
     }
     if study.limits:
-        swept_words = {sweep.words for sweep in study.sweeps}
-        coords["limit"] = [f"{one.words} (swept)" if one.words in swept_words else one.label for one in study.limits]
+        coords["limit"] = [f"{one.words} (swept)" if is_swept(study, one) else one.label for one in study.limits]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
+        coords["limit.words"] = ("limit", [limit_text(study, limit) for limit in study.limits])
         coords["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if beside and study.road is not None:
         coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
@@ -240,6 +240,8 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         }
         coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
     data = xr.Dataset(variables, coords)
+    if study.limits:
+        data["limit_value"].attrs["basis"] = limit_basis(study)
     for name in PERCENT & set(variables):
         data[name].attrs["units"] = "percent"
     return data

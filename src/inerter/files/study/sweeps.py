@@ -15,6 +15,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
+from inerter.files.study.limits import limit_words
 from inerter.files.study.place import Place, Sweep, element_at, place_of
 from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import SweepRange
@@ -93,7 +94,8 @@ def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
     elif len(set(values)) < len(values):
         raise EntryError(got="the same value more than once", expected="each once")
     units = set(map(unit_in, texts))
-    return Sweep(place, values, number.unit, number.words, units.pop() if len(units) == 1 else "")
+    words = next((limit_words(study, one) for one in study.limits if one.place == place.label), number.words)
+    return Sweep(place, values, number.unit, words, units.pop() if len(units) == 1 else "")
 
 
 def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.stats
 import xarray as xr
 
 from inerter.errors import PerformanceIndexError, StudyError
@@ -19,8 +20,9 @@ from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults, answer_of, journal_entry, parts_of
+from inerter.methods.compare import compare, compare_estimates
 from inerter.methods.expected_value import ExpectedValue
-from inerter.methods.method import evaluate
+from inerter.methods.method import Estimate, evaluate
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import break_even
@@ -120,15 +122,25 @@ def test_bounds_of_values_and_of_improvements_are_in_the_dataset(study: Study) -
         assert here.improvement_bound.item() == pytest.approx(max(map(abs, off)))
 
 
-def test_the_error_of_an_improvement_is_that_of_the_ratio_on_the_same_roads(result: StudyResult) -> None:
-    """By the jackknife: the scatter of the ratio of means when each road is left out in turn."""
+def test_improvements_are_those_of_a_comparison(result: StudyResult) -> None:
+    """Of the same designs on the same roads, with the same control variates; a design without friction too."""
     study, data = result.study, result.data.sel({"method": "expected-value"}).sel(index="J1")
     designs = {n: study.design(n).with_values({"c": data.parameter_value.sel(layout=n).item()}) for n in study.layouts}
-    one, other = (np.array(evaluate(designs[n], study.index("J1"), ROADS).samples) for n in ("serial", "usual"))
+    for name in ("serial", "ideal"):
+        two, found = compare(designs[name], designs["usual"], study.index("J1"), ROADS), data.sel(layout=name)
+        assert found.improvement.item() == pytest.approx(-two.percent, rel=1e-9)
+        assert found.improvement_error.item() == pytest.approx(two.percent_error, rel=1e-9)
+        assert two.percent_error < 0.5 * compare_estimates(two.first, two.second).percent_error
+
+
+def test_the_error_of_a_part_is_that_of_the_ratio_on_the_same_roads() -> None:
+    """By the jackknife: the scatter of the ratio of means when each road is left out in turn."""
+    other = np.random.default_rng(0).normal(12.0, 1.0, 40)
+    one = 0.8 * other + np.random.default_rng(1).normal(0.0, 0.1, 40)
     without = [(one.sum() - a) / (other.sum() - b) for a, b in zip(one, other, strict=True)]
     expected = 100.0 * np.sqrt((one.size - 1) * np.var(without))
-    found = data.improvement_error.sel(layout="serial").item()
-    assert found == pytest.approx(expected, rel=0.02)
+    parts = [Estimate(s.mean(), "N", standard_error=scipy.stats.sem(s), samples=tuple(s)) for s in (one, other)]
+    assert compare_estimates(*parts).percent_error == pytest.approx(expected, rel=0.02)
 
 
 @pytest.mark.campaign

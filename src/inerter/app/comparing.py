@@ -201,10 +201,5 @@ def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Ans
 
 
 def improvement_percent(two: Comparison) -> tuple[float, float | None]:
-    """Improvement of the first design over the second [%], and its standard error; None without random roads.
-
-    Without scatter it is rounded as results of a study are.
-    """
-    if two.first.standard_error is None:
-        return 100.0 * (1.0 - two.first.value / two.second.value), None
-    return -two.percent, two.percent_error
+    """Improvement of the first design over the second [%], and its standard error; None without random roads."""
+    return -two.percent, None if two.first.standard_error is None else two.percent_error

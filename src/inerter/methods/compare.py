@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 
 import numpy as np
@@ -44,6 +44,8 @@ class Difference:
 class Comparison:
     """Two designs by one index: `difference` is first less second, so negative where the first is better.
 
+    `relative` is that difference as a part of the second's value [%], whose scatter on the same roads counts too.
+
     >>> import inerter as it
     >>> softer, plain = (it.QuarterCar(250.0, 35.0, 180e3, it.Spring(k) | it.Damper(1500.0)) for k in (10e3, 20e3))
     >>> two = it.compare(softer, plain, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
@@ -56,16 +58,17 @@ class Comparison:
     first: Estimate
     second: Estimate
     difference: Difference
+    relative: Difference
 
     @property
     def percent(self) -> float:
         """The difference as a part of the second's value [%]."""
-        return 100.0 * self.difference.value / self.second.value
+        return self.relative.value
 
     @property
     def percent_error(self) -> float:
-        """The standard error of the difference as a part of the second's value [%]."""
-        return 100.0 * self.difference.standard_error / abs(self.second.value)
+        """Standard error of `percent`."""
+        return self.relative.standard_error
 
     @property
     def is_tie(self) -> bool:
@@ -137,10 +140,42 @@ def _compare(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, 
             else evaluate(design, index, method)
             for found, design in ((one, first), (other, second))
         )
-    controls: list[Controls | None] = []
-    if most > 0 and isinstance(method, MethodWithControls) and not is_composite(index):
-        controls = [method.controls(design, index, most) for design in (first, second)]
-    return Comparison(one, other, difference_of(one, other, controls))
+    return compare_estimates(one, other, [controls_of(design, index, method, most) for design in (first, second)])
+
+
+def controls_of(design: Vehicle, index: IndexLike, method: Method, count: int) -> Controls | None:
+    """Control variates of the first `count` samples of an index, and of many more; None if there are none."""
+    if count == 0 or not isinstance(method, MethodWithControls) or is_composite(index):
+        return None
+    return method.controls(design, index, count)
+
+
+def compare_estimates(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Comparison:
+    """Comparison of two estimates, with the `controls` of `difference_of`."""
+    return Comparison(one, other, difference_of(one, other, controls), _relative_difference(one, other, controls))
+
+
+def _relative_difference(one: Estimate, other: Estimate, controls: Sequence[Controls | None]) -> Difference:
+    """Difference as a part of the second's value [%]; its error is that of the ratio of the values, to first order.
+
+    That is the error of the first less the ratio times the second, whose difference is zero.
+    """
+    ratio = one.value / other.value if other.value else np.nan
+    if not np.isfinite(ratio):
+        return Difference(np.nan, "%", np.nan, (np.nan, np.nan))
+    scaled = replace(
+        other,
+        value=one.value,
+        standard_error=abs(ratio) * (other.standard_error or 0.0),
+        samples=tuple(ratio * sample for sample in other.samples),
+    )
+    scaled_controls = [
+        known and (factor * known[0], factor * known[1]) for factor, known in zip((1.0, ratio), controls, strict=False)
+    ]
+    found, per_cent = difference_of(one, scaled, scaled_controls), 100.0 / other.value
+    value = 100.0 * (ratio - 1.0) + per_cent * found.value
+    low, high = (value + abs(per_cent) * (end - found.value) for end in found.interval)
+    return Difference(value, "%", abs(per_cent) * found.standard_error, (low, high))
 
 
 def difference_of(one: Estimate, other: Estimate, controls: Sequence[Controls | None] = ()) -> Difference:

@@ -134,7 +134,7 @@ def _improvement(row: xr.Dataset, layout: str) -> Improvement | None:
         percent,
         error_of(design, "improvement"),
         bound_of(design, "improvement"),
-        abs(own - base) <= _margin(row, layout, baseline) + 2.0 * ACCURACY * min(abs(own), abs(base)),
+        abs(percent * base) / 100.0 <= _margin(row, layout, baseline) + 2.0 * ACCURACY * min(abs(own), abs(base)),
     )
 
 

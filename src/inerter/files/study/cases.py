@@ -16,7 +16,8 @@ from inerter.files.study.limits import limit_results, limits_in
 from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
-from inerter.methods.method import Estimate, evaluate
+from inerter.methods.compare import controls_of
+from inerter.methods.method import AveragingMethod, Estimate, evaluate
 from inerter.methods.notes import parts_of, with_prefix
 from inerter.methods.registry import brief_words_of, is_blind
 from inerter.optimisation.optimise import Optimum, optimise
@@ -118,6 +119,7 @@ class Outcome(PartResult):
     notes: list[list[str | float]] = field(default_factory=list)  # the parts of each: words, and numbers between them
     realisations: dict[str, int] = field(default_factory=dict)  # method -> roads of the case's own index
     samples: dict[str, list[float]] = field(default_factory=dict)  # method -> the first of its values on them
+    controls: dict[str, list[float]] = field(default_factory=dict)  # method -> their control variates, and many more
     limits: list[list[Any]] = field(default_factory=list)  # of each: value, whether it holds back, its cost, its part
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
@@ -167,7 +169,7 @@ def _prefix(study: Study, method: str) -> str:
 
 
 def _run(study: Study, case: Case, threads: int) -> Outcome:
-    is_at_one_speed, study = asks_at_one_speed(study), study.at(case.swept)
+    is_at_one_speed, is_swept, study = asks_at_one_speed(study), bool(study.sweeps), study.at(case.swept)
     design = study.design(case.layout)
     vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
     fields: dict[str, Any] = {
@@ -208,6 +210,15 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
                 raise
             return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 
+    def controls(method: str, estimate: Estimate) -> list[float]:
+        """Control variates of an estimate of the case's own index; empty if there are none."""
+        simulated, count = study.method(method, threads), estimate.realisations
+        if isinstance(simulated, AveragingMethod) and 0 < count <= _MOST_SAMPLES:
+            simulated = simulated.with_realisations(count, estimate.period)
+            known = controls_of(vehicle, study.resolve_index(case.index, case.layout), simulated, count)
+            return [] if known is None else np.concatenate(known).tolist()
+        return []
+
     over = found.gain_over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
@@ -233,6 +244,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         notes=list(map(list, dict.fromkeys(notes))),
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
+        controls={} if is_swept or study.baseline is None else {m: controls(m, e) for m, e in own.items()},
         over_linear=None if over is None else (-over.percent, over.percent_error),
         error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
         speeds=speeds,

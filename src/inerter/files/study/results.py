@@ -20,7 +20,7 @@ from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed
 from inerter.files.study.study import Study
-from inerter.methods.compare import difference_of
+from inerter.methods.compare import Comparison, compare_estimates
 from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
 
@@ -45,6 +45,7 @@ class DatasetBuilder:
         self._notes = Notes()
         self._texts: dict[str, str] = {}  # each once
         self._samples: dict[tuple[int, int], Array] = {}  # by case and method, where there is a standard error
+        self._controls: dict[tuple[int, int], Array] = {}  # of those samples and of many more, where nothing is swept
         self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
         self._parameters = study.free_units
@@ -101,7 +102,7 @@ class DatasetBuilder:
             of_base = data["error_bound"].sel(layout=study.baseline, drop=True)
             widest = 100.0 * abs(data["value"] / base) * (data["error_bound"] + of_base) / (1.0 - of_base)
             data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
-            self._enter_errors()
+            self._enter_comparisons()
         if "at_speeds.value" in data:
             data["at_speeds.value"].attrs["methods"] = " ".join(self._by)
         if study.sweeps:
@@ -141,22 +142,37 @@ class DatasetBuilder:
         for m, method in enumerate(study.evaluate) if study.baseline is not None else ():
             if outcome.standard_errors.get(method, {}).get(outcome.index) is not None:
                 self._samples[number, m] = np.array(outcome.samples.get(method, ()))
+                self._controls[number, m] = np.array(outcome.controls.get(method, ()))
 
-    def _enter_errors(self) -> None:
-        """Standard errors of improvements: those of the differences on the same roads."""
+    def _enter_comparisons(self) -> None:
+        """Improvements of values that scatter: by the differences on the same roads, with their standard errors."""
         for number, m in self._samples:
             case = self.cases[number]
             base = self.cases.number(replace(case, layout=str(self.study.baseline)))
-            one, other = (self._estimate(place, m) for place in (number, base))
-            if number != base and one is not None and other is not None:
-                self._arrays["improvement_error"][number, m] = _ratio_error(one, other)
+            values = [float(self._arrays["value"][place, m]) for place in (number, base)]
+            if number != base and (base, m) in self._samples and np.isfinite(values).all():
+                two = self._compare(number, base, m)
+                self._arrays["improvement"][number, m] = -two.percent
+                self._arrays["improvement_error"][number, m] = two.percent_error
 
-    def _estimate(self, number: int, m: int) -> Estimate | None:
-        """Estimate of a case's own index with its samples; None without a finite value or samples."""
+    def _compare(self, number: int, base: int, m: int) -> Comparison:
+        """Comparison of a case with another one, on the roads that both have."""
+        count = min((size for place in (number, base) if (size := self._samples[place, m].size)), default=0)
+        known = [self._controls[place, m] for place in (number, base)]
+        size = max(one.size for one in known)
+        one, other = (self._estimate(place, m, count) for place in (number, base))
+        controls = [
+            np.zeros(size) if estimate.standard_error == 0.0 else own
+            for own, estimate in zip(known, (one, other), strict=True)
+        ]
+        if not size or any(own.size != size for own in controls):
+            return compare_estimates(one, other)
+        return compare_estimates(one, other, [(own[:count], own[count:]) for own in controls])
+
+    def _estimate(self, number: int, m: int, count: int) -> Estimate:
+        """Estimate of a case's own index with its first samples."""
         value, error = (float(self._arrays[name][number, m]) for name in ("value", "standard_error"))
-        if (number, m) not in self._samples or not isfinite(value):
-            return None
-        return Estimate(value, "", standard_error=error, samples=tuple(self._samples[number, m].tolist()))
+        return Estimate(value, "", standard_error=error, samples=tuple(self._samples[number, m][:count].tolist()))
 
 
 class Pending:
@@ -294,19 +310,6 @@ SPEEDS: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
     "at_speeds.message": ((), "", "what makes those values doubtful"),
 }
 PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
-
-
-def _ratio_error(one: Estimate, other: Estimate) -> float:
-    """Standard error of the ratio of two values [%], to first order: that of the first less ratio times the second."""
-    ratio, count = one.value / other.value, min(len(one.samples), len(other.samples))
-    first = replace(one, samples=one.samples[:count])
-    second = replace(
-        other,
-        value=ratio * other.value,
-        standard_error=ratio * (other.standard_error or 0.0),
-        samples=tuple(ratio * sample for sample in other.samples[:count]),
-    )
-    return 100.0 * difference_of(first, second).standard_error / abs(other.value)
 
 
 def _status(outcome: Outcome, kind: str) -> str:

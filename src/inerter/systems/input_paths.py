@@ -8,7 +8,7 @@ Where no filter has a state, inputs are sums of the sources, and states that onl
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import LinearSystemError
+from inerter.networks.elements import middle
 from inerter.signals.coherence import Excess
-from inerter.systems.descriptor import Descriptor, Sum
+from inerter.systems.descriptor import Descriptor, Sum, close
 from inerter.systems.filters import Filter
 from inerter.systems.polynomials import Polynomial
 
@@ -86,7 +87,7 @@ def columns_of(paths: Sequence[InputPath]) -> list[Column]:
 def apply_excitation(descriptor: Descriptor, paths: Sequence[InputPath]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
-    Raises `LinearSystemError` for the displacement of a road whose velocity acts on a damper directly.
+    Raises `LinearSystemError` for the displacement of a road whose velocity a damper transmits to an output directly.
     """
     if _plain(paths):
         return descriptor
@@ -192,23 +193,50 @@ class _FilterChains:
 def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
     """Descriptor with the displacements of some roads as inputs in place of their velocities.
 
-    States that follow the velocity of the road with some weight become their remainder.
+    States that follow the velocity w' of a road with some weight N become their remainder x - N w. Where a damper acts
+    on w', unknowns follow it too: eta = eta0 + E w' with S E = F, and N = X_eta E + X_u. Then E w are further unknowns,
+    which keeps the equations affine in the free values. An output must not follow w' itself: Y_eta E + Y_u = 0.
     """
     columns = [i for i, name in enumerate(d.inputs) if name in names]
     if not columns:
         return d
-    if np.any(d.F[:, :, columns]) or np.any(d.Y_u[:, :, columns]):
-        words = " and ".join(d.inputs[i] for i in columns)
-        raise LinearSystemError(
-            f"A damper acts directly on the velocity of {words}, so the input cannot be a displacement. Use "
-            f"{d.inputs[columns[0]]}_velocity: the gain from it to a velocity is that between the displacements."
-        )
-    F, Y_u, X_u = d.F.copy(), d.Y_u.copy(), d.X_u.copy()
-    F_size, Y_u_size = d.sizes[2].copy(), d.sizes[5].copy()
-    followed = d.X_u[:, columns]
-    F[:, :, columns], Y_u[:, :, columns], X_u[:, columns] = d.R @ followed, d.Y_x @ followed, d.X_x @ followed
-    F_size[:, :, columns], Y_u_size[:, :, columns] = d.sizes[1] @ np.abs(followed), d.sizes[4] @ np.abs(followed)
-    return replace(d, F=F, Y_u=Y_u, X_u=X_u, sizes=(*d.sizes[:2], F_size, *d.sizes[3:5], Y_u_size))
+    _check_proper(d, columns)
+    more = d.S.shape[1] if np.any(d.F[:, :, columns]) else 0
+    S, R, F, Y_eta, Y_x, Y_u = _driven_by_displacement(d, (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), columns, more)
+    sizes = tuple(_driven_by_displacement(d, d.sizes, columns, more, sizes=True))
+    X_eta, X_u = np.concatenate((d.X_eta, (d.X_x @ d.X_eta)[:, :more]), axis=1), d.X_u.copy()
+    X_u[:, columns] = d.X_x @ d.X_u[:, columns]
+    return replace(d, S=S, R=R, F=F, X_eta=X_eta, X_u=X_u, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, sizes=sizes)
+
+
+def _check_proper(d: Descriptor, columns: Sequence[int]) -> None:
+    """Raises `LinearSystemError` for an output that follows the velocities of roads directly, for almost all values."""
+    values = {name: middle(free) * (1.0 + 0.01 * i**0.5) for i, (name, free) in enumerate(d.free.items(), start=2)}
+    direct = close(d, values).D[:, columns]
+    for row, name in zip(direct, d.outputs, strict=True):
+        if np.any(row):
+            road = d.inputs[columns[int(np.argmax(np.abs(row)))]]
+            raise LinearSystemError(
+                f"A damper transmits the velocity of {road} directly to {name}, whose gain from the displacement of "
+                f"{road} grows with frequency without limit. Use {road}_velocity as the input, or another output."
+            )
+
+
+def _driven_by_displacement(
+    d: Descriptor, stacks: Any, columns: Sequence[int], more: int, sizes: bool = False
+) -> Iterator[Any]:
+    """The stacks with displacements in the `columns`, and with `more` unknowns and equations; or their sizes."""
+    S, R, F, Y_eta, Y_x, Y_u = stacks
+    followed, moved = (np.abs(one) if sizes else one for one in (d.X_u[:, columns], d.X_eta[:, :more]))
+    e = S.shape[1]
+    S2, R2, F2 = (_blank(S, e + more, width) for width in (e + more, R.shape[2], F.shape[2]))
+    S2[:, :e, :e], R2[:, :e], F2[:, :e] = S, R, F
+    F2[:, :e, columns] = R @ followed
+    S2[:, e:, e:], S2[:, :e, e:] = S[:, :more, :more], R @ moved if sizes else -(R @ moved)
+    F2[:, e:, columns] = F[:, :more, columns]
+    Y_u2 = Y_u.copy()
+    Y_u2[:, :, columns] = Y_x @ followed
+    yield from (S2, R2, F2, np.concatenate((Y_eta, Y_x @ moved), axis=2), Y_x, Y_u2)
 
 
 def _blank(stack: Any, rows: int, columns: int) -> Any:

@@ -85,12 +85,13 @@ class Column:
 class Row:
     """Row of a table, a cell for each column; `status` is what makes its numbers doubtful, empty if nothing does.
 
-    A row that is not `shown` is in data files only.
+    `remark` is what else is to be said of the row. A row that is not `shown` is in data files only.
     """
 
     cells: Sequence[Cell]
     strong: bool = False
     status: str = ""
+    remark: str = ""
     shown: bool = True
 
 

@@ -234,3 +234,10 @@ def test_a_sweep_whose_baseline_has_no_value_shows_those_of_the_others():
     assert sweep_headlines(results)[0].startswith(f"Best ride comfort: S2, {shown}")
     assert sweep_headlines(results)[0].endswith("; no feasible S1.")
     assert shown in terminal_text(results)
+
+
+def test_only_a_doubt_is_marked():
+    rows = [Row(cells("S2", 1.0), status="bad"), Row(cells("S3", 2.0), remark="better for every f")]
+    lines = list(table_lines(Table("Names", columns("Layout", "Value"), rows)))
+    assert [line for line in lines if "!" in line] == ["    ! bad"]
+    assert lines[-1].strip() == "better for every f"

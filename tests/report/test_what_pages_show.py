@@ -21,6 +21,7 @@ from inerter.files.study.cases import cases
 from inerter.files.study.limits import StudyLimit
 from inerter.files.study.loading import load_study
 from inerter.files.study.responses import responses
+from inerter.files.study.tasks import TaskResults
 from inerter.methods.registry import METHODS
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.index_summary import over_the_sweep, sweep_headlines
@@ -32,7 +33,7 @@ from inerter.report.tables import tables_of, trade_off_tables
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
 from inerter.signals.road import ROAD_CLASSES
-from inerter.tasks.budgets import BudgetAnswer
+from inerter.tasks.budgets import BudgetAnswer, Budgets
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KEYS = re.compile("|".join(rf"\b{key}\b" for key in METHODS))  # "norms" is another word
@@ -284,6 +285,22 @@ def budget_answer(index, *, value, **others):
         layout="S3", index=index, parameter="b", unit="kg", method="norm", value=value, standard_error=error,
         interval=interval, **others,
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("status", "crossings", "doubt", "remark"),
+    [
+        ("ok", [3.0], "", ""),
+        ("ok", [3.0, 9.0], "", "equally good at 3 kg and 9 kg"),
+        ("unbounded", [], "", "better for every b"),
+        ("inaccurate", [3.0], "inaccurate: better for every b", ""),
+    ],
+)
+def test_a_break_even_value_is_marked_only_where_it_is_in_doubt(study, status, crossings, doubt, remark):
+    value, message = crossings[0] if crossings else None, "" if status == "ok" else "better for every b"
+    found = budget_answer("J1", at_most=False, value=value, crossings=crossings, status=status, message=message)
+    (row,) = Budgets().table(TaskResults(replace(study, budgets=("b",)), designs(), [found])).rows
+    assert (row.status.partition("; ")[0], row.remark) == (doubt, remark)
 
 
 @pytest.mark.parametrize("reasons", [["x", "x", "x"], ["x", "y", "x"], ["x", "y", "z"]])

@@ -53,7 +53,9 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     while grid.columns[1:]:
         count = _count_fitting(grid, width)
         yield from _lines(replace(grid, columns=grid.columns[:count]), labels, width)
-        grid = _Grid([replace(row, status="") for row in grid.rows], [grid.columns[0], *grid.columns[count:]])
+        grid = _Grid(
+            [replace(row, status="", remark="") for row in grid.rows], [grid.columns[0], *grid.columns[count:]]
+        )
     for line in table.failures:
         yield from wrap(line, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 
@@ -137,6 +139,8 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
         yield from _side_by_side(cells, widths)
         if row.status:
             yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
+        if row.remark:
+            yield from wrap(row.remark, width, initial_indent=_GAP * 3, subsequent_indent=_GAP * 3)
 
 
 def _heading_lines(column: _TextColumn, width: int) -> list[str]:

@@ -22,6 +22,7 @@ from inerter.methods.registry import brief_words_of, decisive_method_clause, is_
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.index_summary import best_layouts
+from inerter.statements import Severity
 from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value
 from inerter.vehicle.replace_values import elements_by_label
@@ -83,7 +84,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
 class BudgetAnswer(Answer):
     """Break-even value of an element [SI], with its uncertainty and all crossings; None for values not found."""
 
-    sure = (StatusKind.OK.value, StatusKind.UNBOUNDED.value)  # that a layout is better at every value is an answer
+    sure = tuple(kind.value for kind in StatusKind if kind.severity is Severity.INFO)
     index: str
     parameter: str
     unit: str
@@ -161,7 +162,7 @@ class Budgets(Task[BudgetAnswer]):
                 *(one.method, better, one.value, one.unit, one.standard_error, low, high),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]
-            rows.append(Row(cells(*contents), status=_remark(one)))
+            rows.append(Row(cells(*contents), status=one.doubt, remark=_remark(one)))
         by = brief_words_of(results.answers[0].method)
         return Table(
             f"Break-even values: where each layout is better than {results.study.baseline}, by {by}", heads, rows
@@ -228,16 +229,10 @@ def range_text(value: float, unit: str, error: float, crossings: Sequence[float]
 
 
 def _remark(found: BudgetAnswer) -> str:
-    """Remark on a break-even value: further crossings, doubt, or reason why there is none."""
-    remarks = []
+    """Remark on a break-even value: further crossings, or why there is none."""
     if len(found.crossings) > 1:
-        places = [format_quantity(value, found.unit) for value in found.crossings]
-        remarks.append(f"equally good at {format_list(places)}")
-    if found.doubt:
-        remarks.insert(0, found.doubt)
-    elif found.status == StatusKind.UNBOUNDED:
-        remarks.append(found.message)
-    return "; ".join(remarks)
+        return f"equally good at {format_list([format_quantity(value, found.unit) for value in found.crossings])}"
+    return found.message if found.status == StatusKind.UNBOUNDED else ""
 
 
 def _alike(

@@ -272,7 +272,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     else:
         end = found.status.message.replace("the design is better", who).rstrip(".")
         sentence = f"{capital(trial.words)}: {end}."
-    is_sure = found.status.ok or found.status.kind is StatusKind.UNBOUNDED
+    is_sure = found.status.severity is Severity.INFO
     doubt = f" Not certain: {found.status.message.rstrip('.')}." if known and not is_sure else ""
     return BreakEvenMargin(
         trial.parameter,

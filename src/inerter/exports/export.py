@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,35 +11,17 @@ from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import Exportable, ExportSpec
-from inerter.indices.definition import Index
 
 
 def export(
-    of: Exportable,
-    to: str,
-    path: str | os.PathLike[str] | None = None,
-    *,
-    inputs: Sequence[str] | str | None = None,
-    outputs: Sequence[str] | str | None = None,
-    linear: bool = False,
-    form: str = "",
-    frequencies: Sequence[float] | None = None,
-    indices: Mapping[str, Index] | None = None,
-    title: str = "",
-    part: str = "",
-    speed: float | None = None,
-    platforms: Sequence[str] = (),
-    overwrite: bool = False,
+    of: Exportable, to: str, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False, **options: Any
 ) -> Any:
     """A design in the format of another program; `inerter.EXPORTS` lists the kinds.
 
     `of` is a vehicle without free values, or what the kind takes besides: a network (drawings, `spice`, FMUs), a
-    `LinearSystem` (linear models), a `Trajectory` (tables). Returns the object of Python for `control` and `scipy`; the
-    path for a file that was written to `path`, or without `path` what it would hold, text or bytes. `inputs` and
-    `outputs` choose among those of the linear model, `form` is "state-space" or "descriptor"; `frequencies` [Hz] and
-    `indices` by name are for tables. `part` is the name of a strut that is exported alone (FMUs, `spice`, drawings);
-    with `speed` [m/s] an FMU has one road, which reaches each axle distance / speed later, and it has libraries for
-    other `platforms` than this machine too ("windows", "macos", "macos-arm", "linux-arm").
+    `LinearSystem` (linear models), a `Trajectory` (tables). `options` are those of an `ExportSpec`, by name. Returns
+    the object of Python for `control` and `scipy`; the path for a file that was written to `path`, or without `path`
+    what it would hold, text or bytes.
 
     A file is written whole or not at all, and an existing one replaced with `overwrite` only.
 
@@ -53,8 +34,7 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
-    options: dict[str, Any] = {"title": title, "part": part, "speed": speed, "platforms": platforms}
-    request = ExportSpec(of, to, inputs, outputs, linear, form, frequencies, indices, **options)
+    request = ExportSpec(of, to, **options)
     if path is None:
         return kind.contents(request, kind.suffixes[0] if kind.is_file else "")
     contents = export_contents(kind, request, path)

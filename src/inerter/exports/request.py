@@ -29,6 +29,12 @@ Exportable = Vehicle | Network | LinearSystem | Trajectory
 class ExportSpec:
     """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted.
 
+    `inputs` and `outputs` choose among those of the linear model, `form` is "state-space" or "descriptor", and `linear`
+    leaves out friction and gaps; `frequencies` [Hz], and `indices` by name with their `conventions`, are for tables.
+    `part` is the name of a strut that is exported alone (FMUs, `spice`, drawings). With `speed` [m/s] an FMU has one
+    road, which reaches each axle distance / speed later, and it has libraries for other `platforms` than this machine
+    too ("windows", "macos", "macos-arm", "linux-arm").
+
     >>> import inerter as it
     >>> spec = it.ExportSpec(it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)), to="spice")
     >>> list(spec.networks)
@@ -39,15 +45,15 @@ class ExportSpec:
     to: str
     inputs: Sequence[str] | str | None = None
     outputs: Sequence[str] | str | None = None
-    linear: bool = False  # whether friction and gaps are left out on purpose
-    form: str = ""  # of the linear model; by default that of the kind
-    frequencies: Sequence[float] | None = None  # [Hz]
-    indices: Mapping[str, Index] | None = None  # by name, whose responses are wanted too
-    conventions: str = "exact"  # of those
+    linear: bool = False
+    form: str = ""  # by default that of the kind
+    frequencies: Sequence[float] | None = None
+    indices: Mapping[str, Index] | None = None
+    conventions: str = "exact"
     title: str = ""
-    part: str = ""  # the strut that is exported alone
-    speed: float | None = None  # of a vehicle whose axles have one road [m/s]
-    platforms: Sequence[str] = ()  # other ones for which libraries are made too
+    part: str = ""
+    speed: float | None = None
+    platforms: Sequence[str] = ()
 
     def system(self, form: str = "") -> NamedSystem:
         """The linear model, in the form that was asked for, or else in `form`."""

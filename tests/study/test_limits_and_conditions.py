@@ -175,8 +175,11 @@ def test_a_design_that_breaks_a_limit_is_not_analysed(
     study = load(settings, elements=f'{FREE}\nf = "10 N"', layouts='S1 = "k | c"\nS3 = "k | c - (b | f)"')
     outcome = Outcome("", "J1", 0, {"k": 5e4, "c": 3e3, "b": 100.0}, {}, {}, 1, 1, 1, {}, {}, {"norm": "infeasible"})
     designs = {case: replace(outcome, layout=case.layout) for case in cases(study)}
-    answer = run_part(study, designs, part)
+    steps: list[it.ProgressStep] = []
+    with it.progress(steps.append):
+        answer = run_part(study, designs, part)
     assert (answer.status, answer.message) == ("failed", "S3 has no feasible design for J1.")
+    assert [str(step) for step in steps] == [part.name, f"{part.name}: done"]
 
 
 def test_what_a_method_neglects_is_a_clause(load: Callable[..., Study]) -> None:

@@ -6,7 +6,7 @@ import math
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from inerter.cli.pulse import duration
 from inerter.work.progress import ProgressStep
@@ -64,9 +64,9 @@ class Pace:
         name = step.within[0]
         if step.over:
             self.parts.pop(name, None)
-        elif name not in self.parts or step.share is not None:
-            since = self.parts[name][1] if name in self.parts else time.monotonic()
-            self.parts[name] = step, since
+            return
+        before, since = self.parts.get(name, (step, time.monotonic()))
+        self.parts[name] = replace(step, share=before.share if step.share is None else step.share), since
 
     def words(self) -> str:
         """Remaining time in words; empty if it cannot be estimated."""

@@ -29,7 +29,7 @@ class ProgressStep:
 
     `within` names the enclosing computations, such as a design, outermost first; `best` is the lowest value of an index
     so far, in its SI unit; `evaluations` are those of the running search. `share` is the completed share of the design,
-    if known, and `seconds` is the time since the start of the listener.
+    if known, and `seconds` is the time since the start of the listener. `what` is empty where a computation begins.
 
     >>> import inerter as it
     >>> step = it.ProgressStep("search: starts", done=2, total=16)
@@ -52,7 +52,7 @@ class ProgressStep:
         count = f" {self.done} of {self.total}" if self.total else f" {self.done}" if self.done else ""
         evaluations = f", {self.evaluations} evaluations" if self.evaluations else ""
         best = "" if self.best is None else f", lowest {format_number(self.best, 4)}"
-        return f"{': '.join((*self.within, self.what))}{count}{evaluations}{best}"
+        return f"{': '.join(filter(None, (*self.within, self.what)))}{count}{evaluations}{best}"
 
 
 class Hearer(Protocol):

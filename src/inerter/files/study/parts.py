@@ -15,7 +15,7 @@ import numpy as np
 from inerter.errors import InerterError, StatusKind
 from inerter.work.blas_threads import one_blas_thread
 from inerter.work.pool import KILLS
-from inerter.work.progress import within
+from inerter.work.progress import report, within
 
 if TYPE_CHECKING:
     from inerter.files.study.cases import Case, Outcome
@@ -96,6 +96,7 @@ def run_part(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[Resu
             np.errstate(over="ignore", invalid="ignore", divide="ignore"),
             within(part.name),
         ):
+            report("", share=0.0)
             return part.compute(study, designs, threads)
     except FAILURES as error:
         return part.failed_result(study, str(error))

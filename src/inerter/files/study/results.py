@@ -142,7 +142,8 @@ class DatasetBuilder:
         for m, method in enumerate(study.evaluate) if study.baseline is not None else ():
             if outcome.standard_errors.get(method, {}).get(outcome.index) is not None:
                 self._samples[number, m] = np.array(outcome.samples.get(method, ()))
-                self._controls[number, m] = np.array(outcome.controls.get(method, ()))
+                if controls := outcome.controls.get(method):
+                    self._controls[number, m] = np.array(controls)
 
     def _enter_comparisons(self) -> None:
         """Improvements of values that scatter: by the differences on the same roads, with their standard errors."""
@@ -158,7 +159,7 @@ class DatasetBuilder:
     def _compare(self, number: int, base: int, m: int) -> Comparison:
         """Comparison of a case with another one, on the roads that both have."""
         count = min((size for place in (number, base) if (size := self._samples[place, m].size)), default=0)
-        known = [self._controls[place, m] for place in (number, base)]
+        known = [self._controls.get((place, m), np.zeros(0)) for place in (number, base)]
         size = max(one.size for one in known)
         one, other = (self._estimate(place, m, count) for place in (number, base))
         controls = [

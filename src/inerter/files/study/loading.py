@@ -39,22 +39,15 @@ def load_study(path: str | Path) -> Study:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
 
     >>> import inerter as it
+    >>> from inerter.files.study.starting import starting_text
     >>> from pathlib import Path
     >>> from tempfile import TemporaryDirectory
-    >>> text = '''
-    ... title = "Which damper?"
-    ... vehicle = {model = "quarter-car", sprung_mass = "250 kg", unsprung_mass = "35 kg", tyre_stiffness = "180 kN/m"}
-    ... road = {speed = "25 m/s", class = "B"}
-    ... elements = {k = "60 kN/m", c = {from = "1 kN s/m", to = "9 kN s/m"}}
-    ... layouts = {S1 = "k | c"}
-    ... study = {indices = ["J1"], optimise = "norm"}
-    ... '''
     >>> with TemporaryDirectory() as folder:
-    ...     path = Path(folder) / "damper.toml"
-    ...     _ = path.write_text(text)
+    ...     path = Path(folder) / "car.toml"
+    ...     _ = path.write_text(starting_text("quarter-car"))  # as `inerter new` writes it
     ...     study = it.load_study(path)
-    >>> study.title, list(study.layouts)
-    ('Which damper?', ['S1'])
+    >>> study.model, list(study.layouts)
+    ('quarter-car', ['S1', 'S2', 'S3'])
     """
     path = Path(path)
     return study_of(read_tables(path, WHAT), path)

@@ -67,8 +67,10 @@ export const MarginsResult = ({ job }) => html`<${Margins} value=${job.result} /
 
 /** @param {{value: any}} props */
 function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats = [] } }) {
-  return html`${caveats.length > 0 && html`<div class="doubts problem" role="alert">
-      ${caveats.map((/** @type {any} */ { sentence }) => html`<p key=${sentence}>${sentence}</p>`)}</div>`}
+  const told = (/** @type {any[]} */ some) => some.map(({ sentence }) => html`<p key=${sentence}>${sentence}</p>`);
+  const doubts = caveats.filter((/** @type {any} */ { severity }) => severity !== "info");
+  return html`${doubts.length > 0 && html`<div class="doubts problem" role="alert">${told(doubts)}</div>`}
+    ${told(caveats.filter((/** @type {any} */ one) => !doubts.includes(one)))}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
     ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed [m/s]", "against the baseline"]}>

@@ -387,15 +387,15 @@ ${new XMLSerializer().serializeToString(n)}
     ${s==="coming"&&a&&f`<${an} store=${t} api=${e} job=${a} /><p class="quiet">
       ${a.sentence}</p>`}
     ${r&&f`<${Ta} value=${r} />`}
-    <${jd} store=${t} api=${e} indices=${$t(n)} />`}var Oa=({job:t})=>f`<${Ta} value=${t.result} />`;function Ta({value:{break_even:t=[],speeds:e=[],scatter:n,caveats:o=[]}}){return f`${o.length>0&&f`<div class="doubts problem" role="alert">
-      ${o.map(({sentence:s})=>f`<p key=${s}>${s}</p>`)}</div>`}
-    ${t.map(({parameter:s,sentence:r,message:i,status:a})=>f`<p key=${s}
-      class=${N(a)||a==="unbounded"?"":"problem"}>${r||i}</p>`)}
+    <${jd} store=${t} api=${e} indices=${$t(n)} />`}var Oa=({job:t})=>f`<${Ta} value=${t.result} />`;function Ta({value:{break_even:t=[],speeds:e=[],scatter:n,caveats:o=[]}}){let s=i=>i.map(({sentence:a})=>f`<p key=${a}>${a}</p>`),r=o.filter(({severity:i})=>i!=="info");return f`${r.length>0&&f`<div class="doubts problem" role="alert">${s(r)}</div>`}
+    ${s(o.filter(i=>!r.includes(i)))}
+    ${t.map(({parameter:i,sentence:a,message:l,status:c})=>f`<p key=${i}
+      class=${N(c)||c==="unbounded"?"":"problem"}>${a||l}</p>`)}
     ${e.length>0&&f`<${Y} label="Other speeds" heads=${["speed [m/s]","against the baseline"]}>
-      ${e.map(({factor:s,speed:r,improvement_percent:i,status:a})=>f`<tr
-        key=${s}>
-        <th scope="row">${A(r)} (${Ee(100*(s-1),0)})</th>
-        <td class="number">${N(a)?"":`${a}: `}${Ee(i)}</td></tr>`)}<//>`}
+      ${e.map(({factor:i,speed:a,improvement_percent:l,status:c})=>f`<tr
+        key=${i}>
+        <th scope="row">${A(a)} (${Ee(100*(i-1),0)})</th>
+        <td class="number">${N(c)?"":`${c}: `}${Ee(l)}</td></tr>`)}<//>`}
     ${n?.sentence&&f`<p>${n.sentence}</p>`}`}function jd({store:t,api:e,indices:n}){let o=t.get(),s=o.history.present,r=ge(o,s.layout);if(r.length===0||n.length===0)return null;let i=r.find(u=>Vt(o,u)?.switches)??r[0],{is:a,value:l,sentence:c}=oe(o,"budget");return f`<section class="budget"><h3>Break-even value of one element</h3>
     <form class="row" aria-busy=${a==="coming"} onSubmit=${U(u=>{jn(t,e,"budget",{index:u.get("index"),parameter:u.get("parameter")})})}>
     <${C} label="Element" name="parameter" key=${s.layout} choices=${r} selected=${i} />

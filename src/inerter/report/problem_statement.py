@@ -138,7 +138,8 @@ def condition_rows(study: Study) -> list[tuple[str, str, str]]:
     rows = []
     for i, condition in enumerate(study.conditions, start=1):
         numbers = [
-            f"{label} = {_value_text(study, value, known[label].unit)}" for label, value in condition.numbers.items()
+            f"{known[label].words} = {_value_text(study, value, known[label].unit)}"
+            for label, value in condition.numbers.items()
         ]
         told = ", ".join(numbers) or "as above"
         rows.append((condition.name or f"{i}", format_share(condition.share / total), told))
@@ -199,8 +200,11 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
         satisfy = "must satisfy" if bool(infeasible(results).any()) else "satisfies"
         yield f"Every design {satisfy} these constraints: {limits}."
     if study.conditions:
-        how = "mean over the operating conditions, by shares" if study.over == OVER[0] else "worst in any condition"
-        yield f"An index is its {how}; limits hold in each. Frequency responses are those outside the conditions."
+        how = (
+            "mean over the operating conditions by shares" if study.over == OVER[0] else "worst value in any condition"
+        )
+        yield f"An index is its {how}{'; limits hold in each' if study.limits else ''}."
+        yield "Frequency responses are computed with the numbers outside the conditions."
     if study.road is not None:
         yield CONVENTIONS[study.conventions].sentence
     yield f"Computed by inerter {results.attrs['inerter_version']}."
@@ -214,7 +218,7 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
         number = f"{most}" if least == most else f"{least} to {most}"
         yield (
             f"Each mean is over {number} random inputs, which seed {study.seed} decides and all designs share; ± is "
-            "one standard error, for an improvement that of the difference on the same inputs where they are kept."
+            "one standard error, of an improvement that of the difference on the same inputs."
         )
     amplitudes = [symbol for symbol in INDICES if isinstance(amplitude_of(symbol), Field)]
     asked = [name for name in study.indices if study.symbol(name) in amplitudes]

@@ -245,4 +245,6 @@ def _dominance_clause(front: FrontAnswer, baseline: FrontAnswer) -> str:
     if front is baseline or not len(ours) or not len(theirs):
         return ""
     beaten = sum(bool(np.any(np.all(ours < point * (1.0 - _SAME), axis=1))) for point in theirs)
-    return f", better in all than {beaten or 'none'} of the {len(theirs)} designs of {baseline.layout}"
+    count = "all" if beaten == len(theirs) else f"{beaten or 'none'} of the"
+    both = "both" if ours.shape[1] == 2 else "all"
+    return f", better in {both} indices than {count} {len(theirs)} designs of {baseline.layout}"

@@ -86,8 +86,12 @@ _LIMIT = LimitTextCodec(_limit_text, lambda: {"anyOf": [{"type": "number"}, quan
 class LimitTable:
     """The sides on which an index is limited."""
 
-    at_most: str | float | None = key(_LIMIT, "Upper limit.", 'at_most = "3 mm"', default=None)
-    at_least: str | float | None = key(_LIMIT, "Lower limit.", 'at_least = "1 mm"', default=None)
+    at_most: str | float | None = key(
+        _LIMIT, "Upper limit of the r.m.s. value, peak gain or stiffness.", 'at_most = "3 mm"', default=None
+    )
+    at_least: str | float | None = key(
+        _LIMIT, "Lower limit of the r.m.s. value, peak gain or stiffness.", 'at_least = "1 mm"', default=None
+    )
     equal: str | float | None = key(_LIMIT, "Required value.", 'equal = "120 kN/m"', default=None)
 
 

@@ -216,3 +216,21 @@ def test_what_stands_for_the_tyre_of_a_model_is_not_its_name():
     for vehicle in (CAR, seated(CAR, 70.0)):
         with pytest.raises(it.InerterError, match="unknown value 'k'"):
             it.evaluate(vehicle, it.Conditions([it.Condition(vehicle={"k": 3e5})]).mean(J1), NORM)
+
+
+def test_a_name_of_an_element_and_of_a_coordinate_is_refused():
+    """Otherwise a condition or a tolerance of the mass would silently be one of the inerter, whose symbol is b."""
+
+    def train(mass, name):
+        strut = it.Strut("strut", CAR.strut | it.Inerter(30.0, name), upper={"b": 1.0}, lower={"bogie": 1.0})
+        return dataclasses.replace(TRAIN, coordinates=(it.Coordinate("b", mass), TRAIN.coordinates[1]), struts=(strut,))
+
+    index = it.RandomResponse({"b_acceleration": 1.0}, ROAD)
+    heavy = it.Conditions([it.Condition(vehicle={"b": 600.0})]).mean(index)
+    expected = it.evaluate(train(600.0, "b1"), index, NORM).value
+    assert it.evaluate(train(250.0, "b1"), heavy, NORM).value == pytest.approx(expected, rel=1e-12)
+    ambiguous = "'b' is ambiguous: an element and the mass of a coordinate"
+    with pytest.raises(DesignError, match=ambiguous):
+        it.evaluate(train(250.0, None), heavy, NORM)
+    with pytest.raises(DesignError, match=ambiguous):
+        it.tolerance_analysis(train(250.0, None), index, NORM, spread={"b": 0.1}, samples=16)

@@ -110,6 +110,21 @@ tyre_stiffness = "120 kN/m"
         assert values[1] == pytest.approx(values[0], rel=1e-10)
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        'tolerance = { c2 = "10 %" }',
+        'tolerance = { vehicle.coordinates.c2 = "10 %" }',
+        '[[conditions]]\nvehicle.coordinates.c2 = "60 kg"',
+    ],
+)
+def test_a_number_with_the_name_of_another_is_refused(tmp_path: Path, ask: str) -> None:
+    named = NODES.replace("body = ", "c2 = ").replace("body_", "c2_").replace("{ body", "{ c2")
+    study = load_text(tmp_path, named + REST.replace("LAYOUT", "k") + ask)
+    with pytest.raises(StudyError, match="'c2' is ambiguous: an element and the mass of a coordinate"):
+        check_study(study)
+
+
 def test_bars_may_be_left_out(load: Load) -> None:
     bars = ', anti_roll_front = "k_a", anti_roll_rear = "k_a"'
     mechanism = load("full-car", (bars, "")).design("S1").mechanism()

@@ -15,6 +15,7 @@ from inerter.methods.registry import METHODS, nonlinearities_of
 from inerter.networks.elements import Element, Free, Tied
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import (
+    check_one_meaning,
     elements_by_label,
     masses,
     quantities,
@@ -103,6 +104,7 @@ def nominal(vehicle: Vehicle, scatter: Scatter) -> dict[str, float]:
 def _value(vehicle: Vehicle, name: str) -> float:
     if name in vehicle.free_values():
         return np.nan
+    check_one_meaning(to_editable(vehicle), name)
     if name in quantities(vehicle):
         return _number(name, quantities(vehicle)[name])
     chosen = elements_by_label(vehicle, name)

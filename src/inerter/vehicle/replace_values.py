@@ -18,11 +18,11 @@ from inerter.vehicle.vehicle import Stage, Vehicle, VehicleModel
 def replace_values(vehicle: Vehicle, values: Mapping[str, float], *, if_there: bool = False) -> Vehicle:
     """The same vehicle with replaced values (SI), by name.
 
-    A name is that of a quantity of the vehicle or of a stage on it, such as `sprung_mass`, else the label of elements,
-    else the coordinate of a `Mechanism`, for its mass.
+    A name is that of a quantity of the vehicle or of a stage on it, such as `sprung_mass`, the label of elements, or
+    the coordinate of a `Mechanism`, for its mass.
 
-    Raises `DesignError` for an unknown name, unless unknown names are ignored (`if_there`), or for elements of several
-    kinds.
+    Raises `DesignError` for an unknown name, unless unknown names are ignored (`if_there`), for elements of several
+    kinds, or for a name of two of these.
     """
     vehicle = to_editable(vehicle)
     for name, value in values.items():
@@ -59,7 +59,20 @@ def _own_quantities(vehicle: Vehicle) -> dict[str, float | Free]:
     return {field.name: getattr(vehicle, field.name) for field in fields_of(type(vehicle))}
 
 
+def check_one_meaning(vehicle: Vehicle, name: str) -> None:
+    """Raises `DesignError` for a name of two values of an editable vehicle, such as an element and a coordinate."""
+    has = {
+        "a quantity of the vehicle": name in quantities(vehicle),
+        "an element": bool(elements_by_label(vehicle, name)),
+        "the mass of a coordinate": name in masses(vehicle),
+    }
+    meanings = [meaning for meaning, is_there in has.items() if is_there]
+    if len(meanings) > 1:
+        raise DesignError(f"{name!r} is ambiguous: {' and '.join(meanings)}. Give them different names.")
+
+
 def _replace_value(vehicle: Vehicle, name: str, value: float) -> Vehicle:
+    check_one_meaning(vehicle, name)
     if name in quantities(vehicle):
         return _with_quantity(vehicle, name, value)
     chosen = {id(element) for element in elements_by_label(vehicle, name)}

@@ -30,6 +30,7 @@ from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
 from inerter.optimisation.optimise import check_free
 from inerter.systems.piecewise import piecewise
+from inerter.uncertainty.distributions import DISTRIBUTIONS, nominal, scatter_of
 from inerter.vehicle.vehicle import Vehicle
 
 _MOST_TRIED = 200  # swept values
@@ -163,6 +164,8 @@ def _check_design(study: Study, layout: str) -> None:
     if any(map(is_blind, study.methods)):
         for mechanism, definition in definitions:
             linear_problem(mechanism, definition, CONVENTIONS[study.conventions])
+    if spread := study.spread(layout):
+        nominal(vehicle, scatter_of(spread, DISTRIBUTIONS[0]))
     halfway = {name: middle(value) for name, value in vehicle.free_values().items()}
     if not all(map(is_blind, study.methods)):
         piecewise(vehicle.with_values(halfway))

@@ -37,6 +37,7 @@ TEXTS = {
     "times overruled": ([["time [s]", "x [m]", "F [N]"]], [T * 0, X, F], {"interval": 2e-3}),
     "kilograms by the call": ([["time [s]", "x [m]", "Load [kg]"]], [T, X, F / KGF], {"units": {"force": "kgf"}}),
     "volts by the call": ([["time [s]", "x [m]", "Load [V]"]], [T, X, F / -250.0], {"units": {"force": "-250 N"}}),
+    "millivolts by the call": ([["time [s]", "x [m]", "Load [mV]"]], [T, X, F / -0.25], {"units": {"force": "-250 N"}}),
 }  # fmt: skip
 
 

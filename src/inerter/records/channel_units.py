@@ -22,6 +22,8 @@ _EXAMPLES = {
 # Mass units that a load cell may show for the weight; taken as forces only if named in the call.
 _WEIGHTS = {"kg": "kgf", "lb": "lbf"}
 EXAMPLES = {role: re.split(r",| or ", units)[0] for role, units in _EXAMPLES.items()}
+_VOLTS = {"kV": 1e3, "mV": 1e-3, "uV": 1e-6, "\u00b5V": 1e-6, "\u03bcV": 1e-6}  # a quantity is the value of one volt
+_QUANTITY = re.compile(r"\s*[+-]?[\d.]")
 _POWER = re.compile(r"(?<=[A-Za-z])([23])(?!\w)")
 
 
@@ -29,7 +31,7 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
     """Size of one unit of the channel in the SI unit of its role, the unit, and a note where one is due.
 
     `given` is the unit named in the call, and takes precedence over that of the file. It may be a quantity, "250 N",
-    for a file with volts or counts.
+    for a file with counts or volts, which may be millivolts.
 
     Raises `RecordError` for a missing or unknown unit, or one of another quantity.
     """
@@ -47,6 +49,8 @@ def scale(source: str, role: str, channel: Channel, given: str | None) -> tuple[
     value = _value(role, plain)
     if value is None:
         raise RecordError(f"{source}: ", *_problem(role, channel, unit, given))
+    if given is not None and _QUANTITY.match(given):
+        value *= _VOLTS.get(channel.unit.strip(), 1.0)
     return value, unit, _note(role, channel, unit, given, value)
 
 
@@ -95,7 +99,7 @@ def _value(role: str, unit: str) -> float | None:
     if role == "acceleration" and unit in ("g", "G", "g_n", "gn"):
         return STANDARD_GRAVITY
     text = _POWER.sub(r"^\1", unit)
-    if not re.match(r"[+-]?[\d.]", text):
+    if not _QUANTITY.match(text):
         text = f"1 {text}"
     for spelling in (text, text.lower()) if len(unit) > 3 else (text,):
         try:
@@ -128,7 +132,8 @@ def _note(role: str, channel: Channel, unit: str, given: str | None, value: floa
     if given is None or (given == channel.unit and given.strip() not in _WEIGHTS):
         return None
     said = f"instead of {channel.unit} in the file" if channel.unit else "as specified in the call"
-    if re.match(r"\s*[+-]?[\d.]", unit):
-        return f"One unit of the {role} {channel.name!r} was read as {unit}, {said}."
+    if _QUANTITY.match(unit):
+        one = "One volt" if channel.unit.strip() in _VOLTS else "One unit"
+        return f"{one} of the {role} {channel.name!r} was read as {unit}, {said}."
     worth = "" if value == 1.0 else f" (1 {unit} = {format_quantity(value, CHANNELS[role], 6)})"
     return f"The {role} {channel.name!r} was read in {unit}{worth}, {said}."

@@ -66,7 +66,7 @@ def read_record(
     file ("Load", "group/Load", "run.load"), numbered from 0, or found by an obvious name in English, German or French
     (time, displacement, position, x, force, load, Zeit, Weg, Kraft, temps, ...), which a note reports where there was a
     choice. Units come from the file; `units`, such as {"force": "kgf"}, adds or overrides them, and may state the value
-    of one volt, {"force": "250 N"}.
+    of one volt or count, {"force": "250 N"}, also where the file has millivolts.
     `interval` [s] gives the sampling interval where the file has no times, or overrides them.
 
     Missing samples and values that are not finite are refused; `gaps="fill"` interpolates up to 10 in a row, a number

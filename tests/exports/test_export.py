@@ -80,6 +80,11 @@ def test_objects_are_no_files(tmp_path: Path) -> None:
             it.export(CAR, key, tmp_path / "design.mat")
 
 
+def test_an_unknown_option_is_told_with_all_that_there_are() -> None:
+    with pytest.raises(TypeError, match=r"export\(\) has no option 'output'\. Its options: inputs, outputs, linear, "):
+        it.export(CAR, "scipy", output="tyre_load")
+
+
 def test_unknown_kinds_and_forms() -> None:
     with pytest.raises(it.InerterError, match=r"Unknown kind of export 'matlba'.*Did you mean 'matlab'"):
         it.export(CAR, "matlba")

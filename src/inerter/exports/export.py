@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import Exportable, ExportSpec
+from inerter.formatting import format_list
 
 
 def export(
@@ -26,7 +28,8 @@ def export(
     A file is written whole or not at all, and an existing one replaced with `overwrite` only.
 
     Raises `ExportError` for what the format cannot say, such as friction and gaps unless `linear` leaves them out, or
-    for a file that cannot be written; `UnknownEntryError` for an unknown kind, `DesignError` if a value is free.
+    for a file that cannot be written; `UnknownEntryError` for an unknown kind, `DesignError` if a value is free,
+    `TypeError` for an unknown option.
 
     >>> from inerter import Damper, QuarterCar, Spring
     >>> car = QuarterCar(250.0, 35.0, 150e3, Spring(20e3) | Damper(2e3))
@@ -34,6 +37,9 @@ def export(
     ('road_velocity [m/s]', 'sprung_force [N]')
     """
     kind = EXPORTS[to]
+    known = [field.name for field in fields(ExportSpec) if field.name not in ("of", "to")]
+    if unknown := [name for name in options if name not in known]:
+        raise TypeError(f"export() has no option {unknown[0]!r}. Its options: {format_list(known)}.")
     request = ExportSpec(of, to, **options)
     if path is None:
         return kind.contents(request, kind.suffixes[0] if kind.is_file else "")

@@ -3,7 +3,7 @@
 
 import { Lost, Refusal, postNow } from "./api.js";
 import { questions, soughtOf } from "./questions.js";
-import { isSettled } from "./state/answers.js";
+import { settledOn } from "./state/answers.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -24,9 +24,23 @@ export function keepAsking(store, api, client, found = async () => {}) {
     if (state.connection !== "ready" && state.connection !== "compiling") return;
     for (const question of questions(state)) {
       const { panel, key, ofDesigns } = question;
-      if (underWay.has(panel) || isSettled(state.answers[panel], key) || (ofDesigns && isBeingChosen(state))) continue;
+      const settled = settledOn(state.answers[panel], key);
+      if (settled) learn(question, settled);
+      if (underWay.has(panel) || settled || (ofDesigns && isBeingChosen(state))) continue;
       if (rests(question, state)) void ask(question);
     }
+  }
+
+  /** The last question of each panel whose answer has told something else too. @type {Map<string, string>} */
+  const learnt = new Map();
+
+  /** Takes over what an answer tells besides, also that of a study which is there again.
+   * @param {import("./questions.js").Question} question @param {import("./state/answers.js").Kept} kept */
+  function learn(question, { value, sentence }) {
+    const { panel, key } = question;
+    if (!question.learnt || sentence !== null || learnt.get(panel) === key) return;
+    learnt.set(panel, key);
+    store.dispatch(question.learnt(value));
   }
 
   /** When the newest question of a panel that waits came up. @type {Map<string, {key: string, at: number}>} */
@@ -43,8 +57,9 @@ export function keepAsking(store, api, client, found = async () => {}) {
     return left <= 0;
   }
 
-  /** @param {import("./questions.js").Question} asked */
-  async function ask({ panel, key, path, body, learnt }) {
+  /** @param {import("./questions.js").Question} question */
+  async function ask(question) {
+    const { panel, key, path, body } = question;
     underWay.add(panel);
     store.dispatch({ type: "asked", panel, question: key });
     sequence += 1;
@@ -52,7 +67,8 @@ export function keepAsking(store, api, client, found = async () => {}) {
       const sent = path.startsWith("panel/") ? { ...body, client: `${client}.${panel}`, sequence } : body;
       const value = await api.post(path, sent);
       store.dispatch({ type: "answered", panel, question: key, value });
-      if (learnt) store.dispatch(learnt(value));
+      learnt.delete(panel);
+      learn(question, { question: key, value, sentence: null });
     } catch (error) {
       if (error instanceof Lost) lose();
       else if (isUnauthorised(error)) store.dispatch({ type: "connected", connection: "refused" });

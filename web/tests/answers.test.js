@@ -7,6 +7,7 @@ import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
 import { budgetTold } from "../src/panels/margins.js";
 import { createStore } from "../src/state/store.js";
+import { keepAsking } from "../src/asking.js";
 import { partsOf } from "./reading.js";
 
 const study = (/** @type {any} */ { title, k = "120 kN/m", strut = "k | c", model = "quarter-car" }) => ({
@@ -270,4 +271,18 @@ test("what optima become at other speeds stands before them where it is doubtful
     "Not certain away from 90 km/h: x. The best J1 of S2. Also y.",
   );
   assert.equal(withSpeeds("The best J1 of S2.", undefined), "The best J1 of S2.");
+});
+
+test("the parts are those of the study that is open, also of one whose answer is still kept", async () => {
+  const store = createStore({ ...initial(), about: ABOUT, connection: "ready" });
+  /** @type {any} */
+  const api = { post: async (/** @type {string} */ path, /** @type {any} */ body) =>
+    (path === "study/parts" ? partsOf(body.study) : {}) };
+  keepAsking(store, api, "test");
+  const [first, second] = [study({ title: "one" }), { ...study({ title: "two" }), layouts: { only: "k" } }];
+  for (const each of [first, second, first]) {
+    store.change({ type: "opened", study: each });
+    await new Promise((done) => setTimeout(done));
+    assert.deepEqual(Object.keys(store.get().parts?.layouts ?? {}), Object.keys(each.layouts));
+  }
 });

@@ -36,14 +36,15 @@ export function answered(answers = NOTHING, found) {
  * @param {{[panel: string]: Answers}} answers @returns {{[panel: string]: Answers}} */
 export const turned = (answers) => mapValues(answers, (each) => ({ ...each, underWay: null, recent: false }));
 
-/** Whether a question is answered, or refused. @param {Answers | undefined} answers @param {string} question */
-export const isSettled = (answers, question) => answers?.kept.some((each) => each.question === question) ?? false;
+/** What came of a question, if it is answered or refused.
+ * @param {Answers | undefined} answers @param {string} question */
+export const settledOn = (answers, question) => answers?.kept.find((each) => each.question === question);
 
 /** What there is to show of a question that is asked by itself, whenever it changes.
  * @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
 export function shownOf(answers = NOTHING, question) {
   if (question === null) return NONE;
-  const found = answers.kept.find((each) => each.question === question);
+  const found = settledOn(answers, question);
   if (found) {
     const { value, sentence } = found;
     return { is: sentence === null ? "current" : "none", value, sentence, before: false };

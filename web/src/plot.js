@@ -149,7 +149,8 @@ function Axes({ laid: { box, x, y, font, titles, heading } }) {
     ${y.ticks.map(({ at, text }) => html`<path key=${`line ${text}`} class="grid" d=${`M${left} ${at}H${right}`} />
       <text key=${text} x=${left - font * 0.6} y=${at + font * 0.35} text-anchor="end">${text}</text>`)}
     ${x.ticks.map(({ at, text }) => html`<path key=${`line ${text}`} class="tick" d=${`M${at} ${bottom}v4`} />
-      <text key=${text} x=${at} y=${bottom + font * 1.4} text-anchor="middle">${text}</text>`)}
+      <text key=${text} x=${Math.min(at, right + font - 0.3 * font * text.length)} y=${bottom + font * 1.4}
+        text-anchor="middle">${text}</text>`)}
     <path class="tick" d=${`M${left} ${bottom}H${right}`} />
     ${heading.map((line, i) => html`<text key=${`title ${i}`} class="title" x=${titles.y.x}
       y=${titles.y.y + 1.4 * i * font}>${line}</text>`)}

@@ -169,9 +169,16 @@ def test_what_cannot_be_searched_has_a_sentence(client: TestClient, body: dict[s
     assert words in told["sentence"]
 
 
-def test_a_free_network_is_named_where_designs_are_asked_for(client: TestClient) -> None:
+def test_a_free_network_is_no_problem_of_a_study_and_named_where_designs_are_asked_for(client: TestClient) -> None:
     told = ask(client, "study/check", study=SEARCHED)
-    assert [problem["place"] for problem in told["problems"]] == [["layouts", "S9"]]
-    assert "Search" in told["problems"][0]["hint"]
+    assert told["problems"] == []
+    assert set(told["layouts"]) == {"S1", "S3"}
+    alone = {**SEARCHED, "layouts": {"S9": "k | any"}, "study": {"indices": ["J1"], "optimise": "norm"}}
+    assert ask(client, "study/check", study=alone) == {"problems": [], "notes": [], "layouts": {}, "places": []}
+    faulty = {**SEARCHED, "layouts": {**SEARCHED["layouts"], "S4": "k | nope"}}
+    (problem,) = ask(client, "study/check", study=faulty)["problems"]
+    assert problem["place"] == ["layouts", "S4"]
+    refused = ask(client, "panel/decision", study=SEARCHED, layouts=["S9"])
+    assert "Search" in refused["problems"][0]["hint"]
     layouts = ask(client, "study/parts", study=SEARCHED)["layouts"]
     assert {name: row["free_networks"] for name, row in layouts.items()} == {"S1": [], "S3": [], "S9": ["any"]}

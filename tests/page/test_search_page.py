@@ -48,9 +48,13 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     page = visitor.page
     visitor.open(path)
     visitor.wait_for_text("k | any")
-    page.click("#tab-work")
+    page.wait_for_selector(".answers[data-being=current]")
+    assert page.locator(".problems, .element.unknown").count() == 0
+    page.get_by_role("button", name="Search for the best network").click()
     form = page.locator("form.begin", has_text="Search for the best network")
-    form.locator("[name=layout]").select_option("any")
+    assert form.locator("[name=layout]").evaluate("each => each === document.activeElement")
+    form.get_by_label("inerters at most").fill("1")
+    form.get_by_label("inerters at most").press("Tab")
     boxes = form.locator("[name=index]")
     assert [box.is_checked() for box in boxes.all()] == [True, True, False]  # those of the trade-off
     before = {job["id"] for job in searches(served)}  # the server has the jobs of other tests too
@@ -60,6 +64,8 @@ def test_networks_of_a_search_are_taken_into_the_editor(
         assert time.monotonic() < deadline, searches(served)
         time.sleep(0.2)
     found = json.loads(served.get(f"work/{done[0]['id']}/result"))
+    networks = [row for one in found["searches"] for row in one["ranking"]]
+    assert max(sum(text.endswith("kg") for text in row["elements"].values()) for row in networks) == 1
     job_row = page.locator(".job[data-state=done]", has_text="Search").first
     job_row.locator("circle.point").first.wait_for(state="attached")
     front = max(found["front"]["fronts"], key=lambda one: one["elements"])["points"]

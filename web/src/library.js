@@ -59,8 +59,14 @@ const isAmount = (entry) => typeof entry === "string" || typeof entry === "numbe
 export const elementsIn = (state, layout) => at(partsOf(state).layouts, layout)?.elements ?? [];
 
 /** The layouts with a free network, which a search chooses. @param {State} state @returns {string[]} */
-export const searchedLayouts = (state) =>
-  Object.entries(partsOf(state).layouts).filter(([, { free_networks: free }]) => free.length > 0).map(([name]) => name);
+export const searchedLayouts = (state) => Object.keys(partsOf(state).layouts).filter((name) => isSearched(state, name));
+
+/** Whether a layout has a free network, so that it is no design. @param {State} state @param {string} layout */
+export const isSearched = (state, layout) => (at(partsOf(state).layouts, layout)?.free_networks.length ?? 0) > 0;
+
+/** Whether an element is a free network. @param {State} state @param {string} name */
+export const isFreeNetwork = (state, name) =>
+  Object.values(partsOf(state).layouts).some(({ free_networks: free }) => free.includes(name));
 
 /** The layouts that depend on an element, null where that is not known yet. @param {State} state
  * @param {string} name */

@@ -1,6 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { layoutsWith, numbersOf } from "./library.js";
+import { isSearched, layoutsWith, numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
 import { entryAt, indicesIn, isRange, own, strutsOf } from "./state/document.js";
@@ -89,14 +89,23 @@ const ROWS = [
     { panel: "parts", path: "study/parts", body: { study }, learnt: (parts) => ({ type: "parted", parts }) },
     { panel: "check", path: "study/check", body: { study } },
   ],
-  (state, document) => [ofDesigns("decision", decided(state, document))],
-  ({ view }, document) => (view.tab === "response" ? [ofDesigns("response", about(document))] : []),
+  (state, document) => {
+    const asked = decided(state, document);
+    return asked.designs.length > 0 ? [ofDesigns("decision", asked)] : [];
+  },
+  (state, document) => {
+    const asked = about(state, document);
+    return state.view.tab === "response" && asked.designs.length > 0 ? [ofDesigns("response", asked)] : [];
+  },
   (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
-  ({ view: { seconds, seed, output } }, document) => [
-    { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
-      rest: 300 },
-    ofDesigns("mechanism", presentDesign(document)),
-  ],
+  (state, document) => {
+    const { seconds, seed, output } = state.view;
+    return isSearched(state, document.layout) ? [] : [
+      { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
+        rest: 300 },
+      ofDesigns("mechanism", presentDesign(document)),
+    ];
+  },
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
   typedText,
@@ -221,16 +230,20 @@ export function bodyOf(state, panel) {
  * @param {State} state */
 const methodNames = (state) => [judging(state)?.name ?? []].flat();
 
+/** Those that are designs: a layout with a free network is for a search.
+ * @template {{layout: string}} T @param {State} state @param {T[]} designs */
+const chosenOf = (state, designs) => designs.filter(({ layout }) => !isSearched(state, layout));
+
 /** What the decision is asked of: all layouts. @param {State} state @param {Document} document */
-const decided = (state, document) => ({ study: document.study, designs: allDesigns(document),
+const decided = (state, document) => ({ study: document.study, designs: chosenOf(state, allDesigns(document)),
   baseline: baselineOf(document), methods: methodNames(state), index: goalOf(state) });
 
 /** What a table of the indices is asked of. @param {State} state */
-const indicesBody = (state) => ({ ...about(state.history.present), methods: methodNames(state) });
+const indicesBody = (state) => ({ ...about(state, state.history.present), methods: methodNames(state) });
 
-/** @param {Document} document */
-const about = (document) =>
-  ({ study: document.study, designs: shownDesigns(document), baseline: baselineOf(document) });
+/** @param {State} state @param {Document} document */
+const about = (state, document) => ({ study: document.study, designs: chosenOf(state, shownDesigns(document)),
+  baseline: baselineOf(document) });
 
 /** @param {Document} document */
 const presentDesign = (document) => ({ study: document.study, design: designOf(document) });

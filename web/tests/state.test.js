@@ -397,20 +397,22 @@ test("a network of a search replaces that of its layout, and no element of anoth
   assert.equal(textOf(store.get().history.present), "k | c1");
 });
 
-test("a number without a unit has the unit that stands there, and a road class the centre of ISO 8608", () => {
+test("a number without a unit has the unit that stands there, and a name the value that the library gives it", () => {
+  const classes = { A: "16e-6 m^3", C: "256e-6 m^3" };
   for (const [typed, before, text] of [
     ["40", "25 kg", "40 kg"],
     ["40 lb", "25 kg", "40 lb"],
     ["-2e3", "3 kN", "-2e3 kN"],
     ["0.3", "0.5", "0.3"],
-    ["C", "25 kg", "C"],
     ["fast", "25 m/s", "fast"],
-    ["C", "5e-7 m^3/cycle", "256e-6 m^3"],
-    ["class a", "16e-6 m^3/rad", "16e-6 m^3"],
-    ["H", "5e-7 m^3/cycle", "262144e-6 m^3"], // as ISO 8608 prints it
-    ["I", "5e-7 m^3/cycle", "I"],
-  ])
+  ]) {
     assert.equal(completed(typed, before), text);
+    assert.equal(completed(typed, before, classes), text);
+  }
+  assert.equal(completed("C", "25 kg"), "C");
+  assert.equal(completed("c", "5e-7 m^3/cycle", classes), "256e-6 m^3");
+  assert.equal(completed("class A", "16e-6 m^3/rad", classes), "16e-6 m^3");
+  assert.equal(completed("I", "5e-7 m^3/cycle", classes), "I");
 });
 
 test("values are stale while the library says that another problem is asked than they solve", () => {

@@ -14,6 +14,7 @@ from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.exports.registry import EXPORTS
 from inerter.field_metadata import Field, fields_of, mounts_of
+from inerter.files.common.free_networks import FREE_NETWORK
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.sections import CHOOSE
@@ -24,6 +25,7 @@ from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import METHODS, averages, method_settings, searches, words_of
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
+from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
 
 _FOLDERS = ("app/examples", "../../examples")  # in the package, and beside its sources
@@ -47,6 +49,16 @@ def about() -> dict[str, Any]:
             for key, kind in VEHICLES.items()
         ],
         "road": _fields(ROAD_QUANTITIES),
+        "named_values": {
+            field.unit: {letter: f"{round(1e6 * one.mean)}e-6 m^3" for letter, one in ROAD_CLASSES.items()}
+            for field in ROAD_QUANTITIES
+            if field.key == "roughness"
+        },
+        "free_networks": [
+            {"key": one.name, **schema}
+            for one in FREE_NETWORK.keys
+            if (schema := one.schema()).get("type") in ("integer", "boolean")
+        ],
         "signals": [_signal(key) for key in SIGNALS],
         "conventions": list(CONVENTIONS),
         "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],

@@ -52,9 +52,9 @@ def _with_baseline(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def problems(document: object) -> list[dict[str, Any]]:
-    """Problems of a document that prevent its use as a study, each with its place."""
+    """Problems of a document that prevent its use as a study, or its search, each with its place."""
     try:
-        study_from(document)
+        searched_study_from(document)
     except InerterError as error:
         return problems_of(error)
     return []
@@ -117,11 +117,17 @@ def study_without(document: Document, error: FileError) -> tuple[Study, dict[str
     layouts = {name: entry for name, entry in document[_LAYOUTS].items() if name not in faults}
     if not layouts:
         raise error
-    settings, first = document["study"], next(iter(document[_LAYOUTS]))
-    if settings.get("baseline", first) not in faults:
-        return study_from({**document, _LAYOUTS: layouts}), faults
-    settings = {key: value for key, value in settings.items() if key != "baseline"}
-    return replace(study_from({**document, _LAYOUTS: layouts, "study": settings}), baseline=None), faults
+    settings = document["study"]
+    keeps_baseline = settings.get("baseline", next(iter(document[_LAYOUTS]))) not in faults
+    if not keeps_baseline:
+        settings = {key: value for key, value in settings.items() if key != "baseline"}
+    others = {**document, _LAYOUTS: layouts, "study": settings}
+    try:
+        study = study_from(others)
+    except FileError as further:  # free networks are found once all else is valid
+        study, more = study_without(others, further)
+        faults |= more
+    return study if keeps_baseline else replace(study, baseline=None), faults
 
 
 def searched_study_from(document: object) -> Study:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
-from inerter.app.documents import problems_of, study_from, study_without
+from inerter.app.documents import problems_of, searched_study_from, study_from, study_without
 from inerter.errors import InerterError
 from inerter.files.common.problem import EntryError
 from inerter.files.common.problems import FileError
@@ -26,8 +27,9 @@ def check_document(document: object) -> dict[str, Any]:
     notes: list[str] = []
     try:
         study, problems = _valid_part(document)
-        check_study(study)
-        notes = study_notes(study)
+        if study is not None:
+            check_study(study)
+            notes = study_notes(study)
     except InerterError as error:
         problems = [*problems, *problems_of(error)]
     if study is None:
@@ -35,13 +37,23 @@ def check_document(document: object) -> dict[str, Any]:
     return {"problems": problems, "notes": notes, "layouts": _layouts(study), "places": _places(study)}
 
 
-def _valid_part(document: object) -> tuple[Study, list[dict[str, Any]]]:
-    """Study of a document without its invalid layouts, and the problems of these."""
+def _valid_part(document: object) -> tuple[Study | None, list[dict[str, Any]]]:
+    """Study of a document without its invalid layouts, and the problems of these.
+
+    Layouts with free networks are for a search, and no problems. None where no valid layout is left.
+    """
+    problems: list[dict[str, Any]] = []
     try:
-        return study_from(document), []
+        searched_study_from(document)
+    except FileError as error:
+        problems = problems_of(error)
+    try:
+        return study_from(document), problems
     except FileError as error:
         assert isinstance(document, dict)
-        return study_without(document, error)[0], problems_of(error)
+        with suppress(FileError):
+            return study_without(document, error)[0], problems
+        return None, problems
 
 
 def _places(study: Study) -> list[dict[str, Any]]:

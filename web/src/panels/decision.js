@@ -4,7 +4,7 @@ import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
 import { judging, methodTitle, methodsOf } from "../methods.js";
 import { answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
-import { unchosenIn } from "../library.js";
+import { isSearched, searchedLayouts, unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
 import { AskedPanel } from "./asked.js";
 import { indicesOf } from "./answers.js";
@@ -58,6 +58,7 @@ function vehicleOf({ history }) {
 function strutOf(state) {
   const document = state.history.present;
   if (document.layout === "") return "None";
+  if (isSearched(state, document.layout)) return `${document.layout}, to be searched`;
   if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, not chosen`;
   const { is, value } = answerOf(state, "decision");
   /** @type {any[]} */
@@ -94,8 +95,11 @@ function Verdict({ state, blank }) {
   const [problem] = problemsOf(state);
   /** @type {{sentence: string, severity: string, caveats: Caveat[]} | undefined} */
   const verdict = value?.verdict;
-  const failed = is === "none" ? (problem?.sentence ?? sentence ?? "Not computed: the study has no index.") : "";
-  const kind = is === "coming" ? "wait" : failed ? "none" : (verdict?.severity ?? "answer");
+  const searched = searchedLayouts(state);
+  const none = searched.length > 0 ? `No strut to rank: the network of ${searched.join(", ")} is to be searched for.`
+    : "Not computed: the study has no index.";
+  const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : "";
+  const kind = is === "coming" || failed === none ? "wait" : failed ? "none" : (verdict?.severity ?? "answer");
   const told = failed || verdict?.sentence || "Under way";
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
     data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>

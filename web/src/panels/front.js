@@ -40,8 +40,9 @@ function frontIndices(state) {
   return all.length > 1 ? all : known;
 }
 
-/** @param {{state: State}} props */
-export function FrontForm({ state }) {
+/** @param {{store: Store}} props */
+export function FrontForm({ store }) {
+  const state = store.get();
   const indices = frontIndices(state);
   if (indices.length < 2) return html`<span class="quiet">No two indices are known.</span>`;
   const third = (state.history.present.study.study?.trade_off ?? []).length > 2 ? indices[2].symbol : "";

@@ -1,6 +1,6 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
-import { numbersOf, shownElement } from "../library.js";
+import { isSearched, numbersOf, shownElement } from "../library.js";
 import { layoutColour } from "../parts/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
@@ -12,6 +12,7 @@ import { REST, momentOf, passing, pastOf } from "../vehicles/moments.js";
 import { paint, stylesOf } from "../vehicles/paint.js";
 import { posed, trail } from "../vehicles/posed.js";
 import { scene } from "../vehicles/scene.js";
+import { toSearch } from "./search.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Layout, Motion } from "../vehicles/layout.js" */
@@ -55,8 +56,18 @@ export function MotionPanel({ store }) {
     <div class=${`picture ${history.before || isKept ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
+    ${isSearched(state, state.history.present.layout) && html`<${ToSearch} store=${store} />`}
     ${why && html`<p class=${`why ${why.doubt ? "doubt" : ""}`}>${why.words}</p>`}
   </section>`;
+}
+
+/** What stands in the place of the vehicle where a search is to find the network. @param {{store: Store}} props */
+function ToSearch({ store }) {
+  const { layout } = store.get().history.present;
+  return html`<div class="to-search">
+    <p><b>${layout}</b> has a free network: it stands for every network of some springs, dampers and inerters. A search
+      optimises and ranks them all, and any of them goes into the editor.</p>
+    <button type="button" class="main" onClick=${() => toSearch(store)}>Search for the best network</button></div>`;
 }
 
 /** What there is to draw. @param {State} state @param {any} mechanism @param {any} history @returns {Shown | null} */

@@ -5,7 +5,7 @@ import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
 import { brief, printed } from "../state/scale.js";
-import { kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
+import { isFreeNetwork, kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
@@ -20,7 +20,7 @@ const MARGIN = 14;
 const TERMINAL = 1.6;
 const [SMALLEST, LARGEST] = [0.7, 1.7]; // [px] a point of the drawing
 const MANY = 8; // elements from where a drawing may be laid across the page, and has no values in it
-const VALUE = 40; // room of a value in the drawing
+const VALUE = 50; // [pt] room of a value in the drawing
 const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */
@@ -301,8 +301,10 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
   const kind = kindOf(state, one.name);
   const value = valueOf(state, one.name);
   const { elements = {} } = state.history.present.study;
-  const unknown = !kind && (!(one.name in elements) || layoutsWith(state, one.name) !== null);
-  const label = [one.name, kind?.key ?? (unknown ? "unknown element" : ""), value].filter(Boolean).join(", ");
+  const free = isFreeNetwork(state, one.name);
+  const unknown = !kind && !free && (!(one.name in elements) || layoutsWith(state, one.name) !== null);
+  const what = kind?.key ?? (free ? "free network" : unknown ? "unknown element" : "");
+  const label = [one.name, what, value].filter(Boolean).join(", ");
   const select = () => same(store.get().view.path, one.path)
     || store.look({ path: one.path });
   const light = (/** @type {string | null} */ name) => () => store.dispatch({ type: "lit", name });

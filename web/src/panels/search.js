@@ -1,7 +1,7 @@
 // A search for the best network: rankings, which fill while it goes on, the best for each number of elements, the front
 // over all networks, and real inerters; each network can be taken into the editor.
 
-import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
+import { IndexChips, Select, Table, textHandler, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { searchedLayouts } from "../library.js";
@@ -21,22 +21,55 @@ import { FrontView, valuesIn } from "./front.js";
 
 const FRONT = "Front";
 
-/** @param {{state: State}} props */
-export function SearchForm({ state }) {
-  const layouts = searchedLayouts(state);
-  if (layouts.length === 0) return html`<span class="quiet">No layout has a free network.</span>`;
-  const wanted = state.history.present.study.study?.trade_off ?? [goalOf(state)];
-  return html`<${Select} label="layout" name="layout" choices=${layouts.map((layout) =>
-    [layout, `${layout}: up to ${elementsAtMost(state, layout)} elements`])} />
-    <fieldset class="row"><legend class="visually-hidden">Indices</legend>
-      ${indicesOf(state).map(({ symbol, title }) => html`<label key=${symbol} title=${title}><input type="checkbox"
-        name="index" value=${symbol} defaultChecked=${wanted.includes(symbol)} /> ${symbol}</label>`)}</fieldset>`;
+/** Shows the form of a search. @param {Store} store */
+export function toSearch(store) {
+  store.look({ tab: "work", tall: true });
+  requestAnimationFrame(() => {
+    const field = /** @type {HTMLElement | null} */ (document.querySelector(".begin [name=layout]"));
+    field?.closest("form")?.scrollIntoView({ block: "start" });
+    field?.focus();
+  });
 }
 
-/** How many elements the free networks of a layout may have. @param {State} state @param {string} layout */
-const elementsAtMost = ({ parts, history }, layout) => (parts?.layouts[layout]?.free_networks ?? []).reduce(
-  (/** @type {number} */ sum, /** @type {string} */ name) =>
-    sum + Number(entryAt(history.present.study, ["elements", name, "network"]) ?? 0), 0);
+/** Layouts to search, the selected one first. @param {{store: Store}} props */
+export function SearchForm({ store }) {
+  const state = store.get();
+  const { study, layout: here } = state.history.present;
+  const layouts = searchedLayouts(state);
+  const [layout, setLayout] = useChoice(layouts.includes(here) ? [here, ...layouts] : layouts);
+  if (layout === undefined) return html`<span class="quiet">No layout has a free network.</span>`;
+  const wanted = study.study?.trade_off ?? [goalOf(state)];
+  return html`<${Select} label="layout" name="layout" choices=${layouts} value=${layout}
+      set=${setLayout} />
+    <fieldset class="row"><legend class="visually-hidden">Indices</legend>
+      ${indicesOf(state).map(({ symbol, title }) => html`<label key=${symbol} title=${title}><input type="checkbox"
+        name="index" value=${symbol} defaultChecked=${wanted.includes(symbol)} /> ${symbol}</label>`)}</fieldset>
+    ${state.parts?.layouts[layout].free_networks.map((name) => html`<${FreeNetwork} key=${name} store=${store}
+      name=${name} />`)}`;
+}
+
+/** A key of a free network that is a number or a switch, as the library declares it.
+ * @typedef {{key: string, type: string, description: string, minimum?: number, maximum?: number, default?: any}} Key */
+
+/** How many elements a free network may have, and of each kind. @param {{store: Store, name: string}} props */
+function FreeNetwork({ store, name }) {
+  const { about, history } = store.get();
+  const entry = entryAt(history.present.study, ["elements", name]) ?? {};
+  /** @type {Key[]} */
+  const keys = about?.free_networks ?? [];
+  /** @param {string} key @param {unknown} value */
+  const place = (key, value) => store.change({ type: "placed", place: ["elements", name, key], value });
+  return html`<fieldset class="row"><legend class="visually-hidden">${name}</legend>${keys.map((one) => {
+    const { key, type, description, minimum, maximum, default: usual } = one;
+    const value = entry[key] ?? usual;
+    const number = textHandler((text) => place(key, text === "" ? undefined : Number(text)));
+    const switched = (/** @type {any} */ { currentTarget }) => place(key, currentTarget.checked);
+    return html`<label key=${key} title=${description}>${key === "network" ? "elements at most"
+      : key.replaceAll("_", " ")} ${type === "boolean" ? html`<input type="checkbox" checked=${value}
+        onChange=${switched} />` : html`<input type="number" class="short" min=${minimum} max=${maximum}
+        value=${value} placeholder="any" onChange=${number} />`}</label>`;
+  })}</fieldset>`;
+}
 
 /** @param {State} _ @param {FormData} form */
 export const searchBody = (_, form) => ({ layouts: form.getAll("layout"), indices: form.getAll("index") });

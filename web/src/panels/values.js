@@ -188,6 +188,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
   const { row, label, text, range, free, best, set } = amount;
   const { unit, path: place, name } = row;
   const id = idOf(row);
+  const names = own(state.about?.named_values, unit);
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
@@ -229,6 +230,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
+      names=${names}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />
@@ -300,12 +302,13 @@ function dragged({ currentTarget, clientX: begun, pointerId, button, pointerType
 /** A text that is taken over with Enter or on leaving, to where it belonged when it was begun; while nobody is in
  * it, it shows no more digits than fit, and can be dragged.
  * @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void,
- * drag?: ((event: PointerEvent) => void) | false}} props */
-export function Entry({ id, label, text, wrong = false, done, drag = false }) {
+ * names?: {[name: string]: string}, drag?: ((event: PointerEvent) => void) | false}} props */
+export function Entry({ id, label, text, wrong = false, done, drag = false, names }) {
   const [typed, setTyped] = useState(/** @type {{now: string, before: string, done: typeof done} | null} */ (null));
   const [inside, setInside] = useState(false);
   const finish = () => {
-    if (typed !== null && typed.now.trim() !== typed.before) typed.done(completed(typed.now.trim(), typed.before));
+    if (typed !== null && typed.now.trim() !== typed.before) typed.done(completed(typed.now.trim(), typed.before,
+      names));
     setTyped(null);
   };
   /** All digits, chosen at once: if they came with the next drawing, what the keyboard had chosen would be lost.

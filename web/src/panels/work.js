@@ -61,7 +61,7 @@ function Begin({ store, api, kind }) {
   })}>
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>
-    <div class="row">${kind.Form && html`<${kind.Form} state=${state} />`}<button>Begin</button></div>
+    <div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}<button>Begin</button></div>
     ${told && html`<p class="problem" role="alert">${told}</p>`}
   </form>`;
 }
@@ -144,9 +144,9 @@ function sweepable(state) {
   return numbers.toSorted((one, other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
 }
 
-/** @param {{state: State}} props */
-function SweepForm({ state }) {
-  const numbers = sweepable(state);
+/** @param {{store: Store}} props */
+function SweepForm({ store }) {
+  const numbers = sweepable(store.get());
   const [place, setPlace] = useState("");
   const chosen = numbers.find((each) => each.place === place) ?? numbers[0];
   const apart = takenApart(chosen?.text);

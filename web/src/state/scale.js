@@ -1,5 +1,7 @@
 // Sliders on a logarithmic scale, and quantities as they are written: a number and a unit.
 
+import { own } from "./document.js";
+
 export const STEPS = 400;
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$/;
 
@@ -14,18 +16,13 @@ export function takenApart(text) {
 /** @param {number} number @param {string} unit */
 export const quantity = (number, unit) => `${shortest(number)} ${unit}`.trim();
 
-const FORMS_OF_ROUGHNESS = ["m^3/cycle", "m^3/rad", "m^3"];
-const CLASS = /^(?:class\s*)?([a-h])$/i;
-
-/** What was typed in the place of a quantity: a number without a unit has the unit that stands there, and a class of
- * ISO 8608 is the roughness at its centre, Gd(n0) = 16e-6 m^3 in class A and four times as much in each next one.
- * @param {string} typed @param {string} before */
-export function completed(typed, before) {
+/** What was typed in the place of a quantity: a number without a unit has the unit that stands there, and a name is the
+ * value of that name, such as a class of roads. @param {string} typed @param {string} before
+ * @param {{[name: string]: string}} [names] */
+export function completed(typed, before, names = {}) {
   const unit = takenApart(before)?.unit ?? "";
-  const [, letter] = CLASS.exec(typed) ?? [];
-  if (letter && FORMS_OF_ROUGHNESS.includes(unit))
-    return `${16 * 4 ** "abcdefgh".indexOf(letter.toLowerCase())}e-6 m^3`;
-  return takenApart(typed)?.unit === "" ? `${typed} ${unit}`.trim() : typed;
+  const named = own(names, typed.replace(/^class\s*/i, "").toUpperCase());
+  return named ?? (takenApart(typed)?.unit === "" ? `${typed} ${unit}`.trim() : typed);
 }
 
 /** A quantity of many digits with five of them, any other as it was written. @param {string} text */

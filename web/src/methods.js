@@ -1,6 +1,6 @@
 // The methods that the server knows, told apart by what their rows say of them, never by a name.
 
-/** @import { State } from "./state/store.js" */
+/** @import { State, Store } from "./state/store.js" */
 /** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean,
  * averages: boolean}} Method */
 
@@ -20,8 +20,13 @@ export const methodOf = (state, name) => methodsOf(state).find((method) => metho
 /** The one by which the page judges. @param {Pick<State, "about" | "view">} state */
 export const judging = (state) => methodOf(state, state.view.method);
 
+/** What chooses the one by which the page judges. @param {Store} store */
+export const methodChoice = (store) => ({ value: judging(store.get())?.name,
+  choices: methodsOf(store.get()).map((method) => [method.name, methodTitle(method)]),
+  set: (/** @type {string} */ method) => store.look({ method }) });
+
 /** A method in words, with its name. @param {Method} method */
-export function methodTitle({ name, sees }) {
+function methodTitle({ name, sees }) {
   const words = { neither: "without friction and gaps", friction: "with friction",
     both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;

@@ -1,7 +1,7 @@
 // Which layout: all of them ranked by the goal, each with its network, its value, and what it is against the baseline.
 
 import { treeOf, unchosenIn } from "../library.js";
-import { judging, methodTitle, methodsOf } from "../methods.js";
+import { methodChoice } from "../methods.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout, textOf } from "../state/document.js";
 import { estimated, placed, shown, withUnit } from "../state/scale.js";
@@ -24,9 +24,7 @@ export function AnswersPanel({ store }) {
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${answer.is === "coming"}
     data-being=${answer.is} data-keys="Ranking">
     <div class="head"><h2 id="answers-title">Layouts by ${goalOf(state) ?? "no index"}</h2>
-      <${Select} aria-label="Method" value=${judging(state)?.name}
-        choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
-        set=${(/** @type {string} */ method) => store.look({ method })} /></div>
+      <${Select} aria-label="Method" ...${methodChoice(store)} /></div>
     ${sentence && problemsOf(state).length === 0 && html`<p class="problem pad" role="alert">${sentence}</p>`}
     <${Ranking} store=${store} answer=${answer} />
     <${Limits} limits=${value?.rows.find((/** @type {any} */ row) =>

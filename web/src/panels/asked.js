@@ -25,8 +25,11 @@ export function AskedPanel({ store }) {
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
   /** @param {Limit} limit @param {string | undefined} value */
-  const place = ({ path, sense }, value) => store.change({ type: "placed", place: PLACE,
-    value: limited(study.study?.subject_to, [...path, sense], value) });
+  const place = ({ path, sense }, value) => {
+    const { turn, history } = store.get(); // of now: what is typed may be taken over later
+    if (turn === state.turn) store.change({ type: "placed", place: PLACE,
+      value: limited(entryAt(history.present.study, PLACE), [...path, sense], value) });
+  };
   return html`<div class="asked"><b class="legend">Indices and constraints</b>
     <div class="row" role="group" aria-label="Indices of the study">
       ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}

@@ -2,7 +2,7 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
-import { judging, methodTitle, methodsOf } from "../methods.js";
+import { methodChoice } from "../methods.js";
 import { answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
 import { isSearched, searchedLayouts, unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
@@ -80,9 +80,7 @@ function Goal({ store }) {
         ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
           checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
           ${title === symbol ? "" : title} <b>${symbol}</b></label>`)}</fieldset>
-      <${Select} label="Method" value=${judging(state)?.name}
-        choices=${methodsOf(state).map((method) => [method.name, methodTitle(method)])}
-        set=${(/** @type {string} */ method) => store.look({ method })} />
+      <${Select} label="Method" ...${methodChoice(store)} />
       <${AskedPanel} store=${store} />
     </div></details>`;
 }

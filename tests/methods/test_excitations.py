@@ -261,7 +261,7 @@ def with_damped_tyres(car, damping):
     return replace(car, tyres=tuple(tyres))
 
 
-@pytest.mark.parametrize("seed", sampled(range(30), [0, 1, 2], kept=8))
+@pytest.mark.parametrize("seed", sampled(range(12), [0, 2], kept=4))
 @pytest.mark.parametrize("output", ["sprung_displacement", "sprung_velocity", "sprung_acceleration", "travel"])
 def test_the_displacement_of_a_road_drives_a_damped_tyre(seed, output):
     """Against a dense sweep of the gain from its velocity, times omega; the supremum may lie at infinity."""

@@ -68,33 +68,29 @@ def _parts_at(p: Array, degree: int, omega: float) -> Any:
 
 
 @part(borrowing=True)
-def _gain(n: int, space: PeakSpace, omega: float) -> float:
-    """Square of the gain."""
-    real, imag = _parts_at(space.a, n, omega)
-    top, top_imag = _parts_at(space.b, n - 1, omega)
-    return float((top * top + top_imag * top_imag) / (real * real + imag * imag))
-
-
-@part(borrowing=True)
-def _log_slope(p: Array, degree: int, omega: float) -> float:
-    """Derivative of log |p(j omega)| with respect to log omega."""
+def _modulus(p: Array, degree: int, omega: float) -> Any:
+    """Square of |p(j omega)|, and the derivative of its logarithm's half with respect to log omega."""
     real, imag, more, more_imag = 0.0, 0.0, 0.0, 0.0
     for i in range(degree + 1):
         weight = (degree - i) * p[i]
         real, imag = p[i] - omega * imag, omega * real
         more, more_imag = weight - omega * more_imag, omega * more
-    return (real * more + imag * more_imag) / (real * real + imag * imag)
+    square = real * real + imag * imag
+    return square, (real * more + imag * more_imag) / square
 
 
 @part(borrowing=True)
-def _slope(n: int, space: PeakSpace, omega: float) -> float:
-    return _log_slope(space.b, n - 1, omega) - _log_slope(space.a, n, omega)
+def _gain(n: int, space: PeakSpace, omega: float) -> Any:
+    """Logarithm of the gain, and its derivative with respect to log omega."""
+    over, rise = _modulus(space.b, n - 1, omega)
+    under, fall = _modulus(space.a, n, omega)
+    return 0.5 * np.log(over / under), rise - fall
 
 
 @part(borrowing=True)
 def _refine(n: int, space: PeakSpace, low: float, high: float) -> float:
     """Logarithm of the frequency of the maximum between two logarithms, by the slope's sign and secants (Illinois)."""
-    f_low, f_high = _slope(n, space, np.exp(low)), _slope(n, space, np.exp(high))
+    f_low, f_high = _gain(n, space, np.exp(low))[1], _gain(n, space, np.exp(high))[1]
     if not (f_low > 0.0 and f_high < 0.0):
         return 0.5 * (low + high)
     side, x = 0, low
@@ -102,7 +98,7 @@ def _refine(n: int, space: PeakSpace, low: float, high: float) -> float:
         x = (low * f_high - high * f_low) / (f_high - f_low)
         if not low < x < high:
             x = 0.5 * (low + high)
-        f = _slope(n, space, np.exp(x))
+        f = _gain(n, space, np.exp(x))[1]
         if f > 0.0:
             low, f_low = x, f
             if side == 1:
@@ -143,8 +139,9 @@ def _peaks_at(
     omegas: Array,
     heights: Array,
     refined: bool,
+    enough: float,
 ) -> int:
-    """Fill the peaks at a point; their number, 0 where the mechanism is not stable."""
+    """Fill the peaks at a point, none after one as high as `enough`; their number, 0 where the motion is unstable."""
     space.count[0] += 1
     for leaf in range(variables.of_leaf.size):
         if variables.of_leaf[leaf] >= 0:
@@ -176,14 +173,15 @@ def _peaks_at(
     count = 0
     if space.b[n - 1] != 0.0:
         count = _add_peak(count, 0.0, np.log(abs(space.b[n - 1] / space.a[n])), omegas, heights)
+        if heights[0] >= enough:
+            return count
     alike = _ALIKE if refined else _ROUGHLY
     left, depth = low, 0
-    left_height, left_slope = 0.5 * np.log(_gain(n, space, np.exp(low))), _slope(n, space, np.exp(low))
+    left_height, left_slope = _gain(n, space, np.exp(low))
     interval, part_of = 0, 0  # of the grid, and which of its 2^depth parts
     while interval < points - 1:
         right = low + spacing * (interval + (part_of + 1.0) / (1 << depth))
-        omega = np.exp(right)
-        right_height, right_slope = 0.5 * np.log(_gain(n, space, omega)), _slope(n, space, omega)
+        right_height, right_slope = _gain(n, space, np.exp(right))
         change = 0.5 * (left_slope + right_slope) * (right - left)
         if abs(right_height - left_height - change) > alike and depth < _DEEPEST:
             depth += 1
@@ -193,8 +191,10 @@ def _peaks_at(
             height, place = max(left_height, right_height), left if left_height > right_height else right
             if refined:
                 place = _refine(n, space, left, right)
-                height = 0.5 * np.log(_gain(n, space, np.exp(place)))
+                height = _gain(n, space, np.exp(place))[0]
             count = _add_peak(count, np.exp(place), height, omegas, heights)
+            if height >= enough:
+                return count
         left, left_height, left_slope = right, right_height, right_slope
         part_of += 1
         while depth > 0 and part_of % 2 == 0:
@@ -366,7 +366,7 @@ def _go_to(t: float, variables: Variables, space: PeakSpace) -> None:
 def _descend(variables: Variables, program: Program, port: Port, space: PeakSpace) -> float:
     """Minimise from `space.point`, which becomes the optimum; the logarithm of the highest peak."""
     point, trial, k = space.point, space.trial, space.point.size
-    count = _peaks_at(point, variables, program, port, space, space.omega, space.height, True)
+    count = _peaks_at(point, variables, program, port, space, space.omega, space.height, True, np.inf)
     f = _highest(count, space.height)
     if count == 0:
         return f
@@ -388,7 +388,9 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
         t, taken, trial_count = 1.0, False, 0
         for halving in range(_HALVINGS):
             _go_to(t, variables, space)
-            trial_count = _peaks_at(trial, variables, program, port, space, space.trial_omega, space.trial_height, True)
+            trial_count = _peaks_at(
+                trial, variables, program, port, space, space.trial_omega, space.trial_height, True, np.inf
+            )
             new = _highest(trial_count, space.trial_height)
             if new <= f + 1e-4 * t * fall:
                 taken = True
@@ -409,7 +411,7 @@ def _descend(variables: Variables, program: Program, port: Port, space: PeakSpac
                 if corrected <= 0.0:
                     _go_to(1.0, variables, space)
                     trial_count = _peaks_at(
-                        trial, variables, program, port, space, space.trial_omega, space.trial_height, True
+                        trial, variables, program, port, space, space.trial_omega, space.trial_height, True, np.inf
                     )
                     new = _highest(trial_count, space.trial_height)
                     if new <= f + 1e-4 * fall:
@@ -486,7 +488,7 @@ def search_network_peak(
             for i in range(k):
                 space.trial[i] = variables.lower[i] + samples[row, i] * (variables.upper[i] - variables.lower[i])
             count = _peaks_at(
-                space.trial, variables, program, port, space, space.trial_omega, space.trial_height, False
+                space.trial, variables, program, port, space, space.trial_omega, space.trial_height, False, best
             )
             f = _highest(count, space.trial_height)
             if f < best:

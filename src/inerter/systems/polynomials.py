@@ -132,9 +132,7 @@ def _degree_of_gcd(p: Polynomial, q: Polynomial) -> int:
         inverse = pow(b[-1], -1, _PRIME)
         while len(a) >= len(b):
             factor, shift = a[-1] * inverse % _PRIME, len(a) - len(b)
-            for j, c in enumerate(b):
-                a[shift + j] = (a[shift + j] - factor * c) % _PRIME
-            a = trim(a)
+            a = trim(a[:shift] + [(x - factor * c) % _PRIME for x, c in zip(a[shift:], b, strict=True)])
         a, b = b, a
     return len(a) - 1
 
@@ -165,11 +163,15 @@ def positive_roots(p: Polynomial) -> list[tuple[Fraction, Fraction]]:
     p = _without_repeated_roots(p)
     if len(p) < 2:
         return []
-    one = Fraction(1)
-    found = [_above_zero(p, *ends) for ends in _between_zero_and_one(p)]
-    found += [(one, one)] if sum(p) == 0 else []
-    beyond = [_above_zero(p[::-1], *ends) for ends in _between_zero_and_one(p[::-1])]
+    one, bits = Fraction(1), (p[0].bit_length() - p[-1].bit_length()) // (len(p) - 1)
+    first = min(bits, 0) * (len(p) - 1)
+    near = [c << bits * i - first for i, c in enumerate(p)]  # p(2^bits x), whose roots lie around one
+    found = [_above_zero(near, *ends) for ends in _between_zero_and_one(near)]
+    found += [(one, one)] if sum(near) == 0 else []
+    beyond = [_above_zero(near[::-1], *ends) for ends in _between_zero_and_one(near[::-1])]
     found += [(1 / high, 1 / low) for low, high in reversed(beyond)]
+    unit = Fraction(2) ** bits
+    found = [(low * unit, high * unit) for low, high in found]
     for i in range(len(found) - 1):
         while found[i][1] >= found[i + 1][0]:
             found[i], found[i + 1] = _bisect_root(p, *found[i]), _bisect_root(p, *found[i + 1])

@@ -33,6 +33,7 @@ from inerter.kernels.network_polynomials import (
 )
 from inerter.kernels.network_search import Variables, search_network
 from inerter.methods.linear import CONVENTIONS, linear_problem
+from inerter.methods.objective import snap_to_bounds
 from inerter.networks.elements import Bridge, Damper, Element, Free, Inerter, Network, Parallel, Spring, Tied, free
 from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.networks.transform import linearise
@@ -225,9 +226,7 @@ class IndexOverNetwork:
             values = np.asarray(search_network_peak(*given, points, counts)) * np.sqrt(self.port.weights[0])
         else:
             values = np.asarray(search_network(*given, trade_off, points, counts))
-        for end in (lower, upper):  # which logarithms miss by a rounding
-            points = np.where(np.isclose(points, end, rtol=1e-12, atol=0.0), end, points)
-        return CompiledSearch(points, values, counts, self.is_regular)
+        return CompiledSearch(snap_to_bounds(points, lower, upper), values, counts, self.is_regular)
 
 
 def join_indices(several: Sequence[NetworkIndex]) -> tuple[NetworkIndex, NDArray[np.int64]]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+_MISSED = 1e-12  # relative distance from a bound that the rounding of a logarithm explains
 
 
 class Objective(Protocol):
@@ -36,3 +37,10 @@ class Differentiable(Objective, Protocol):
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Values (components,) and gradients (components, values) of the components `which`."""
         ...
+
+
+def snap_to_bounds(points: Array, lower: Array, upper: Array) -> Array:
+    """Values of a search in logarithms, which miss their bounds by a rounding, with the bounds in their place."""
+    for end in (lower, upper):
+        points = np.where(np.abs(points - end) <= _MISSED * end, end, points)
+    return points

@@ -24,10 +24,11 @@ from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Method
 from inerter.methods.network_norm import TRIED, NetworkIndex, join_indices
 from inerter.network_search.front_results import FrontDesign, NetworkFront, collect_front
-from inerter.network_search.plan import SearchPlan, plan_search, start_samples
+from inerter.network_search.plan import SearchPlan, plan_search
 from inerter.network_search.results import FoundNetwork, SearchResult
 from inerter.networks.enumeration import Topology
 from inerter.optimisation.limits import Limit
+from inerter.optimisation.optimise import quasi_random_points
 from inerter.pareto_fronts.pareto import points_at_aims
 from inerter.pareto_fronts.points import FrontPoint, non_dominated
 from inerter.vehicle.vehicle import Vehicle
@@ -165,7 +166,7 @@ def _points_compiled(plan: FrontPlan, scale: FrontScale, task: FrontTask) -> Net
     def values_at(points: Array) -> Array:
         return np.column_stack([one.values(points) for one in each if one is not None])
 
-    samples = start_samples(_BLOCKS * size * TRIED, size, first.seed)
+    samples = quasi_random_points(_BLOCKS * size * TRIED, size, first.seed)
     excess = scale.excesses(values_at(lower * np.exp(samples * spread)))
     ends = [np.log(np.array([end[name] for name in names]) / lower) / spread for end in task.ends]
     relative = float(np.min(scale.size / scale.ideal))

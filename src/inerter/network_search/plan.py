@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from numbers import Integral
 from typing import Any
 
@@ -179,23 +179,20 @@ def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNe
     return found
 
 
-@lru_cache(maxsize=16)
-def start_samples(count: int, size: int, seed: int) -> Array:
-    return quasi_random_points(count, size, seed)
-
-
 def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     assert plan.compiled_index is not None
     network = plan.network(topology)
     lower, upper = np.array(plan.ends(topology)).T
     starts = plan.starts or _STARTS * topology.size
-    found = plan.compiled_index.search(network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed))
+    found = plan.compiled_index.search(
+        network, lower, upper, quasi_random_points(starts * TRIED, topology.size, plan.seed)
+    )
     if found is None:  # for an index that is infinite, or zero, whatever the values
         return _search_by_optimise(plan, topology)
     if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
         starts *= _MORE
         found = plan.compiled_index.search(
-            network, lower, upper, start_samples(starts * TRIED, topology.size, plan.seed)
+            network, lower, upper, quasi_random_points(starts * TRIED, topology.size, plan.seed)
         )
         assert found is not None
     values, points = found.values, found.points

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from numbers import Integral
 
 import numpy as np
@@ -22,7 +22,7 @@ from inerter.methods.composite_index import IndexLike, estimate_of, is_composite
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.network_norm import TRIED, free_strut
 from inerter.methods.norm import Norm, is_exact_norm
-from inerter.methods.objective import Differentiable, Objective
+from inerter.methods.objective import Differentiable, Objective, snap_to_bounds
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.networks.free_network import check_chosen
@@ -218,8 +218,7 @@ def _best(
     same = [
         local.point for local in found if local.value <= best.value * (1.0 + agreement) and local.excess <= kept
     ] or [best.point]
-    point = np.where(np.isclose(best.point, upper, rtol=1e-12, atol=0.0), upper, best.point)
-    point = np.where(np.isclose(point, lower, rtol=1e-12, atol=0.0), lower, point)
+    point = snap_to_bounds(best.point, lower, upper)
     parameters = dict(zip(free, point.tolist(), strict=True))
     design = vehicle.with_values(parameters)
     over_linear = None
@@ -414,8 +413,9 @@ def _starting_points(
     return [points[int(i)] for i in resume_or_compute(points[:starts].tobytes(), best_first)], len(points)
 
 
+@lru_cache(maxsize=16)
 def quasi_random_points(count: int, size: int, seed: int) -> Array:
-    """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start.
+    """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start. They are only read.
 
     Its steps are the powers of the inverse root of x**(size + 1) = x + 1 (M. Roberts, The unreasonable effectiveness of
     quasirandom sequences, 2018). SciPy's sequences are as good, but `scipy.stats` takes half a second to load.

@@ -262,6 +262,9 @@ def test_what_is_not_asked_for_any_more_is_not_begun() -> None:
         (100, 0.6, 2, 1.0, False),  # too early to tell
         (15, 0.9, 14, 1.45, False),  # only the first took long: it loads what all need
         (5, 0.6, 2, 1.2, False),  # over before processes are ready
+        (630, 0.1, 600, 3.1, False),  # nearly over
+        (630, 0.1, 300, 3.1, False),
+        (630, 0.1, 150, 3.1, True),
         (None, 0.6, 3, 2.9, False),  # nobody knows how many there are
         (None, 0.6, 3, 3.1, True),
         (None, 3.1, 1, 3.1, True),

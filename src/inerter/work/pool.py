@@ -187,8 +187,11 @@ class _Start:
         if done == 1:
             self.loading = seconds
         spent = seconds - self.loading
-        rest = spent / (done - 1) * (self.left - done) if self.left is not None and spent > _TOLD else 0.0
-        if seconds > _SHORT or rest > 2.0 * _SHORT:
+        if self.left is None or spent <= _TOLD:
+            is_long = seconds > _SHORT
+        else:
+            is_long = spent / (done - 1) * (self.left - done) > 2.0 * _SHORT
+        if is_long:
             self.starting = self.begin()
         return False
 

@@ -86,3 +86,23 @@ def test_where_modes_cannot_serve_covariances_do():
     refused = CompiledNorm(even.problem)
     refused.__dict__["_modal_arguments"] = None
     assert even._compiled_norms(points) == pytest.approx(refused._compiled_norms(points), rel=1e-9)
+
+
+def test_a_gradient_is_right_at_a_resonance_that_is_sharper_than_the_steps_of_differences():
+    def end(name, *bounds):
+        k, c, b, k1 = (free(0.5 * v, 2.0 * v, f"{letter}{name}") for letter, v in zip("kcbl", bounds, strict=True))
+        return Spring(k) | Damper(c) - (Inerter(b) | Spring(k1))
+
+    struts = end("f", 1e4, 178.5, 6.83, 4350.0), end("r", 1e4, 188.0, 64.0, 2.578e5)
+    car = it.HalfCar(700.0, 900.0, 40.0, 40.0, 1.5e5, 1.5e5, 1.2, 1.4, *struts)
+    objective = it.Norm().objective(car, it.TyreLoad(it.Road(1e-5, 25.0)))
+    point = np.array([v.lower * 2.0 for v in car.free_values().values()])
+    direction = np.cos(np.arange(8.0))
+    _, gradient = objective.value_and_gradient(point)
+
+    def exact_slope(step):
+        ahead, behind = (objective._exact_index(point * np.exp(sign * step * direction)) for sign in (1.0, -1.0))
+        return (ahead - behind) / (2.0 * step)
+
+    expected = (4.0 * exact_slope(1e-6) - exact_slope(2e-6)) / 3.0
+    assert (gradient * point) @ direction == pytest.approx(expected, rel=1e-6)

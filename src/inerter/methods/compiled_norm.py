@@ -37,6 +37,7 @@ Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 _ASIDE = 0.0137  # relative distance from the middle of the bounds, another one for each value
 _ASTRIDE, _SAME = (1e-4, 1e-5), 1e-7  # relative distances at which a gradient is looked at; what it may be off by
+_USABLE = 1e-5  # the same where the norms are not sure: differences without rounding take a search too long
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
@@ -215,25 +216,26 @@ class CompiledNorm:
                     self.problem.part(self.supported_outputs)
                 )._compiled_norms(points)
             return result
-        norms, _, errors = self._with_gradients(points, np.empty(0))
+        norms, _, errors, _ = self._with_gradients(points, np.empty(0))
         norms[~self._sure(points, norms, errors)] = np.nan
         return norms
 
-    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+    def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Bools]:
         """Norms, gradients of their sum with `weights`, none without, and error estimates, by compiled code.
 
-        Over several sources, squares are added up for the outputs that each one excites.
+        The last tells where all is by modes. Over several sources, squares are added up for the outputs that each one
+        excites.
         """
         if self._has_one_exact_source:
             return self._kernel_norms(points, weights)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
-        found = []
+        modal, found = np.ones(points.shape[0], dtype=bool), []
         for seen, one in self.per_source_definitions:
             own = np.ascontiguousarray(points[:, self._columns(one)])
-            norms, behind, of_one = one._of_one_source(own)
+            norms, behind, of_one, by_modes = one._of_one_source(own)
             squares[:, seen] += norms**2
             found.append((norms, behind))
-            errors = np.maximum(errors, of_one)
+            errors, modal = np.maximum(errors, of_one), modal & by_modes
         total = np.sqrt(squares)
         gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
@@ -242,15 +244,18 @@ class CompiledNorm:
                 columns = self._columns(one)
                 own = np.ascontiguousarray(points[row, columns])
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
-        return total, gradients, errors
+        return total, gradients, errors, modal
 
     @cached_property
     def _has_one_exact_source(self) -> bool:
         """Whether one source excites all outputs through an exact filter."""
         return not self.single_source_definitions and self._excess is None and bool(self.reachable_outputs.all())
 
-    def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter."""
+    def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Bools]:
+        """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter.
+
+        The last tells which are by modes.
+        """
         norms, gradients, errors = self._by_modes(points, weights)
         missing = np.isinf(errors)
         if missing.any():
@@ -259,7 +264,7 @@ class CompiledNorm:
             norms[rest], errors[rest] = found[0], found[2]
             if weights.size:
                 gradients[rest] = found[1]
-        return norms, gradients, errors
+        return norms, gradients, errors, ~missing
 
     def _by_modes(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
         """Norms, gradients and error estimates over one source by modes; estimates are infinite where modes fail."""
@@ -276,23 +281,24 @@ class CompiledNorm:
         """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
-    def _of_one_source(self, points: Array) -> tuple[Array, Array, Array]:
+    def _of_one_source(self, points: Array) -> tuple[Array, Array, Array, Bools]:
         """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,).
 
-        The first two are one where the filter is exact or modes do without it.
+        The first two are one where the filter is exact or modes do without it. The last tells where these do.
         """
         if self._excess is None:
-            norms, _, errors = self._kernel_norms(points, np.empty(0))
-            return norms, norms, errors
+            norms, _, errors, by_modes = self._kernel_norms(points, np.empty(0))
+            return norms, norms, errors, by_modes
         norms, _, errors = self._by_modes(points, np.empty(0))
-        behind, rest = norms.copy(), np.flatnonzero(np.isinf(errors))
+        by_modes = np.isfinite(errors)
+        behind, rest = norms.copy(), np.flatnonzero(~by_modes)
         if rest.size:
             found, _, unsure = map(np.asarray, h2_kernels.norms(points[rest], *self.arguments, np.empty(0)))
             own = (self.descriptor, self.arrivals, self._excess.table)
             squares = found**2 + excess_kernels.corrections(points[rest], *own, np.empty(0))[0]
             norms[rest], behind[rest] = np.sqrt(np.maximum(squares, 0.0)), found
             errors[rest] = np.where(np.any(np.isnan(norms[rest]), axis=1), np.inf, unsure)
-        return norms, behind, errors
+        return norms, behind, errors, by_modes
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
@@ -326,16 +332,18 @@ class CompiledNorm:
     def value_and_gradient(self, point: Array) -> tuple[float, Array]:
         """An index of r.m.s. values and its gradient.
 
-        The adjoint's where it is confirmed, else differences: of compiled values where these are sure, else of values
-        without rounding.
+        The adjoint's where modes know the norms or a difference confirms it, else differences: of compiled values where
+        these are sure, else of values without rounding.
         """
         if not self.supported_outputs.all():
             return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
-        norms, gradient, errors, around = self._with_slopes(point)
+        norms, gradient, errors, is_modal = self._with_slopes(point)
         found = value = float(self._combine(norms)[0])
+        allowed = _SAME
         if not self._sure(point[None], norms, errors)[0]:
-            value = self._exact_index(point)
-        if abs(found - value) <= _SAME * value and self._gradient_agrees(point, value, gradient, around):
+            value, allowed = self._exact_index(point), _USABLE
+        agrees = abs(found - value) <= _SAME * value
+        if agrees and (is_modal[0] or self._gradient_agrees(point, gradient, allowed * value)):
             return value, gradient
         slopes = _slopes(lambda place: float(self._combine(self._compiled_norms(place[None]))[0]), point, _FAR)
         return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
@@ -343,30 +351,18 @@ class CompiledNorm:
     def _combine(self, norms: Array) -> Array:
         return self.problem.definition.combine(norms, self.problem.weights)
 
-    def _with_slopes(self, point: Array) -> tuple[Array, Array, Array, Array]:
-        """Norms, gradient of the index, error estimates of the norms, and norms at the first `_ends` of the point."""
+    def _with_slopes(self, point: Array) -> tuple[Array, Array, Array, Bools]:
+        """Norms, gradient of the index, error estimates of the norms, and whether all is by modes."""
         definition, weights = self.problem.definition, self.problem.weights
-        around = self._ends(point, 0)
-        if definition.combination is Combination.SUM_OF_RMS:  # whose slopes need no norms
-            norms, gradients, errors = self._with_gradients(point[None], weights)
-            return norms, gradients[0], errors, self._with_gradients(around, np.empty(0))[0]
-        several = self._with_gradients(np.vstack([point, around]), np.empty(0))[0]
-        norms, gradients, errors = self._with_gradients(point[None], definition.slopes(several[0], weights))
-        return norms, gradients[0], errors, several[1:]
-
-    def _ends(self, point: Array, which: int) -> Array:
-        """Two points on both sides of one, at the step `_ASTRIDE[which]` in logarithms."""
-        return np.asarray(point * self._stretches[which])
+        if definition.combination is not Combination.SUM_OF_RMS:  # whose slopes need no norms
+            weights = definition.slopes(self._with_gradients(point[None], np.empty(0))[0][0], weights)
+        norms, gradients, errors, by_modes = self._with_gradients(point[None], weights)
+        return norms, gradients[0], errors, by_modes
 
     @cached_property
     def _direction(self) -> Array:
         """A generic direction of the logarithms of the free values."""
         return np.asarray(np.cos(1.0 + np.arange(len(self._free))))
-
-    @cached_property
-    def _stretches(self) -> list[Array]:
-        """Factors (2, values) of the free values at both ends of each step."""
-        return [np.exp(step * np.outer([1.0, -1.0], self._direction)) for step in _ASTRIDE]
 
     @property
     def arguments(self) -> tuple[Any, Any, Any]:
@@ -376,17 +372,17 @@ class CompiledNorm:
     def _exact_index(self, point: Array) -> float:
         return float(self._combine(self._exact_norms(point)))
 
-    def _gradient_agrees(self, point: Array, value: float, gradient: Array, around: Array) -> bool:
-        """Whether the gradient agrees with a central difference in one direction; gradients have no error bound.
+    def _gradient_agrees(self, point: Array, gradient: Array, allowed: float) -> bool:
+        """Whether the gradient agrees with a central difference in one direction, but for what is allowed.
 
-        `around` are the norms at the ends of the longer step. The shorter one is for resonances so sharp that the
-        difference by the longer one is off.
+        The adjoint of covariances has no error bound. The shorter step is for resonances so sharp that the difference
+        by the longer one is off.
         """
         slope = (gradient * point) @ self._direction
-        for which, step in enumerate(_ASTRIDE):
-            norms = around if which == 0 else self._with_gradients(self._ends(point, which), np.empty(0))[0]
-            ahead, behind = self._combine(norms)
-            if abs((ahead - behind) / (2.0 * step) - slope) <= _SAME * value:
+        for step in _ASTRIDE:
+            ends = point * np.exp(step * np.outer([1.0, -1.0], self._direction))
+            ahead, behind = self._combine(self._with_gradients(ends, np.empty(0))[0])
+            if abs((ahead - behind) / (2.0 * step) - slope) <= allowed:
                 return True
         return False
 

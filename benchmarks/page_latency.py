@@ -38,7 +38,7 @@ STEP = """async ([position, panels]) => {
   return Math.max(...(await all)) - begun;
 }"""
 FRAMES = """async (seconds) => {
-  const canvas = document.querySelector(".motion canvas");
+  const canvas = document.querySelector(".vehicle canvas");
   const before = Number(canvas.dataset.frames);
   await new Promise((resolve) => setTimeout(resolve, 1000 * seconds));
   return (Number(canvas.dataset.frames) - before) / seconds;
@@ -88,14 +88,12 @@ def _measure(page: Any, link: str, steps: int) -> None:
             page.wait_for_selector(selector)
             print(f"{f'from the {what} to {part}':32} {time.perf_counter() - begun:8.2f} s")
     page.wait_for_timeout(1000)
-    for panels in (["indices"], ["indices", "response"]):
+    for panels in (["decision"], ["decision", "response"]):
         page.evaluate(STEP, [10, panels])
         times = [page.evaluate(STEP, [40 + (37 * i) % 320, panels]) for i in range(steps)]
         late = quantiles(times, n=20)[-1]
         print(f"a step to {' and '.join(panels):22} {median(times):8.1f} ms, 95 % under {late:.1f} ms ({steps} steps)")
-    page.click("#tab-history")
-    page.wait_for_selector(".motion canvas")
-    page.get_by_role("button", name="Play").click()
+    page.wait_for_selector(".vehicle[data-being=current] canvas")
     page.wait_for_timeout(500)
     print(f"frames of the car in motion      {page.evaluate(FRAMES, 3):8.1f} a second")
 

@@ -169,7 +169,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         asked.locator("[name=value]").fill(value)
         asked.get_by_role("button", name="Add").click()
         page.wait_for_selector(told)  # which moves the button: what is pressed meanwhile misses it
-    entry = page.get_by_label("static-stiffness strut at least", exact=True)
+    entry = page.get_by_label("static-stiffness.strut at least", exact=True)
     entry.fill("60 kN/m")
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
@@ -183,7 +183,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         "static-stiffness": {"strut": {"at_least": "60 kN/m"}},
     }
     page.click("#step-2")
-    for name in ("suspension-travel at most", "static-stiffness strut at least"):
+    for name in ("r.m.s. suspension travel at most", "static stiffness of strut at least"):
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]

@@ -21,6 +21,8 @@ export function AskedPanel({ store }) {
   const { study } = state.history.present;
   const asked = indicesIn(study);
   const limits = limitsOf(state);
+  /** @type {{of: string, quantity: string}[]} */
+  const told = answerOf(state, "decision").value?.rows[0]?.limits ?? [];
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
@@ -37,8 +39,10 @@ export function AskedPanel({ store }) {
         set=${() => toggle(symbol)}>${symbol}<//>`)}
     </div>
     ${limits.map((limit) => {
-      const label = [...limit.path, limit.sense.replace("_", " ")].join(" ");
-      return html`<p class="row" key=${label}>${label} <${Entry} id=${`limit ${label}`} label=${label}
+      const of = limit.path.join(".");
+      const label = `${told.find((each) => each.of === of)?.quantity ?? of} ${limit.sense.replace("_", " ")}`;
+      const key = `${of} ${limit.sense}`;
+      return html`<p class="row" key=${key}>${label} <${Entry} id=${`limit ${key}`} label=${label}
         text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
         <button type="button" aria-label=${`Delete the limit: ${label}`}
           onClick=${() => place(limit, undefined)}>Delete</button></p>`;

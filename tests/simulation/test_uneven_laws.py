@@ -328,3 +328,13 @@ class Reach(Push):
     @property
     def limits(self) -> tuple[float, float]:
         return (-10.0 if self.coefficient < 50.0 else 10.0), self.coefficient
+
+
+def test_a_constant_force_changes_no_peak_gain():
+    """It moves the mean, with and without friction beside it; the gain is of the motion about that."""
+    index, method = it.PeakResponse("force", "mass_displacement", amplitude=100.0), it.ExpectedValue()
+    strut = Spring(STIFFNESS) | Damper(100.0) | Friction(0.01)
+    plain, moved = (it.evaluate(oscillator(one), index, method) for one in (strut, strut | Push(80.0)))
+    assert moved.status.ok
+    assert moved.value == pytest.approx(plain.value, rel=1e-5)
+    assert moved.peaks[0].omega == pytest.approx(plain.peaks[0].omega, rel=1e-2)

@@ -33,7 +33,10 @@ _STEPPED = 1e-5  # relative error of a ratio by the time step
 
 @dataclass(frozen=True, eq=False)
 class ForcedResponse:
-    """Ratio of the r.m.s. of an output to that of an input A sin(omega t), in the periodic steady state."""
+    """Ratio of the r.m.s. of an output about its mean to that of an input A sin(omega t), in the periodic steady state.
+
+    The mean is zero but for forces that differ by direction, such as a preload, which moves the mean without any input.
+    """
 
     system: PiecewiseSystem
     path: InputPath  # a force, or a road's displacement or velocity
@@ -53,7 +56,11 @@ class ForcedResponse:
         signals = [signal if name == path.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, table.value[0], "rest")
-        found = steady_squares(self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, repeats=_REPEATS)
+        lower, upper = self.system.mechanics.limits.T
+        uneven = bool(np.any(lower != -upper))
+        found = steady_squares(
+            self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, about_mean=uneven, repeats=_REPEATS
+        )
         return sqrt(2.0 * float(found.power[0])) / self.amplitude, found
 
 

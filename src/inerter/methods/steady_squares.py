@@ -45,13 +45,14 @@ def steady_squares(
     filters: Sequence[Filter | None],
     state: Array,
     most: int = FEW_PERIODS,
+    about_mean: bool = False,
     **repeats: float,
 ) -> Squares:
-    """Mean squares over the period of `table` once the motion repeats.
+    """Mean squares over the period of `table` once the motion repeats, of deviations from the mean if `about_mean`.
 
     The first outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
     """
-    if not any(filters):
+    if not (about_mean or any(filters)):
         found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
             return _nan_squares(len(outputs), integration.status, steady)
@@ -68,6 +69,8 @@ def steady_squares(
     for gain, one in zip(passed, filters, strict=False):
         if one is not None:
             gain[:] = np.abs(one.response(omega)) ** 2
+    if about_mean:
+        lines[:, 0] = 0.0
     lines *= passed
     lines[:, 1 : (count + 1) // 2] *= 2.0
     power = lines.sum(axis=1) / count**2

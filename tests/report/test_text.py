@@ -241,3 +241,16 @@ def test_only_a_doubt_is_marked():
     lines = list(table_lines(Table("Names", columns("Layout", "Value"), rows)))
     assert [line for line in lines if "!" in line] == ["    ! bad"]
     assert lines[-1].strip() == "better for every f"
+
+
+def test_rows_that_share_a_label_are_told_apart_in_every_part_of_a_table():
+    limits, effects = (
+        ["travel of each strut at most 4 mm", "load of each tyre at most 1 kN"],
+        ["not reached", "reached"],
+    )
+    rows = [Row(cells("S1", *each, "some more words")) for each in zip(limits, effects, strict=True)]
+    lines = list(table_lines(Table("Limits", columns("Layout", "Limit", "Effect", "More"), rows), 60))
+    for limit, effect in zip(limits, effects, strict=True):
+        assert [line.split() for line in lines if limit in line] == [
+            ["S1", *limit.split(), *words.split()] for words in (effect, "some more words")
+        ]

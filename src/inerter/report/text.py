@@ -48,14 +48,14 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     labels = [text for text, _ in grid.columns[0].cells]
     if _total_width(grid.columns, cut_headings=True) > width:
         grid = replace(grid, columns=[grid.columns[0].with_short_labels(), *grid.columns[1:]])
-    if not grid.columns[1:]:
+    keys = _n_keys(grid, labels, width)
+    if not grid.columns[keys:]:
         yield from _lines(grid, labels, width)
-    while grid.columns[1:]:
-        count = _count_fitting(grid, width)
+    while grid.columns[keys:]:
+        count = max(_count_fitting(grid, width), keys + 1)
         yield from _lines(replace(grid, columns=grid.columns[:count]), labels, width)
-        grid = _Grid(
-            [replace(row, status="", remark="") for row in grid.rows], [grid.columns[0], *grid.columns[count:]]
-        )
+        rows = [replace(row, status="", remark="") for row in grid.rows]
+        grid = _Grid(rows, [*grid.columns[:keys], *grid.columns[count:]])
     for line in table.failures:
         yield from wrap(line, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
 
@@ -112,6 +112,14 @@ def _text_column(column: Column, cells: Sequence[Cell]) -> _TextColumn:
 
 def _item(column: Column, cell: Cell) -> str:
     return f"{column.heading} = {cell.text}{f' ({cell.remark})' if cell.remark else ''}"
+
+
+def _n_keys(grid: _Grid, labels: Sequence[str], width: int) -> int:
+    """Number of columns that stand before every part of a table: two where labels repeat, if there is room for them."""
+    if len(set(labels)) == len(labels) or not grid.columns[2:]:
+        return 1
+    fits = all(_total_width([*grid.columns[:2], one], cut_headings=True) <= width for one in grid.columns[2:])
+    return 2 if fits and not grid.columns[1].wraps else 1
 
 
 def _count_fitting(grid: _Grid, width: int) -> int:

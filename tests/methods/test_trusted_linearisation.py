@@ -91,3 +91,21 @@ def test_between_slip_and_stick_it_is_not_ok_and_at_both_ends_it_is(index):
 def test_ok_means_within_three_per_cent_for_many(first):
     trusted = [judged(car) for n in range(first, first + 10) for car in (drawn(n).vehicle, half_car(n))]
     assert np.mean(trusted) > 0.25  # half of these cars have friction for their main damper
+
+
+@pytest.mark.parametrize("force", [20.0, 60.0])
+def test_the_motion_across_a_friction_that_sticks_is_not_known(force):
+    """It is all slip: 6e-5 m by simulation, against 9e-7 m of the damper that holds. The force through it is known."""
+    mass = it.Mechanism(
+        coordinates=(it.Coordinate("mass", 50.0),),
+        struts=(it.Strut("strut", Spring(2e4) | Damper(300.0) | Friction(force), {"mass": 1.0}, {}),),
+        forces=(it.Force("push", {"mass": 1.0}),),
+    )
+    shaped = it.FilteredExcitation(it.WhiteForce("push", 4.0), it.Filter([30.0], [1.0, 30.0]))
+    status = {
+        name: it.evaluate(mass, it.RandomResponse({name: 1.0}, shaped), METHOD).status
+        for name in ("mass_displacement", "mass_velocity", "strut_force")
+    }
+    assert [str(status[name].kind) for name in status] == ["inaccurate", "inaccurate", "ok"]
+    many = [it.RandomResponse({name: 1.0}, shaped) for name in status]
+    assert np.isnan(it.evaluate_many(mass, many, {}, METHOD)).tolist() == [[True, True, False]]

@@ -46,6 +46,7 @@ _SHARE = (0.06, 0.82)  # the same as a share of the range that the index has ove
 _SLIPPED = 2.4  # times the share of the time in which the force through a rigid link exceeds friction: the error
 _NEGLIGIBLE = 0.1  # of the promise, up to which the error by one friction is not looked at twice
 _BETWEEN = 13  # dampers that stand for all that a friction may become
+_SOFTER = 10.0  # part of a damper that holds: an index of what is held is the same with it
 _FIRM = 1e4  # times a typical damper is as good as a rigid link for that
 
 Speeds = Callable[[Array, NDArray[np.intp]], Array]
@@ -283,6 +284,8 @@ class GaussianClosure:
         Where that is more than `promise`, a friction counts only by a share of the range that the index has without it,
         with a rigid link in its place, and with any damper between: it may not matter. (The ends alone do not tell: the
         index may have a minimum between two that are alike.)
+
+        An index that vanishes with the slip of a friction that sticks, such as the travel across it, has no bound.
         """
         free, designs, unlike = self.free, solved.designs, solved.unlike.copy()
         damping = np.full((designs.size, len(free.parts.dampers)), _FIRM * free.parts.scale)
@@ -301,6 +304,12 @@ class GaussianClosure:
                 spread = np.ptp(found, axis=0) / np.min(found, axis=0)
             part = solved.share[here, i] * np.where(np.isnan(spread), np.inf, spread)
             unlike[here, i] = np.fmin(unlike[here, i], part)
+        stuck = np.ones(unlike.shape, dtype=bool)
+        stuck[:, self._numbers(solved.pattern)] = solved.dampers.sticks
+        if stuck.any():
+            softer = np.where(stuck, damping / _SOFTER, damping)
+            held, less = (free.index.evaluate_points(free.rows(points[designs], one)) for one in (damping, softer))
+            unlike[stuck & (np.abs(less - held) > PROMISE * held)[:, None]] = np.inf
         return np.asarray(unlike.sum(axis=1))
 
     def values(self, points: Array) -> Array:

@@ -16,7 +16,7 @@ from inerter.simulation import event_driven
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import check_holds, parts_of, tabulate
 from inerter.simulation.observe import trajectory_of
-from inerter.simulation.periodic_steady_state import mean_squares, recorded_period, repeating
+from inerter.simulation.periodic_steady_state import mean_squares, recorded_period
 from inerter.systems.piecewise import piecewise
 
 ROAD = Road(roughness=5e-7, speed=25.0)
@@ -198,7 +198,7 @@ def test_a_recorded_period_is_the_steady_state(period):
     car = paper_quarter_car(S3)
     road = it.multisine(ROAD, seed=4, lowest=1.0 / period, highest=50.0)
     system = piecewise(car)
-    table = repeating(tabulate([road, None], [0.0, 0.0], period, 2e-3))
+    table = tabulate([road, None], [0.0, 0.0], period, 2e-3).repeating
     run, mismatch = recorded_period(system, table)
     assert mismatch <= 1e-6
     steady = it.simulate(car, road=road, initial="periodic", step=2e-3)

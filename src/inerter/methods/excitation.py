@@ -16,7 +16,6 @@ from inerter.signals.records import held_noise
 from inerter.signals.signal import Signal
 from inerter.simulation.inputs import InputTable, parts_of, tabulate
 from inerter.simulation.observe import sampled_input
-from inerter.simulation.periodic_steady_state import repeating
 from inerter.validation import check_positive
 
 Array = NDArray[np.float64]
@@ -162,7 +161,7 @@ def _tabulate_realisation(drive: ExcitedInputs, seed: int) -> tuple[InputTable, 
     parts = parts_of(interval, delays) if drive.excitation.is_held else 1
     table = tabulate(signals, delays, period, interval / parts, every=parts)
     power = drive.power(sampled_input(table, 0, drive.first))
-    return (repeating(table) if drive.excitation.is_held else table), power
+    return (table.repeating if drive.excitation.is_held else table), power
 
 
 _kept = lru_cache(maxsize=32)(_tabulate_realisation)

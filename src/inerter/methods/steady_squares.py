@@ -126,10 +126,13 @@ def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
     independently of all others: N of them in a period T change a r.m.s. value by (h / T) sqrt(N / 12) J, as one
     standard deviation. With a filter y is what has passed through it twice. What begins to slip does not jump.
     """
+    met = "jumps", tuple(outputs), integration.modes.state[: integration.count].tobytes()
+    if met not in integration.known:
+        integration.known[met] = jump_sizes(integration, outputs)
     events = integration.record.events[: integration.events]
     ends = np.bincount(events["element"][events["before"] != 0], minlength=len(integration.system.nonlinear))
     steps = max(integration.table.samples - 1, 1)
-    return np.asarray(np.sqrt(ends @ jump_sizes(integration, outputs) ** 2 / 12.0) / steps)
+    return np.asarray(np.sqrt(ends @ integration.known[met] ** 2 / 12.0) / steps)
 
 
 def mean_bound(shares: Sequence[Array]) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import product
 from math import prod
 from typing import Any
 
@@ -51,6 +52,7 @@ MOST_ELEMENTS = 12
 _SEGMENTS, _PIECES = 200_000, 4000  # at most between two looks at the keyboard: some 10 ms
 _TERMS = 31  # of a series, at most
 _KEPT = 16  # machines, such as of one design on many roads
+_MET_BY_ROADS = 2  # elements whose combinations of states random roads visit nearly all
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 _GAUSS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
@@ -71,6 +73,7 @@ class Integration:
     knots: Knots
     record: History
     account: Account
+    known: dict[Any, Matrix]  # what follows from the modes of a system, for all integrations of it
     count: int = 0
     status: Status = OK
     warning: Status = OK  # of a run that went to its end
@@ -256,7 +259,7 @@ def start(
         table=table,
         march=machine.march,
         mechanics=machine.mechanics,
-        modes=copy_of(machine.modes),
+        modes=own_modes(machine.modes),
         begun=state,
         used=machine.used,
         motion=_motion(system, state, settled),
@@ -264,6 +267,7 @@ def start(
         knots=knots(table),
         record=_record(sizes, state, table.samples if keep else 0),
         account=_account(system, account),
+        known=machine.known,
         count=machine.count,
     )
     if after is not None and after.mechanism == system.mechanism:
@@ -278,7 +282,8 @@ class _Machine:
     mechanics: Mechanics
     march: March
     used: NDArray[np.int64]
-    modes: Modes  # for integrations to copy: each adds its own
+    modes: Modes  # for integrations to copy, unless they are all: each adds its own
+    known: dict[Any, Matrix]
     count: int  # modes that are built
 
 
@@ -286,7 +291,7 @@ class _Machine:
 def _machine(
     system: PiecewiseSystem, outputs: tuple[str, ...], account: bool, moving: tuple[bool, ...], jumps: int, step: float
 ) -> _Machine:
-    """The machine of a system, kept for further runs; with all three modes if they will be met."""
+    """The machine of a system, kept for further runs; with all modes if these are few and will be met."""
     rows = [output_rows(system, system.outputs[name]) for name in outputs] + (energy_rows(system) if account else [])
     mechanics, used = _mechanics(system, rows, len(outputs)), _used_knot_numbers(system, moving, rows)
     sizes, limits = mechanics.sizes, mechanics.limits
@@ -297,30 +302,33 @@ def _machine(
         march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
         _modes(mechanics, lines, followed + swaying),
     )
-    machine, count = _Machine(mechanics, march, used, modes, 0), 0
-    if sizes.elements == 1 and np.isfinite(limits).all() and limits[0, 0] < limits[0, 1]:
-        for state in (0, 1, -1):
-            _add_mode(machine, modes, count, np.array([state]), step)
-            count += 1
+    machine, count = _Machine(mechanics, march, used, modes, {}, 0), 0
+    switch = bool(np.all(np.isfinite(limits)) and np.all(limits[:, 0] < limits[:, 1]))
+    if switch and 1 <= sizes.elements <= (_MET_BY_ROADS if outputs else 1):
+        for states in product((0, 1, -1), repeat=sizes.elements):
+            count += _add_mode(machine, modes, count, np.array(states, dtype=np.int64), step)
     return replace(machine, count=count)
 
 
 def _add_mode(machine: _Machine | Integration, modes: Modes, m: int, states: NDArray[np.int64], step: float) -> bool:
     """Fill mode m, in which the nonlinear elements are in these states; False if it is singular."""
-    modes.state[m], modes.number[_code(states)] = states, m
+    modes.state[m] = states
     rows = (modes.state[m], modes.conditions[m], modes.maps[m], modes.reaction[m], modes.limits[m])
     if not build(machine.mechanics, Mode(*rows, modes.entry_limits[m])):
         return False
+    modes.number[_code(states)] = m
     sizes, first, shape = machine.mechanics.sizes, machine.mechanics.rows, machine.march.shape
     modes.reach[m] = discretise(sizes, first, machine.used, shape, modes.maps[m], modes.steps[m], step)
     return True
 
 
-def copy_of(modes: Modes) -> Modes:
-    """Modes that can be added to."""
+def own_modes(modes: Modes) -> Modes:
+    """Modes that can be added to; the same if there are no others."""
+    if np.all(modes.number >= 0):
+        return modes
     steps = aligned_zeros(*modes.steps.shape)
     steps[:] = modes.steps
-    return Modes(*(array.copy() for array in modes))._replace(steps=steps)
+    return Modes(*(steps if array is modes.steps else array.copy() for array in modes))
 
 
 def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]], squares: int) -> Mechanics:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
@@ -53,6 +53,16 @@ class InputTable:
     def samples(self) -> int:
         """Number of samples."""
         return int(self.sampled.size)
+
+    @cached_property
+    def repeating(self) -> InputTable:
+        """Table of one period preceded by its own end, so that inputs may jump where the period starts again."""
+        before, slope = self.value_before.copy(), self.slope_before.copy()
+        before[0], slope[0] = before[-1], slope[-1]
+        special = self.special
+        if not self.jumps and special[0] != 0 and not np.array_equal(before[0], self.value[0]):
+            special = np.concatenate([[0], special])
+        return replace(self, value_before=before, slope_before=slope, special=special)
 
 
 class RunInputs(TypedDict, total=False):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,16 +45,6 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     return period
 
 
-def repeating(table: InputTable) -> InputTable:
-    """Table of one period preceded by its own end, so that inputs may jump where the period starts again."""
-    before, slope = table.value_before.copy(), table.slope_before.copy()
-    before[0], slope[0] = before[-1], slope[-1]
-    special = table.special
-    if not table.jumps and special[0] != 0 and not np.array_equal(before[0], table.value[0]):
-        special = np.concatenate([[0], special])
-    return replace(table, value_before=before, slope_before=slope, special=special)
-
-
 def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
     """The last period, recorded, and how well it repeats: the change of the state over it, relative to its size.
 
@@ -83,7 +72,7 @@ def settle(
     system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool
 ) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats; an integration at the start of the one to record."""
-    again = repeating(table)
+    again = table.repeating
     quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
     recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
@@ -106,7 +95,7 @@ def mean_squares(
     integration's `status` or `warning` say holds for the squares.
     """
     begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeat_period(begun, repeating(table), repeats, most)
+    integration, settled = _repeat_period(begun, table.repeating, repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _steady_state_warning(settled)
     return integration.record.squares / (table.samples - 1), integration, settled

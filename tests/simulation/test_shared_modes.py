@@ -1,0 +1,40 @@
+"""Modes that integrations of a system share change nothing."""
+
+import numpy as np
+import pytest
+from strategies import paper_half_car, paper_quarter_car
+
+import inerter as it
+from inerter.simulation import event_driven
+from inerter.simulation.inputs import tabulate
+from inerter.systems.piecewise import piecewise
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+STRUT = it.Spring(1.2e5) | it.Damper(3000.0) | it.Friction(40.0)
+
+
+def integrated(car, outputs):
+    system, road = piecewise(car), it.multisine(ROAD, seed=1, lowest=1.0)
+    roads, forces = len(system.mechanism.roads), len(system.mechanism.forces)
+    table = tabulate([road] * roads + [None] * forces, [0.0, 0.08][:roads] + [0.0] * forces, 1.0, 5e-4)
+    runs = [event_driven.start(system, table, np.zeros(system.order), outputs) for _ in range(2)]
+    for run in runs:
+        run.advance(table.time.size - 1)
+    return runs
+
+
+@pytest.mark.parametrize("car", [paper_quarter_car(STRUT), paper_half_car(STRUT, STRUT)])
+def test_runs_with_all_modes_share_them_and_equal_those_that_build_their_own(car, monkeypatch):
+    outputs = ["sprung_acceleration"]
+    shared, again = integrated(car, outputs)
+    assert shared.modes is again.modes
+    assert shared.events > 0
+    monkeypatch.setattr(event_driven, "_MET_BY_ROADS", 0)
+    own, other = integrated(car, outputs)
+    assert own.modes is not other.modes
+    assert own.count <= shared.count
+    assert np.array_equal(again.record.states, shared.record.states)
+    for run in (own, other):  # a mode that is built in between is entered anew, which rounds once more
+        np.testing.assert_allclose(run.record.states, shared.record.states, rtol=0.0, atol=1e-12)
+        assert run.record.squares == pytest.approx(shared.record.squares, rel=1e-12)
+        assert run.events == shared.events

@@ -7,7 +7,7 @@ and rows of a step are computed in groups that one instruction takes.
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -108,20 +108,22 @@ def apply_jumps(jumps: Array, knots: Knots, k: int, path: Path, b: int, shape: M
 
 
 @part(inside=True, borrowing=True, fused=True)
-def follow(lines: Array, path: Path, b: int, steps: int, groups: Array, shape: MarchShape) -> None:
-    """Fill these groups of what follows from the state before step b and the inputs of so many `steps`."""
+def follow(lines: Array, path: Path, b: int, steps: int, g: int, shape: MarchShape) -> Any:
+    """Group g of what follows from the state before step b and the inputs of so many `steps`.
+
+    Nothing is stored here, so that two of these take a state, or a line, from memory once.
+    """
     n, m = shape.states, shape.inputs
-    for g in groups:
-        total, other = lines[n + steps * m, g], 0.0
-        for s in range(steps):  # the inputs first, which need not wait for the state
-            for j in range(m):
-                total = multiply_add(lines[n + s * m + j, g], path.inputs[b + s, j], total)
-        for j in range(0, n - 1, 2):  # two sums, which need not wait for each other
-            total = multiply_add(lines[j, g], path.rows[b, j], total)
-            other = multiply_add(lines[j + 1, g], path.rows[b, j + 1], other)
-        if n % 2:
-            other = multiply_add(lines[n - 1, g], path.rows[b, n - 1], other)
-        path.row_groups[b + steps, g] = total + other
+    total, other = lines[n + steps * m, g], 0.0
+    for s in range(steps):  # the inputs first, which need not wait for the state
+        for j in range(m):
+            total = multiply_add(lines[n + s * m + j, g], path.inputs[b + s, j], total)
+    for j in range(0, n - 1, 2):  # two sums, which need not wait for each other
+        total = multiply_add(lines[j, g], path.rows[b, j], total)
+        other = multiply_add(lines[j + 1, g], path.rows[b, j + 1], other)
+    if n % 2:
+        other = multiply_add(lines[n - 1, g], path.rows[b, n - 1], other)
+    return total + other
 
 
 @part(inside=True, borrowing=True)
@@ -237,9 +239,8 @@ def march_steps(
     )
     single = in_groups(lines.steps, 0, (one, columns))
     double = in_groups(lines.steps, (one + shape.jumps) * columns, (one + shape.inputs, columns))
-    groups = path.row_groups.shape[1]
-    with_states = max((n * groups + shape.rows - 1) // max(shape.rows, 1), 0)
-    every, own, others = range(groups), range(with_states), range(with_states, groups)
+    rows, groups = path.row_groups, path.row_groups.shape[1]
+    own = max((n * groups + shape.rows - 1) // max(shape.rows, 1), 0)  # groups with states
     for i in range(n):
         path.rows[0, i] = lines.state[i]
     k, safe, count = span.first, 0, 0
@@ -250,14 +251,19 @@ def march_steps(
         if shape.jumps:
             for b in range(count):
                 apply_jumps(jumps, knots, k + b, path, b, shape)
-                follow(single, path, b, 1, every, shape)
+                for g in range(groups):
+                    rows[b + 1, g] = follow(single, path, b, 1, g, shape)
         else:
             for b in range(0, count - 1, 2):
-                follow(single, path, b, 1, every, shape)
-                follow(double, path, b, 2, own, shape)
-                follow(single, path, b + 1, 1, others, shape)
+                for g in range(own):
+                    one, two = follow(single, path, b, 1, g, shape), follow(double, path, b, 2, g, shape)
+                    rows[b + 1, g], rows[b + 2, g] = one, two
+                for g in range(own, groups):
+                    one, two = follow(single, path, b, 1, g, shape), follow(single, path, b + 1, 1, g, shape)
+                    rows[b + 1, g], rows[b + 2, g] = one, two
             if count % 2:
-                follow(single, path, count - 1, 1, every, shape)
+                for g in range(groups):
+                    rows[count, g] = follow(single, path, count - 1, 1, g, shape)
         safe = count_safe(lines.limits, steps, path, count, shape)
         if shape.jumps and safe < count:
             for i in range(n):

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _HIGHEST = 100.0  # [Hz] of the road's lines: what moves a vehicle lies below
 _TIMES = 8  # at least, a period of the highest line
-_TOGETHER = 2**19  # times of several roads at once: 8 MB
+_TOGETHER = 2**15  # times of several roads at once: few enough for a cache
 
 
 @dataclass(frozen=True, eq=False)

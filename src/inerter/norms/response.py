@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError
+from inerter.kernels.modal_sums import add_modes
 from inerter.norms.delay import pade, transfer
 from inerter.norms.stability import balance
 from inerter.systems.linear import LinearSystem, check_system
@@ -104,14 +105,15 @@ def _modal(system: LinearSystem, within: float) -> Any:
         excited = np.linalg.solve(vectors, (system.B / scale[:, None]).astype(complex))
     except np.linalg.LinAlgError:
         return exact
-    residues = (system.C * scale @ vectors).T[:, :, None] * excited[:, None, :]
+    residues = np.ascontiguousarray((system.C * scale @ vectors).T[:, :, None] * excited[:, None, :])
+    poles = poles.astype(complex)
 
     def evaluate(omega: NDArray[np.float64]) -> Complex:
         if omega.size <= 10 * poles.size or not poles.size:
             return np.asarray(exact(omega))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.tensordot(1.0 / (1j * omega[:, None] - poles), residues, 1)
-        worst = np.unique([0, omega.size - 1, *np.argmin(np.abs(1j * omega[:, None] - poles), axis=0)])
+        found = np.zeros((omega.size, *residues.shape[1:]), dtype=complex)
+        add_modes(np.ascontiguousarray(omega), poles, residues, found)
+        worst = np.unique([0, omega.size - 1, *(int(np.argmin(np.abs(omega - pole.imag))) for pole in poles)])
         known = exact(omega[worst])
         with np.errstate(invalid="ignore"):
             close = np.abs(found[worst] - known).max(axis=0) <= within * np.abs(known).max(axis=0)

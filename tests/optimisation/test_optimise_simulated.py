@@ -9,7 +9,7 @@ from strategies import paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, free
-from inerter.optimisation.local import trust_region
+from inerter.optimisation.local import LocalOptimum, descend, trust_region
 from inerter.work.progress import ProgressStep, receiving_steps
 
 J1 = RideComfort(Road(roughness=5e-7, speed=25.0))
@@ -119,3 +119,45 @@ def test_a_costly_search_counts_each_evaluation_once(size):
     assert [step.done for step in steps] == list(range(1, bowl.asked + 1))
     assert found.evaluations == bowl.asked
     assert {step.total for step in steps} == {60 * size}
+
+
+def test_no_design_is_simulated_twice(monkeypatch):
+    """Also not for the comparison with the best linear design."""
+    asked = []
+
+    def estimate(self, vehicle, index):
+        asked.append(tuple(vehicle.strut.elements()))
+        return simulated(self, vehicle, index)
+
+    simulated = ExpectedValue.estimate
+    monkeypatch.setattr(ExpectedValue, "estimate", estimate)
+    car, method = paper_quarter_car(k | c | Friction(20.0)), ExpectedValue(realisations=2, seed=0, jobs=1)
+    best = it.optimise(car, J1, method, seed=0)
+    assert len(asked) == len(set(asked)) > 5
+    monkeypatch.undo()
+    linear = it.optimise(car, J1, Norm(), seed=0).design
+    assert best.gain_over_linear.first == it.evaluate(best.design, J1, method)
+    assert best.gain_over_linear.second == it.evaluate(linear, J1, method)
+
+
+class LogarithmicBowl:
+    """An index with its minimum at 3, and the number of times it was asked for."""
+
+    asked = 0
+
+    def value_and_gradient(self, point):
+        self.asked += 1
+        distance = np.log(point / 3.0)
+        return float(1.0 + distance @ distance), 2.0 * distance / point
+
+
+def test_a_search_that_comes_close_to_a_known_end_has_that():
+    lower, upper, start = np.full(2, 0.1), np.full(2, 100.0), np.array([0.7, 40.0])
+    alone, told = LogarithmicBowl(), LogarithmicBowl()
+    found = descend(alone, start, lower, upper)
+    np.testing.assert_allclose(found.point, 3.0, rtol=1e-6)
+    known = [LocalOptimum(np.full(2, 1.0), np.inf, 7), LocalOptimum(np.array([3.001, 2.999]), 1.0 + 1e-6, 7)]
+    again = descend(told, start, lower, upper, known)
+    assert np.array_equal(again.point, known[1].point)
+    assert again.value == known[1].value
+    assert again.evaluations == told.asked <= alone.asked

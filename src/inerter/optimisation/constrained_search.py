@@ -115,7 +115,7 @@ def _log_rows(function: Differentiable, point: Array, which: Any, following: boo
 
 def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalOptimum]:
     """A local search from each start; those close to the best feasible one are converged fully."""
-    near = searches_from(first, partial(_approach_minimax, problem), APPROACHED)
+    near = searches_from(first, lambda start, _: _approach_minimax(problem, start), APPROACHED)
     near.sort(key=lambda local: (max(local.excess, _TIGHT), local.value))
     ended: list[LocalOptimum] = []
     for number, local in enumerate(near):

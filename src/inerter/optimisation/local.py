@@ -8,7 +8,9 @@ until there are none.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import scipy
@@ -21,6 +23,7 @@ from inerter.work.progress import count_evaluation, report
 Array = NDArray[np.float64]
 _LEVEL_TOLERANCE = 1e-9  # relative height of a peak above the level that ends the minimax search
 _MOST_PEAKS = 8  # slots for peaks during the approach
+SAME_PLACE = 0.01  # logarithmic distance up to which two searches approach the same optimum
 _HIDDEN = -700.0  # logarithm of an absent component
 
 
@@ -34,8 +37,14 @@ class LocalOptimum:
     excess: float = 0.0  # constraint violation of the logarithm
 
 
-def descend(objective: Differentiable, start: Array, lower: Array, upper: Array) -> LocalOptimum:
-    """The local optimum of a smooth index that is reached from `start` within the bounds."""
+def descend(
+    objective: Differentiable, start: Array, lower: Array, upper: Array, known: Sequence[LocalOptimum] = ()
+) -> LocalOptimum:
+    """The local optimum of a smooth index that is reached from `start` within the bounds.
+
+    It is one of those `known` if the search comes as close to that as `SAME_PLACE`.
+    """
+    reached: list[LocalOptimum] = []
 
     def logarithm(x: Array) -> tuple[float, Array]:
         point = np.clip(np.exp(x), lower, upper)  # exp(log(bound)) may miss the bound by rounding
@@ -45,14 +54,24 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
             return -_HIDDEN, np.zeros_like(x)
         return float(np.log(value)), gradient * point / value
 
-    result = scipy.optimize.minimize(
+    def stop_at_known(x: Array) -> None:
+        near = (end for end in known if np.isfinite(end.value) and np.abs(x - np.log(end.point)).max() < SAME_PLACE)
+        reached.extend(near)
+        if reached:
+            raise StopIteration
+
+    minimize: Any = scipy.optimize.minimize
+    result = minimize(
         logarithm,
         np.log(start),
         jac=True,
+        callback=stop_at_known if known else None,
         method="L-BFGS-B",
         bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
         options={"maxiter": 300, "ftol": 1e-15, "gtol": 1e-9},
     )
+    if reached:
+        return replace(reached[0], evaluations=int(result.nfev))
     value = np.inf if result.fun >= -_HIDDEN else float(np.exp(result.fun))
     return LocalOptimum(np.clip(np.exp(result.x), lower, upper), value, int(result.nfev))
 
@@ -60,9 +79,10 @@ def descend(objective: Differentiable, start: Array, lower: Array, upper: Array)
 def trust_region(objective: Objective, start: Array, lower: Array, upper: Array) -> LocalOptimum:
     """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
     best, count, most = [LocalOptimum(start, np.inf, 0)], [0], 60 * start.size
+    origin = np.log(start)
 
     def logarithm(x: Array) -> float:
-        point = np.clip(np.exp(x), lower, upper)
+        point = start if np.array_equal(x, origin) else np.clip(np.exp(x), lower, upper)
         value = float(objective.values(point[None])[0])
         count[0] += 1
         report_costly_search(count[0], most, best[0])
@@ -72,7 +92,7 @@ def trust_region(objective: Objective, start: Array, lower: Array, upper: Array)
 
     result = scipy.optimize.minimize(
         logarithm,
-        np.log(start),
+        origin,
         method="COBYQA",
         bounds=scipy.optimize.Bounds(np.log(lower), np.log(upper)),
         options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-3, "maxfev": most},

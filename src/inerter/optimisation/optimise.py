@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, InerterError, Status, StatusKind
 from inerter.formatting import format_alike
-from inerter.methods.compare import Comparison, compare
+from inerter.methods.compare import Comparison, Known, compare
 from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite, objective_of
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
+from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.network_norm import TRIED, free_strut
 from inerter.methods.norm import Norm, is_exact_norm
 from inerter.methods.objective import Differentiable, Objective, snap_to_bounds
@@ -30,7 +31,7 @@ from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
 from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
+from inerter.optimisation.local import SAME_PLACE, LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
@@ -45,7 +46,6 @@ COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
 _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches from the best of them, of a costly index
 _APART = 0.05  # logarithmic distance above which two starts of such searches are distinct
 _PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is converged fully
-_SAME_PLACE = 0.01  # logarithmic distance up to which two searches for a peak gain approach the same optimum
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -224,7 +224,10 @@ def _best(
     over_linear = None
     if linear is not None:
         best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
-        over_linear = compare(design, best_linear, index, method)
+        known: Known = (None, None)
+        if isinstance(objective, SampledObjective):
+            known = objective.estimate_at(point, method.estimate), objective.estimate_at(linear, method.estimate)
+        over_linear = compare(design, best_linear, index, method, known=known)
     held = constraint_results(
         problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value)
     )
@@ -321,7 +324,7 @@ def _quick_optima(
             first, _ = _starting_points(problem if limits else problem.objective, *bounds, starts, seed)
         except InerterError:
             continue
-        found = sorted(_searches(problem, first), key=lambda local: (max(local.excess, KEPT), local.value))
+        found = sorted(_searches(problem, first, quick=True), key=lambda local: (max(local.excess, KEPT), local.value))
         return [local.point for local in found if np.isfinite(local.value)]
     return _starting_points(objective_of(vehicle, index, method), *bounds, _MOST_TRIED, seed)[0]
 
@@ -354,22 +357,27 @@ def _costly_searches(problem: ConstrainedProblem, tried: list[Array]) -> tuple[l
     return found, len(tried)
 
 
-def _searches(problem: ConstrainedProblem, first: list[Array]) -> list[LocalOptimum]:
-    """A local search from each start; for a peak gain only those close to the best are converged fully."""
+def _searches(problem: ConstrainedProblem, first: list[Array], quick: bool = False) -> list[LocalOptimum]:
+    """A local search from each start; for a peak gain only those close to the best are converged fully.
+
+    A `quick` one ends close to where another one has ended.
+    """
     if problem.bounds:
         return searches(problem, first)
     objective, lower, upper = problem.objective, problem.lower, problem.upper
     assert isinstance(objective, Differentiable)
     if not first or objective.active(first[0]) is None:
-        return searches_from(first, lambda start: descend(objective, start, lower, upper), 1.0)
-    near = searches_from(first, lambda start: approach(objective, start, lower, upper), APPROACHED)
+        return searches_from(
+            first, lambda start, found: descend(objective, start, lower, upper, found if quick else ()), 1.0
+        )
+    near = searches_from(first, lambda start, _: approach(objective, start, lower, upper), APPROACHED)
     near.sort(key=lambda local: local.value)
     ended: list[LocalOptimum] = []
     for number, local in enumerate(near):
         if local.value > near[0].value * (1.0 + _PROMISING):
             ended.append(local)
             continue
-        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
+        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < SAME_PLACE)
         same = next(here, None)
         if same is None:
             share = APPROACHED + (1.0 - APPROACHED) * number / len(near)

@@ -17,13 +17,15 @@ _KEPT = 1e-4  # of a logarithm beyond its limit up to which a value is reported 
 SAMPLED, APPROACHED = 0.02, 0.95  # shares of a search that are done with its sample, and with all first searches
 
 
-def searches_from(starts: Sequence[Array], search: Callable[[Array], LocalOptimum], end: float) -> list[LocalOptimum]:
-    """The end of a search from each start; `end` is the share of all work that is done then."""
+def searches_from(
+    starts: Sequence[Array], search: Callable[[Array, Sequence[LocalOptimum]], LocalOptimum], end: float
+) -> list[LocalOptimum]:
+    """The end of a search from each start, which gets those before; `end` is the share of all work done then."""
     found: list[LocalOptimum] = []
     for number, start in enumerate(starts):
         share = end - (end - SAMPLED) * (1.0 - number / len(starts)) ** _SHORTER
         report("starts", number, len(starts), best=lowest_feasible(found), share=share)
-        found.append(resumable_search(start, lambda start=start: search(start)))  # type: ignore[misc]
+        found.append(resumable_search(start, lambda start=start: search(start, found)))  # type: ignore[misc]
     report("starts", len(starts), len(starts), best=lowest_feasible(found), share=end)
     return found
 

@@ -216,6 +216,22 @@ def optima() -> None:
         )
 
 
+def optimum_within_limits() -> None:
+    """An optimum over two speeds under two limits: those of the design in the middle of all bounds."""
+    car = half_car(4)
+    comfort, load = it.RideComfort(ROAD), it.TyreLoad(ROAD)
+    use = it.Conditions([it.Condition(share=0.5, road={"speed": speed}) for speed in (15.0, 25.0)])
+    middle = car.with_values({name: np.sqrt(v.lower * v.upper) for name, v in car.free_values().items()})
+    limits = [it.at_most(index, it.evaluate(middle, index, it.Norm()).value) for index in (comfort, load)]
+    start = time.process_time()
+    found = it.optimise(car, use.mean(it.RideComfort(ROAD, weighting="Wk")), it.Norm(), subject_to=limits, seed=0)
+    taken = time.process_time() - start
+    print(
+        f"optimum, half, 8 values, Wk at two speeds with two limits: {taken:.2f} s, {found.evaluations} points, "
+        f"{found.n_converged} of {found.n_starts} starts, {found.value!r}, {found.status}"
+    )
+
+
 if __name__ == "__main__":
     with threadpool_limits(1):
         values()
@@ -224,3 +240,4 @@ if __name__ == "__main__":
             campaign()
         if "--optima" in sys.argv:
             optima()
+            optimum_within_limits()

@@ -91,11 +91,11 @@ def problem_digest(study: Study, layout: str, index: str) -> str:
         return ""
     numbers: dict[str, str] = {}
 
-    def numbered(name: re.Match[str]) -> str:
+    def number_of(name: re.Match[str]) -> str:
         return numbers.setdefault(name[1], f"#{len(numbers)}") if name[1] in study.elements else name[0]
 
     problem = repr((vehicle, study.resolve_index(index, layout), limits_in(study)))
-    return hashlib.sha256(_NAME.sub(numbered, problem).encode()).hexdigest()[:16]
+    return hashlib.sha256(_NAME.sub(number_of, problem).encode()).hexdigest()[:16]
 
 
 def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:

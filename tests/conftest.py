@@ -68,7 +68,6 @@ def pytest_collection() -> Generator[None, object, object]:
     try:
         return (yield)
     finally:
-        gc.collect()
         gc.freeze()
         gc.set_threshold(100_000, 20, 100)  # what tests make is small, and looking took a twentieth of their time
         gc.enable()

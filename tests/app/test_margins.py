@@ -38,6 +38,7 @@ def car(name: str) -> Any:
     return study_from(FEW).design(name).with_values(VALUES[name])
 
 
+@pytest.mark.campaign
 def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str, Any]) -> None:
     """Friction of the design, and the shaft and backlash of a real inerter; none of them by a method blind to it."""
     by = {one["parameter"]: one for one in told["break_even"]}
@@ -76,6 +77,7 @@ def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> Non
     assert (np.nan if value is None else value) == pytest.approx(shaft.value, rel=1e-9, nan_ok=True)
 
 
+@pytest.mark.campaign
 def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> None:
     study = study_from(FEW)
     assert [one["factor"] for one in told["speeds"]] == [0.8, 1.2]
@@ -85,6 +87,7 @@ def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> Non
         assert one["improvement_percent"] == pytest.approx(100.0 * (1.0 - own / base), rel=1e-9)
 
 
+@pytest.mark.campaign
 def test_tolerances_are_assumed_where_the_study_has_none(client: TestClient, told: dict[str, Any]) -> None:
     scatter = told["scatter"]
     assert scatter["is_assumed"]

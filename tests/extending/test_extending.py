@@ -295,7 +295,7 @@ def test_a_task_is_worked_on_and_told_as_our_own(session: Session, tmp_path: Pat
     (tmp_path / "bought.toml").write_text(text, encoding="utf-8")
     assert "and 2 catalogues." in " ".join(session.command("check", "bought.toml", cwd=tmp_path)[0].split())
     assert "Values in the catalogue" in session.command("explain", "study.catalogue", cwd=tmp_path)[0]
-    said = json.loads(session.command("run", "bought.toml", "-j", "2", "-o", "out", "--json", cwd=tmp_path)[0])
+    said = json.loads(session.command("run", "bought.toml", "-j", "1", "-o", "out", "--json", cwd=tmp_path)[0])
     by = {one["layout"]: one for one in said["catalogues"]}
     assert set(by) == {"S1", "S3"}
     for design in said["designs"]:

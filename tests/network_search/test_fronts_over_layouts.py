@@ -140,7 +140,9 @@ def test_three_indices():
     assert result.values.shape[1] == 3
     for index in range(3):
         assert result.values[:, index].min() == pytest.approx(result.searches[index].ranking[0].value, rel=1e-6)
-    alone = it.pareto_front(result.front[0].plans[0].design(result.front[0].topology), [COMFORT, LOAD, TRAVEL], NORM)
+    alone = it.pareto_front(
+        result.front[0].plans[0].design(result.front[0].topology), [COMFORT, LOAD, TRAVEL], NORM, points=10
+    )
     assert gain_on(result.values, alone.values) < 1e-6
 
 

@@ -596,10 +596,10 @@ def test_energy_of_every_kind_of_input() -> None:
     noise = it.held_noise(seed=1, power=1e-8, interval=1e-3, duration=1.0, speed=20.0)
     line = it.Signal.sampled(1e-2 * np.arange(101), 1e-3 * np.random.default_rng(0).standard_normal(101), "linear")
     for road in (noise, line, it.multisine(ROAD, seed=0)):
-        run(paper_quarter_car(strut), road=road, duration=0.5, step=2e-4)
-        run(paper_half_car(strut, strut), road=road, speed=20.0, duration=0.5, step=2e-4)
-        run(paper_quarter_car(strut), forces={"sprung_force": road * 1e5}, duration=0.5, step=2e-4)
-    run(it.Rig(SCREW), displacement=it.cosine(1e-3, 3.0), duration=1.0, step=1e-4)
+        run(paper_quarter_car(strut), road=road, duration=0.25, step=2e-4)
+        run(paper_half_car(strut, strut), road=road, speed=20.0, duration=0.25, step=2e-4)
+        run(paper_quarter_car(strut), forces={"sprung_force": road * 1e5}, duration=0.25, step=2e-4)
+    run(it.Rig(SCREW), displacement=it.cosine(1e-3, 3.0), duration=0.5, step=1e-4)
 
 
 def test_work_of_a_force_on_a_free_flywheel() -> None:

@@ -124,8 +124,13 @@ def test_no_place_keeps_an_old_name(element: str) -> None:
     assert rename_elements(renamed, {NEW: element}) == EVERYWHERE
 
 
-@pytest.mark.parametrize("element", EVERYWHERE["elements"])
-@pytest.mark.parametrize("new", [NEW, "share", "road", "study", "constructor", "toString", "name"])
+NAMES = [NEW, "share", "road", "study", "constructor", "toString", "name"]
+RENAMED = [(element, new) for element in EVERYWHERE["elements"] for new in NAMES]
+
+
+@pytest.mark.parametrize(
+    ("element", "new"), sampled(RENAMED, [each for each in RENAMED if each[0] == "c" or each[1] == NEW])
+)
 def test_every_name_gives_the_same_numbers(element: str, new: str) -> None:
     """Also names that are keys of a condition, sections of a file, or attributes of objects in other languages."""
     before, after = _study(_valid()), _study(rename_elements(_valid(), {element: new}))

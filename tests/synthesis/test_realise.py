@@ -101,12 +101,12 @@ def of_joined_biquadratics(rng: np.random.Generator) -> tuple[Polynomial, Polyno
     return total
 
 
-FAMILIES = {of_a_network: 380, of_a_passive_state_space: 80, of_joined_biquadratics: 40}
+FAMILIES = {of_a_network: 76, of_a_passive_state_space: 40, of_joined_biquadratics: 8}
 
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_positive_real_functions_are_realised(family):
-    """500 in all, of degrees up to 6."""
+    """124 in all, of degrees up to 6; campaigns have 500 of each family."""
     rng = np.random.default_rng(17)
     degrees = Counter()
     while degrees.total() < FAMILIES[family]:

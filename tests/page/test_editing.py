@@ -16,6 +16,7 @@ def _value(study: Path | str, layout: str, index: str) -> float:
     return float(it.evaluate(loaded.design(layout), loaded.index(index), it.Norm()).value)
 
 
+@pytest.mark.campaign
 def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()

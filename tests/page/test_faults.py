@@ -375,6 +375,7 @@ def test_an_example_shows_the_same_after_any_other(
     assert not [text for text in notices if f"{first}.toml" in text]
 
 
+@pytest.mark.campaign
 def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visitor: Visitor) -> None:
     """Values in the middle of their bounds: the warning stands until they are chosen, and no per cent before."""
     page = visitor.page

@@ -190,7 +190,7 @@ def _page(name: str) -> str:
 
 
 def _data(thing: Any) -> str:
-    """What a constant holds, in one line."""
+    """Content of a constant, in one line."""
     if isinstance(thing, Mapping):
         return f"By name: {', '.join(f'``{key}``' for key in thing)}."
     return f"``{thing!r}``"
@@ -249,7 +249,7 @@ def _keys(keys: Sequence[Key]) -> Iterator[str]:
 
 
 def _meaning(place: str, keys: Sequence[Key]) -> str:
-    """What a key means, once for all models that say the same, with unit, choices, default and an example."""
+    """Meaning of a key, once for all models that share it, with unit, choices, default and an example."""
     alike = [key for key in keys if key.place == place]
     sentences = dict.fromkeys(key.sentence for key in alike)
     if len(sentences) == 1:

@@ -1,6 +1,6 @@
 """
-What is the device made of?
-===========================
+Parameters of a device from its record
+======================================
 
 Parameters of a device from a record of a virtual rig, with 95 % intervals.
 """

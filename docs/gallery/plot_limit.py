@@ -1,6 +1,6 @@
 """
-What a limit costs
-==================
+The cost of a limit
+===================
 
 The best comfort of S3 where the dynamic compliance under load is limited.
 """

@@ -25,4 +25,4 @@ ax.plot([one.n_elements for one in found.ranking], [one.value for one in found.r
 ax.plot([one.n_elements for one in found.frontier], [one.value for one in found.frontier], "o-")
 for one in found.frontier:
     ax.annotate(one.layout, (one.n_elements, one.value), textcoords="offset points", xytext=(6, 6))
-ax.set(xlabel="Elements beside the spring", ylabel="Best J1 [m/s²]", ylim=(2.3, 3.1), xticks=[1, 2, 3])
+ax.set(xlabel="Elements in parallel with the spring", ylabel="Best J1 [m/s²]", ylim=(2.3, 3.1), xticks=[1, 2, 3])

@@ -1,6 +1,6 @@
 """
-What if parts scatter?
-======================
+Tolerances of a damper and an inertance
+=======================================
 
 Comfort of 1024 cars whose damper is right to 20 % and whose inertance is right to 10 %.
 """

@@ -96,7 +96,7 @@ class IndexDefinition:
         return self.combination is Combination.PEAK_GAIN
 
     def describe(self, mechanism: Mechanism) -> str:
-        """What is computed, with outputs and inputs in words; `mechanism` as for `definition`.
+        """Description: how outputs are combined, or from which input a gain is; `mechanism` as for `definition`.
 
         >>> import inerter as it
         >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0)).mechanism()

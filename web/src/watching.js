@@ -52,6 +52,6 @@ function tell(store, api, { name, study, problems, stamp }) {
     begunWith(study);
     await openStudy(store, api, study);
   };
-  store.say(`${name} has changed; the page shows the study as it was.`, ABOUT,
+  store.say(`${name} has changed; the page shows its former content.`, ABOUT,
     { label: `Reload ${name}`, act: () => void reload() });
 }

@@ -53,7 +53,7 @@ export function MarginsPanel({ store, api }) {
     select another layout.</p>`;
   return html`<form class="row" aria-busy=${is === "coming"}
       onSubmit=${formHandler(() => void compute(store, api))}>
-      <button class="edged" disabled=${is === "coming"}>What does it bear?</button>
+      <button class="edged" disabled=${is === "coming"}>Compute break-even values</button>
       <p role="status">${is !== "coming" && (sentence || (!value && `Friction, backlash and stiffness at which ${layout}
         equals ${baselineOf(state.history.present).layout}; simulation takes about a minute.`))}</p></form>
     ${is === "coming" && job && html`<${JobHead} store=${store} api=${api} job=${job} /><p class="quiet">

@@ -13,7 +13,7 @@ import { symbolPath } from "./sketch.js";
 
 /** What a study asks beyond its designs, by the keys of its section `study`. @type {[string, string][]} */
 const ASKED = [["sweep", "Where is it worth it?"], ["tolerance", "What if values scatter?"],
-  ["budgets", "How much friction or backlash does it bear?"], ["trade_off", "What does one index cost the other?"],
+  ["budgets", "How much friction or backlash is allowable?"], ["trade_off", "What does one index cost the other?"],
   ["conditions", "What is best over all operating conditions?"], ["subject_to", "What is best within constraints?"]];
 
 /** What is asked of a vehicle. @type {{[model: string]: string}} */

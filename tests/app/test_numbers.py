@@ -460,12 +460,18 @@ def test_a_picture_of_the_motion_is_that_of_a_simulation_file(client: TestClient
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
 def test_examples_answer(client: TestClient, path: Path) -> None:
-    """Each example that is a study has indices, curves and a drawing of its car; others say what they are for."""
+    """Each example that is a study has indices, curves and a drawing of its car; others say what they are for.
+
+    One with free networks is valid, and its search comes first.
+    """
     told = ask(client, "study/read", text=path.read_text(encoding="utf-8"))
     body = {"study": told["study"], "methods": ["norm"]}
+    to_search = any("network" in element for element in told["study"].get("elements", {}).values())
+    assert to_search == path.stem.startswith("search_")
     for panel in ("indices", "response", "mechanism"):
         answer = client.post(f"/api/panel/{panel}", json=body)
-        assert answer.status_code == (400 if told["problems"] else 200)
+        assert answer.status_code == (400 if told["problems"] or to_search else 200)
+        assert not to_search or "search" in answer.json()["sentence"]
     if told["problems"]:
         assert any("inerter" in problem["sentence"] for problem in told["problems"])
 

@@ -49,6 +49,9 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     if _total_width(grid.columns, cut_headings=True) > width:
         grid = replace(grid, columns=[grid.columns[0].with_short_labels(), *grid.columns[1:]])
     keys = _n_keys(grid, labels, width)
+    if keys == 0:
+        labels = [f"{label}{_GAP}{key}" for label, (key, _) in zip(labels, grid.columns[1].cells, strict=True)]
+        grid, keys = replace(grid, columns=[grid.columns[0].with_short_labels(0), *grid.columns[2:]]), 1
     if not grid.columns[keys:]:
         yield from _lines(grid, labels, width)
     while grid.columns[keys:]:
@@ -77,9 +80,9 @@ class _TextColumn:
         heading = self.heading.split() if cut_heading else [self.heading]
         return max(map(len, [*heading, *(text for cell in self.cells for text in cell)]))
 
-    def with_short_labels(self) -> _TextColumn:
-        """Column without its long texts, which stand on lines of their own."""
-        return replace(self, cells=[("" if len(text) > _LONGEST_LABEL else text, "") for text, _ in self.cells])
+    def with_short_labels(self, longest: int = _LONGEST_LABEL) -> _TextColumn:
+        """Column without its texts longer than `longest`, which stand on separate lines."""
+        return replace(self, cells=[("" if len(text) > longest else text, "") for text, _ in self.cells])
 
 
 @dataclass(frozen=True)
@@ -115,11 +118,14 @@ def _item(column: Column, cell: Cell) -> str:
 
 
 def _n_keys(grid: _Grid, labels: Sequence[str], width: int) -> int:
-    """Number of columns that stand before every part of a table: two where labels repeat, if there is room for them."""
-    if len(set(labels)) == len(labels) or not grid.columns[2:]:
+    """Number of columns that stand before every part of a table: two where labels repeat.
+
+    Zero where there is no room for both: they stand on a line above each row.
+    """
+    if len(set(labels)) == len(labels) or not grid.columns[2:] or grid.columns[1].wraps:
         return 1
     fits = all(_total_width([*grid.columns[:2], one], cut_headings=True) <= width for one in grid.columns[2:])
-    return 2 if fits and not grid.columns[1].wraps else 1
+    return 2 if fits else 0
 
 
 def _count_fitting(grid: _Grid, width: int) -> int:
@@ -143,7 +149,7 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
     for i, row in enumerate(grid.rows):
         cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]
         if labels[i] and not cells[0]:
-            yield f"{_GAP}{labels[i]}"
+            yield from wrap_text(labels[i], width, initial_indent=_GAP, subsequent_indent=_GAP * 2)
         yield from _side_by_side(cells, widths)
         if row.status:
             yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)

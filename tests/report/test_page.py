@@ -256,3 +256,9 @@ def test_a_peak_gain_says_from_what_to_what(study):
     assert dict(index_rows(study))["Dynamic load carrying (J5)"] == (
         "largest gain over frequency from sprung force to sprung displacement"
     )
+
+
+def test_an_index_is_described_where_every_layout_has_a_free_network():
+    searched = load_study(EXAMPLES / "search_absorber.toml")
+    only = replace(searched, layouts={"any": searched.layouts["any"]})
+    assert index_rows(only) == index_rows(searched)

@@ -24,7 +24,7 @@ from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, is_blind, method_settings, words_of
-from inerter.networks.elements import Free, Tied
+from inerter.networks.elements import Free, Spring, Tied
 from inerter.networks.free_network import FreeNetwork
 from inerter.signals.road import Road
 
@@ -157,7 +157,8 @@ def layout_rows(study: Study) -> list[LayoutText]:
 
 def index_rows(study: Study, *, combined: bool = False) -> list[tuple[str, str]]:
     """The indices by title, each with what it is; with `combined` only those of several outputs."""
-    mechanism = study.design(next(iter(study.layouts))).mechanism()
+    layout, known = next(iter(study.layouts.values())), dict.fromkeys(study.free_networks, Spring(1.0))
+    mechanism = layout.design(study.model, study.vehicle, study.elements, known).mechanism()  # of any network
     rows = []
     for name in dict.fromkeys([*study.indices, *study.trade_off]):
         index = study.index(name)

@@ -163,3 +163,37 @@ def test_free_masses_and_scatter() -> None:
 def test_what_cannot_be_is_said(make: object, said: str) -> None:
     with pytest.raises(it.InerterError, match=said):
         make()  # type: ignore[operator]
+
+
+def _free_inerter(name: str, value_name: str | None = None) -> it.Network:
+    return it.Spring(120e3) | it.Inerter(it.free(20.0, 500.0, name=value_name), name=name)
+
+
+FREE_MASS = it.free(20.0, 500.0)
+TWICE = {
+    "quantity": lambda network: it.QuarterCar(250.0, FREE_MASS, 150e3, network("unsprung_mass")),
+    "in another strut": lambda network: it.Seat(
+        it.QuarterCar(250.0, 35.0, 150e3, network("mass")), FREE_MASS, it.Spring(10e3)
+    ),
+    "below a stage": lambda network: it.Seat(
+        it.QuarterCar(250.0, FREE_MASS, 150e3, STRUT), 60.0, network("unsprung_mass")
+    ),
+    "coordinate": lambda network: it.Mechanism(
+        (it.Coordinate("body", FREE_MASS),), (it.Strut("strut", network("body"), {"body": 1.0}, it.GROUND),)
+    ),
+}
+
+
+@pytest.mark.parametrize("where", TWICE)
+def test_a_quantity_and_an_element_are_one_free_value_only_where_both_were_given_its_name(where: str) -> None:
+    with pytest.raises(it.InerterError, match=r"is free twice, as .* and as an element: they would be one value"):
+        TWICE[where](_free_inerter)
+    apart = TWICE[where](lambda name: _free_inerter("b"))
+    assert len(apart.free_values()) == 2
+    assert apart.with_values({"b": 30.0}).free_values().keys() == apart.free_values().keys() - {"b"}
+
+
+def test_free_values_that_were_given_one_name_are_one() -> None:
+    car = it.QuarterCar(250.0, it.free(20.0, 500.0, name="both"), 150e3, _free_inerter("b", "both"))
+    assert list(car.free_values()) == ["both"]
+    assert car.with_values({"both": 40.0}).unsprung_mass == 40.0

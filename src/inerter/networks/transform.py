@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 from inerter.errors import DesignError
@@ -120,6 +120,19 @@ def name_free_values(networks: Mapping[str, Network]) -> dict[str, Network]:
     if any(isinstance(element.value, Tied) for element in found):
         _check_ties(found, known)
     return named
+
+
+def check_named_apart(names: Set[str], networks: Iterable[Network], what: str) -> None:
+    """Raises `DesignError` if a free element of the networks is named after itself, and has one of these names.
+
+    `names` are of other free values that nobody named: both would be one value. Who wants that gives both a name.
+    """
+    for element in (element for network in networks for element in network.elements()):
+        if isinstance(element.value, Free) and element.value.name == element.name and element.name in names:
+            raise DesignError(
+                f"{element.name!r} is free twice, as {what} and as an element: they would be one value. Give the "
+                "element another name."
+            )
 
 
 def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None:

@@ -14,7 +14,7 @@ from inerter.deprecation import RenamedAttribute, renamed_keywords
 from inerter.errors import DesignError, MechanismError
 from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
-from inerter.networks.transform import name_free_values, with_values
+from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.validation import check_positive, is_number
 
 _SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
@@ -222,6 +222,9 @@ class Mechanism:
         if any(named[mount.name] is not mount.network for mount in self.mounts()):
             object.__setattr__(self, "struts", tuple(replace(s, network=named[s.name]) for s in self.struts))
             object.__setattr__(self, "tyres", tuple(replace(t, network=named[t.name]) for t in self.tyres))
+        if masses:
+            names = {c.name for c in self.masses.values() if isinstance(c.inertia, Free) and c.inertia.name == c.name}
+            check_named_apart(names, (mount.network for mount in self.mounts()), "the mass of a coordinate")
 
     def mechanism(self) -> Mechanism:
         """The mechanism itself, since a mechanism is a vehicle."""

@@ -9,7 +9,7 @@ from inerter.field_metadata import mount, quantity
 from inerter.networks.elements import Network, check_network
 from inerter.networks.transform import name_free_values
 from inerter.vehicle.mechanism import Coordinate, Mechanism, OutputWeight, Port, Strut
-from inerter.vehicle.vehicle import Stage, Vehicle, check_vehicle, name_free_quantities
+from inerter.vehicle.vehicle import Stage, Vehicle, check_free_quantities, check_vehicle, name_free_quantities
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,7 @@ class Seat(Stage):
         named = name_free_values({**below, self.strut: check_network(self.network)})
         object.__setattr__(self, "network", named[self.strut])
         self.mechanism()
+        check_free_quantities(self)
 
     def mechanism(self) -> Mechanism:
         """The same vehicle as a `Mechanism`."""

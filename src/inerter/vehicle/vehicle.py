@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import wraps
+from itertools import chain
 from typing import Any, ClassVar, Protocol, Self
 
 from inerter.errors import DesignError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.networks.elements import Free, Network, check_network
-from inerter.networks.transform import name_free_values, with_values
+from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.validation import check_positive, is_number
 from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
@@ -65,8 +66,7 @@ class VehicleModel:
         name_free_quantities(self, f"the {self.key.replace('-', ' ')}")
         for name, network in name_free_values(self.networks()).items():
             object.__setattr__(self, name, network)
-        if any(isinstance(getattr(self, field.name), Free) for field in fields_of(type(self))):
-            self.mechanism()  # which checks for duplicate names
+        check_free_quantities(self)
 
     def networks(self) -> dict[str, Network]:
         """Networks by mount name; optional mounts only where present."""
@@ -147,6 +147,27 @@ def name_free_quantities(of: Any, what: str) -> None:
         else:
             check_quantity(said, value, field.unit)
             object.__setattr__(of, field.name, replace(value, name=value.name or field.name))
+
+
+def check_free_quantities(of: VehicleModel | Stage) -> None:
+    """Raises `DesignError` if a free quantity, also of what a stage stands on, has the name of a free element."""
+    parts: list[Vehicle] = [of]
+    while isinstance(part := parts[-1], Stage):
+        parts.append(part.vehicle)
+    models = [part for part in parts if isinstance(part, VehicleModel | Stage)]
+    values = {field.name: getattr(model, field.name) for model in models for field in fields_of(type(model))}
+    free = {name: value for name, value in values.items() if isinstance(value, Free)}
+    if free:
+        of.mechanism()  # which checks for duplicate names
+        names = {name for name, value in free.items() if value.name == name}
+        check_named_apart(names, chain.from_iterable(map(_given_networks, parts)), "a quantity of the vehicle")
+
+
+def _given_networks(part: Vehicle) -> Iterable[Network]:
+    """The networks that a vehicle or a stage was given, without those that stand for its quantities."""
+    if isinstance(part, VehicleModel):
+        return part.networks().values()
+    return [part.network] if isinstance(part, Stage) else (mount.network for mount in part.mechanism().mounts())
 
 
 def _fixed_quantities(of: Any, values: Mapping[str, float]) -> dict[str, float]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import scipy
@@ -46,6 +48,36 @@ def test_a_study_and_its_results_give_the_same_design(folder: Path, capsys: pyte
     car = it.QuarterCar(181.75, 25.0, 120e3, k | c - b)
     best = it.optimise(car, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm(), seed=0)
     assert np.array_equal(one["A"], it.named_system(best.design, form="descriptor").A)
+
+
+def _stiffer(path: Path) -> None:
+    path.write_text(path.read_text(encoding="utf-8").replace('k = "120 kN/m"', 'k = "130 kN/m"'), encoding="utf-8")
+
+
+def _halved(path: Path) -> None:
+    with h5py.File(path, "r+") as results:
+        results["parameter_value"][...] *= 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "says"),
+    [
+        ("study.resolved.toml", _stiffer, "was edited since"),
+        ("results.nc", _halved, "was edited since"),
+        ("results.nc", Path.unlink, "has no results.nc"),
+    ],
+)
+def test_results_that_were_edited_are_neither_exported_nor_drawn(
+    name: str, change: Callable[[Path], None], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call(["run", "car.toml", "-o", "results"]) == 0
+    change(folder / "results" / name)
+    capsys.readouterr()
+    for command in (["export", "--to", "spice", "-o", "new.cir"], ["plot", "--kind", "bode", "-o", "new.svg"]):
+        assert call([command[0], "results", "--index", "J1", *command[1:]]) == 2
+        out, err = capsys.readouterr()
+        assert (out, says in err) == ("", True), err
+        assert not list(folder.glob("new*"))
 
 
 @pytest.mark.parametrize("kind", ["matlab", "csv", "netcdf", "modelica", "fmu", "fmu3", "spice", "svg", "pdf", "latex"])

@@ -11,6 +11,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from inerter.atomic_io import write_text
+from inerter.errors import StudyError
 from inerter.work.journal import is_intact
 
 MARK = ".inerter"  # the folder of the list, of the lock, and of what is under way
@@ -86,6 +87,18 @@ def is_own(folder: Path, name: str, known: Listing) -> bool:
     if entry is None or is_linked(folder, name) or not path.is_file():
         return False
     return digest(path) in entry.digests or (entry.journal and not entry.digests and is_intact(path))
+
+
+def check_unchanged(folder: Path, name: str) -> None:
+    """Raises `StudyError` unless a folder of results has the file as it was written; one without a list is believed."""
+    path, known = folder / name, listing(folder)
+    if not path.is_file():
+        raise StudyError(f"{folder}: has no {name}, so that it holds no results. Give the folder of a run that ended.")
+    if known is not None and (name not in known.files or digest(path) not in known.files[name].digests):
+        raise StudyError(
+            f"{path}: was not written by inerter, or was edited since, so that what the folder says is not of one "
+            "study. Run the changed study into another folder with `inerter run`, or undo the change."
+        )
 
 
 def is_linked(folder: Path, name: str) -> bool:

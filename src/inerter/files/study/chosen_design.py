@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.errors import StudyError, WorkError
+from inerter.files.common.listing import check_unchanged
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, cases, run_case
@@ -68,7 +69,11 @@ def chosen_designs(
 
 
 def load_results(source: Path, variables: Sequence[str] | None = None) -> xr.Dataset:
-    """Dataset of a folder of results, or some of its variables; raises `StudyError` if it cannot be read."""
+    """Dataset of a folder of results, or some of its variables.
+
+    Raises `StudyError` if there is none, or it cannot be read, or was edited.
+    """
+    check_unchanged(source, DATASET)
     try:
         with xr.open_dataset(source / DATASET, engine="h5netcdf") as data:
             return (data if variables is None else data[list(variables)]).load()
@@ -77,6 +82,8 @@ def load_results(source: Path, variables: Sequence[str] | None = None) -> xr.Dat
 
 
 def _load(source: Path) -> Study:
+    if source.is_dir():
+        check_unchanged(source, RESOLVED)
     study = load_study(source / RESOLVED if source.is_dir() else source)
     if problems := list(unchosen_problems(study)):
         raise refusal(study.path, problems)

@@ -93,7 +93,8 @@ def test_designs_stand_side_by_side(way: str, count: int, visitor: Visitor, tmp_
     page.click("#tab-compare")
     choose, put_beside = WAYS[way]
     names = ["S1", "S3", "S4", "S2"][:count]
-    for name in names:
+    _compared(visitor, ["S1", "S5"])  # the baseline and the design that is edited, until others are chosen
+    for name in ["S5", *names[1:]]:
         choose(visitor, name)
     fifth = page.get_by_role("group", name="Designs to compare").get_by_role("button", name="S5")
     wait_until(lambda: fifth.is_disabled() == (count == 4))
@@ -138,7 +139,7 @@ def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(
         page.keyboard.press("Control+z")
     page.keyboard.press("Control+Shift+z")
     page.wait_for_function("() => document.getElementById('entry elements.b').title === '150 kg'")
-    for name in ("S5", "S1"):
+    for name in ("S1", "S1"):  # out of what stands there at first, and in again behind S5
         _choose_by_mouse(visitor, name)
     assert page.locator(".kept").count() == 0  # to keep it was undone too
     for _ in range(3):

@@ -50,6 +50,9 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     visitor.wait_for_text("k | any")
     page.wait_for_selector(".answers[data-being=current]")
     assert page.locator(".problems, .element.unknown").count() == 0
+    for tab in ("history", "margins", "tolerance"):
+        page.click(f"#tab-{tab}")
+        page.locator("#tab-panel", has_text="The network of any is free: search for the best one first.").wait_for()
     page.get_by_role("button", name="Search for the best network").click()
     form = page.locator("form.begin", has_text="Search for the best network")
     assert form.locator("[name=layout]").evaluate("each => each === document.activeElement")

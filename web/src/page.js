@@ -1,5 +1,6 @@
 // The page: its frame, what the keyboard does everywhere, and what is dropped on it.
 
+import { isSearched } from "./library.js";
 import { AnswersPanel } from "./panels/answers.js";
 import { ComparePanel } from "./panels/compare.js";
 import { DecisionLine, goTo } from "./panels/decision.js";
@@ -26,12 +27,13 @@ import { open } from "./remembering.js";
 /** @import { Api } from "./api.js" */
 
 /** What is below the vehicle in motion: a tab a row. */
+/** What the tabs show; `ofDesign` ones need the values of a network, which a free network has not yet. */
 const TABS = [
   { key: "response", title: "Response", Panel: ResponsePanel },
-  { key: "history", title: "On the road", Panel: HistoryPanel },
+  { key: "history", title: "On the road", Panel: HistoryPanel, ofDesign: true },
   { key: "compare", title: "Compare", Panel: ComparePanel },
-  { key: "margins", title: "Break-even", Panel: MarginsPanel },
-  { key: "tolerance", title: "Tolerances", Panel: TolerancePanel },
+  { key: "margins", title: "Break-even", Panel: MarginsPanel, ofDesign: true },
+  { key: "tolerance", title: "Tolerances", Panel: TolerancePanel, ofDesign: true },
   { key: "work", title: "Jobs", Panel: WorkPanel },
   { key: "rig", title: "Rig", Panel: RigPanel },
 ];
@@ -167,7 +169,8 @@ function Bar({ store, enter }) {
 
 /** @param {{store: Store, api: Api}} props */
 function Tabs({ store, api }) {
-  const { view } = store.get();
+  const state = store.get();
+  const { view, history: { present: { layout } } } = state;
   const shown = TABS.find(({ key }) => key === view.tab) ?? TABS[0];
   /** @param {KeyboardEvent} event */
   function turn(event) {
@@ -185,7 +188,9 @@ function Tabs({ store, api }) {
     </div><${Chip} on=${view.tall} set=${() => store.look({ tall: !view.tall })}
       aria-label="Enlarge" title="Enlarge: the whole height">⤢<//></div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
-      <${shown.Panel} store=${store} api=${api} /></div>
+      ${shown.ofDesign && isSearched(state, layout)
+        ? html`<p class="quiet">The network of ${layout} is free: search for the best one first.</p>`
+        : html`<${shown.Panel} store=${store} api=${api} />`}</div>
   </section>`;
 }
 

@@ -76,11 +76,20 @@ export function choicesOf(document) {
   return [...layouts, ...kept];
 }
 
-/** What stands in the comparison, first what the others are compared with. @param {State} state @returns {Choice[]} */
-export function comparedOf({ view, history }) {
-  const choices = choicesOf(history.present);
-  const chosen = view.compared.flatMap((key) => choices.filter((choice) => choice.key === key));
-  return [...chosen.filter(({ key }) => key === view.against), ...chosen.filter(({ key }) => key !== view.against)];
+/** What can stand in the comparison: no layout whose network is still to be searched. @param {State} state */
+export const comparable = (state) =>
+  choicesOf(state.history.present).filter(({ kept, design }) => kept || !isSearched(state, design.layout));
+
+/** What stands in the comparison, first what the others are compared with. Where nothing is chosen among them, the
+ * design that is edited stands beside the baseline. @param {State} state @returns {Choice[]} */
+export function comparedOf(state) {
+  const { view, history: { present } } = state;
+  const choices = comparable(state);
+  const usual = shownDesigns(present).toReversed().map(({ layout }) => `layout ${layout}`);
+  const [chosen, shown] = [view.compared, usual].map((keys) =>
+    keys.flatMap((key) => choices.filter((choice) => choice.key === key)));
+  const those = chosen.length > 0 ? chosen : shown;
+  return [...those.filter(({ key }) => key === view.against), ...those.filter(({ key }) => key !== view.against)];
 }
 
 /** @type {((state: State, document: Document) => Row[])[]} */

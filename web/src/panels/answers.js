@@ -136,7 +136,8 @@ export function indicesOf(state) {
 }
 
 /** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */
-export const indexChoices = (indices) => indices.map(({ symbol, title }) => [symbol, `${symbol}: ${title}`]);
+export const indexChoices = (indices) => indices.map(({ symbol, title }) =>
+  [symbol, title === symbol ? symbol : `${symbol}: ${title}`]);
 
 /** What the answers of designs are made of: each value, and each limit. @param {any} value
  * @returns {import("../parts/doubts.js").Member[]} */

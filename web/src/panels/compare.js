@@ -5,7 +5,7 @@ import { Chip, Select, Table, formHandler, textHandler } from "../parts/controls
 import { html, useState } from "../parts/html.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
-import { answerOf, choicesOf, comparedOf } from "../questions.js";
+import { answerOf, comparable, comparedOf } from "../questions.js";
 import { Measured, membersOf, percent } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -17,7 +17,7 @@ const [FEWEST, MOST] = [2, 4];
 /** @param {{store: Store}} props */
 export function ComparePanel({ store }) {
   const state = store.get();
-  const choices = choicesOf(state.history.present);
+  const choices = comparable(state);
   const compared = comparedOf(state);
   const keys = compared.map(({ key }) => key);
   /** @param {string} key */

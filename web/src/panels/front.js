@@ -31,7 +31,7 @@ const WORD = /^[a-z]+(-[a-z]+)*$/; // an index that is named by words
 
 /** The indices of which a front can be: those of the study, first those of its trade-off; else all that there are.
  * @param {State} state @returns {{symbol: string, title: string}[]} */
-function frontIndices(state) {
+export function frontIndices(state) {
   const known = state.about?.indices ?? [];
   const { trade_off: wanted = [] } = state.history.present.study.study ?? {};
   const named = wanted.map((/** @type {string} */ symbol) =>
@@ -44,7 +44,6 @@ function frontIndices(state) {
 export function FrontForm({ store }) {
   const state = store.get();
   const indices = frontIndices(state);
-  if (indices.length < 2) return html`<span class="quiet">No two indices are known.</span>`;
   const third = (state.history.present.study.study?.trade_off ?? []).length > 2 ? indices[2].symbol : "";
   /** @param {string} selected @param {(string | string[])[]} [more] */
   const choice = (selected, more = []) => html`<${Select} name="index" aria-label="Index"

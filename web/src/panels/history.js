@@ -39,9 +39,10 @@ export function HistoryPanel({ store }) {
     const entered = Number(text);
     if (entered >= range.min && entered <= range.max) store.look({ [key]: entered });
   }} /></label>`;
-  const controls = html`<${Select} aria-label="Show" choices=${outputs.map(({ name, label }) => [name, label])}
-      value=${outputs.some(({ name }) => name === output) ? output : outputs[0]?.name}
-      set=${(/** @type {string} */ name) => store.look({ output: name })} />
+  const controls = html`${outputs.length > 0 && html`<${Select} aria-label="Show"
+      choices=${outputs.map(({ name, label }) => [name, label])}
+      value=${outputs.some(({ name }) => name === output) ? output : outputs[0].name}
+      set=${(/** @type {string} */ name) => store.look({ output: name })} />`}
     ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
     ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     <${Being} shown=${answer} />`;
@@ -89,6 +90,6 @@ function shadesOf(shaded) {
     bands: found.flatMap(({ state, those }) => those.flatMap(({ intervals }) =>
       intervals.map(([from, to]) => ({ from, to, kind: state })))),
     keys: found.flatMap(({ state, those }) => (those.length === 0 ? []
-      : [{ kind: state, text: `${those.map(({ element }) => element).join(", ")} ${SHADED[state]}` }])),
+      : [{ kind: state, text: `${those.map(({ element }) => element).join(" or ")} ${SHADED[state]}` }])),
   };
 }

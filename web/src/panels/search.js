@@ -36,8 +36,7 @@ export function SearchForm({ store }) {
   const state = store.get();
   const { study, layout: here } = state.history.present;
   const layouts = searchedLayouts(state);
-  const [layout, setLayout] = useChoice(layouts.includes(here) ? [here, ...layouts] : layouts);
-  if (layout === undefined) return html`<span class="quiet">No layout has a free network.</span>`;
+  const [layout = layouts[0], setLayout] = useChoice(layouts.includes(here) ? [here, ...layouts] : layouts);
   const wanted = study.study?.trade_off ?? [goalOf(state)];
   return html`<${Select} label="layout" name="layout" choices=${layouts} value=${layout}
       set=${setLayout} />

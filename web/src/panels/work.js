@@ -2,7 +2,7 @@
 
 import { percent } from "./answers.js";
 import { Files } from "./files.js";
-import { FrontForm, FrontResult, frontBody, frontTitle } from "./front.js";
+import { FrontForm, FrontResult, frontBody, frontIndices, frontTitle } from "./front.js";
 import { SearchForm, SearchResult, searchBody } from "./search.js";
 import { SweepResult, sweepTitle } from "./sweep.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
@@ -10,6 +10,7 @@ import { html, useState } from "../parts/html.js";
 import { placed, printed, quantity, rounded, takenApart } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
+import { searchedLayouts } from "../library.js";
 import { answerOf } from "../questions.js";
 import { MarginsResult } from "./margins.js";
 import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js";
@@ -18,19 +19,22 @@ import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js"
 /** @import { Api } from "../api.js" */
 
 /** A kind of long work: what it needs beside the study, its form, and its result.
- * `name` is that of one of its jobs; `needs` is a field of the form that is not there as long as nothing is known.
+ * `name` is that of one of its jobs; `lacks` says what the study has not that it needs.
  * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object,
- * name?: (form: FormData) => string, needs?: string, Form?: any, Result?: any}} Kind */
+ * name?: (form: FormData) => string, lacks?: (state: State) => string | null, Form?: any, Result?: any}} Kind */
 
 /** @type {Kind[]} */
 export const KINDS = [
   { kind: "run", title: "Run the whole study", body: () => ({}), Result: RunResult,
     sentence: "As inerter run does: all layouts and indices, with report, tables and figures." },
-  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle, needs: "of",
+  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle,
+    lacks: (state) => (sweepable(state).length > 0 ? null : "There is no fixed value to sweep."),
     sentence: "The best designs over one number of the study." },
   { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult, name: frontTitle,
+    lacks: (state) => (frontIndices(state).length > 1 ? null : "No two indices are known."),
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
   { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
+    lacks: (state) => (searchedLayouts(state).length > 0 ? null : "No layout has a free network."),
     sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks."
   },
 ];
@@ -54,14 +58,15 @@ function Begin({ store, api, kind }) {
   const [told, setTold] = useState("");
   const state = store.get();
   const { study } = state.history.present;
+  const lacking = kind.lacks?.(state);
   return html`<form class="begin" onSubmit=${formHandler(async (form) => {
-    if (kind.needs && !form.has(kind.needs)) return setTold("The numbers of the study are not known yet.");
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     setTold(await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) }));
   })}>
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>
-    <div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}<button>Begin</button></div>
+    ${lacking ? html`<p class="quiet">${lacking}</p>`
+      : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}<button>Begin</button></div>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
   </form>`;
 }
@@ -141,7 +146,8 @@ function RunResult({ store, api, job }) {
 function sweepable(state) {
   /** @type {{place: string, words: string, text: string}[]} */
   const numbers = answerOf(state, "check").value?.places ?? [];
-  return numbers.toSorted((one, other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
+  return numbers.filter(({ text }) => takenApart(text) !== null)
+    .toSorted((one, other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
 }
 
 /** @param {{store: Store}} props */
@@ -149,9 +155,7 @@ function SweepForm({ store }) {
   const numbers = sweepable(store.get());
   const [place, setPlace] = useState("");
   const chosen = numbers.find((each) => each.place === place) ?? numbers[0];
-  const apart = takenApart(chosen?.text);
-  if (!chosen || !apart) return html`<span class="quiet">There is no fixed value to sweep.</span>`;
-  const { number, unit } = apart;
+  const { number, unit } = /** @type {{number: number, unit: string}} */ (takenApart(chosen.text));
   /** @param {string} name @param {number} value */
   const bound = (name, value) => html`<label>${name} <input name=${name} class="entry"
     key=${`${name} ${chosen.place}`} defaultValue=${quantity(value, unit)} /></label>`;

@@ -19,8 +19,6 @@ import pytest
 
 _CHROMIUM = next((path for name in ("chromium", "chromium-browser") if (path := shutil.which(name))), None)
 _NONE = "Pages are not tested: there is no Chromium (as root: apt-get install chromium)."
-ROOT = Path(__file__).parents[1]
-EXAMPLES = ROOT / "examples"
 _TOKEN = "a-token-of-the-tests-of-the-page-00"
 _READY = 240.0  # seconds, with kernels to compile
 

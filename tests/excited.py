@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from filtered import random_filter
+from wang_su import ROAD
 
 import inerter as it
 from inerter.indices.excitation import as_excitation
 from inerter.signals.road import Road
 from inerter.systems.input_paths import InputPath
 from inerter.vehicle.mechanism import Mechanism
-
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,16 @@ Written anew by `PYTHONPATH=src:tests python tests/page_vehicles.py`.
 from __future__ import annotations
 
 import json
-import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
+
+from folders import ROOT, example_tables
 
 import inerter as it
 from inerter.app.answers import answer_panel, describe_mechanism
 from inerter.app.histories import motion_of, state_intervals
 from inerter.app.wire import encode_json
 
-ROOT = Path(__file__).parents[1]
 FIXTURE = ROOT / "web/tests/vehicles.json"
 DURATION, STEP, KEPT = 1.0, 5e-4, 4  # [s], [s], every n-th frame
 ROAD = {"speed": "22 m/s", "roughness": "2e-6 m^3/cycle"}
@@ -26,7 +25,7 @@ ASKED = {"indices": ["J1"]}
 
 def example(name: str, **vehicle: Any) -> dict[str, Any]:
     """Document of an example, with some keys of its vehicle changed."""
-    document = tomllib.loads((ROOT / "examples" / f"{name}.toml").read_text(encoding="utf-8"))
+    document = example_tables(name)
     return {**document, "vehicle": {**document["vehicle"], **vehicle}}
 
 

@@ -74,16 +74,6 @@ def random_half_car(rng: np.random.Generator, front: Network, rear: Network) -> 
     )
 
 
-def paper_quarter_car(strut: Network) -> QuarterCar:
-    """Wang and Su (2008), quarter car."""
-    return QuarterCar(sprung_mass=181.75, unsprung_mass=25.0, tyre_stiffness=120e3, strut=strut)
-
-
-def paper_half_car(front: Network, rear: Network) -> HalfCar:
-    """Wang and Su (2008), half car."""
-    return HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front, rear)
-
-
 def random_stable(rng: np.random.Generator, order: int, inputs: int, outputs: int, damping: float) -> LinearSystem:
     """Poles over three decades with damping ratios down to `damping`, hidden by an orthogonal change of states."""
     blocks, left = [], order

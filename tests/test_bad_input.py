@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wang_su import J1, J5, ROAD, paper_quarter_car
 
 from inerter import (
     GROUND,
@@ -17,7 +18,6 @@ from inerter import (
     Inerter,
     InerterError,
     LinearSystem,
-    LoadCarrying,
     Mechanism,
     Norm,
     OutputWeight,
@@ -42,12 +42,10 @@ from inerter import (
 )
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
-ROAD = Road(5e-7, 25.0)
-J1, J3, J5 = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()
 
 
 def car(strut=k | c):
-    return QuarterCar(181.75, 25.0, 120e3, strut)
+    return paper_quarter_car(strut)
 
 
 def open_car():

@@ -13,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from study_text import assert_survives, load_text, study_text
+from wang_su import ROAD
 
 import inerter as it
 from inerter import registry
@@ -31,7 +32,6 @@ from inerter.units import parse_quantity
 from inerter.work.origin import origin
 
 STRUT = it.Spring(20e3) | it.Damper(1e3)
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 TABLES = {"vehicle": it.VEHICLES, "index": it.INDICES, "method": it.METHODS, "element": it.ELEMENTS}
 
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
+from wang_su import ROAD
 
 import inerter as it
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 ROADS, SETTLING, LENGTH, STEP = 32, 160.0, 320.0, 1e-4
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,7 +14,6 @@ from inerter.app.server import Server
 from inerter.app.start import InitialStudy
 
 TOKEN, PORT, LIMIT, RECORD_LIMIT = "a-token-of-the-tests", 8000, 100_000, 1_000_000
-EXAMPLES = Path(__file__).parents[2] / "examples"
 DOCUMENT: dict[str, Any] = {
     "title": "A car",
     "vehicle": {

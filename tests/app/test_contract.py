@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.conftest import DOCUMENT, ask, changed
+from folders import EXAMPLES, ROOT, example_tables
 from hypothesis import given
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -33,7 +34,7 @@ CSV = b"time [s],displacement [mm],force [N]\n" + b"".join(
 
 
 def test_all_requests_are_described_and_told() -> None:
-    text = (Path(__file__).parents[2] / "docs" / "workbench.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "workbench.md").read_text(encoding="utf-8")
     for endpoint in ENDPOINTS:
         path = endpoint.path.replace(":path", "").replace("/panel/{name}", "/panel/NAME")
         assert f"`{endpoint.verb} {path}" in text, path
@@ -299,7 +300,7 @@ def test_several_designs_of_one_layout_have_names_of_their_own(client: TestClien
 @pytest.mark.parametrize("name", ["limits", pytest.param("full-car", marks=pytest.mark.campaign)])
 def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> None:
     """What `places` offers a sweep takes, and it offers all that is fixed, in and beyond elements."""
-    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    document = example_tables(name)
     told = ask(client, "study/check", study=document)["places"]
     assert [row["place"] for row in told if takes(document, **row)] == [row["place"] for row in told]
     offered = {row["place"] for row in told}

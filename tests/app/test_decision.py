@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from itertools import pairwise
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.conftest import DOCUMENT, ask, changed
 from app.test_work import until
+from folders import example_tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -111,7 +111,7 @@ def test_values_that_nobody_has_chosen_are_not_ranked(client: TestClient) -> Non
 
 @pytest.mark.parametrize("stiffness", [2e4, 9e4])
 def test_a_design_that_breaks_a_limit_is_not_the_best(client: TestClient, stiffness: float) -> None:
-    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    document = example_tables("limits")
     values = {"S1": {"k": 70e3, "c": 3e3}, "S3": {"k": stiffness, "c": 3e3, "b": 500.0}}
     told = ask(client, "panel/decision", study=document, values=values, index="comfort")
     rows = {row["layout"]: row for row in told["rows"]}
@@ -152,7 +152,7 @@ def test_a_value_that_is_not_certain_is_not_an_answer(client: TestClient) -> Non
 @pytest.mark.parametrize("name", ["quarter-car", "absorber", "conditions", "half-car", "seat", "tolerances"])
 def test_every_example_has_a_verdict(name: str) -> None:
     """At the middles of the bounds taken as chosen: words without missing numbers."""
-    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    document = example_tables(name)
     body = {"study": document, "methods": ["norm"]}
     middle = {d["layout"]: {k: v["text"] for k, v in d["values"].items()} for d in _indices(body)}
     told = answer_panel("decision", {**body, "values": middle})

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.conftest import DOCUMENT, ask, changed
 from campaigns import sampled
+from folders import EXAMPLES
 from starlette.testclient import TestClient
 
 import inerter as it

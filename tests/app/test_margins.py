@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.conftest import DOCUMENT, ask, changed
+from folders import example_tables
 from starlette.testclient import TestClient
 from study_text import load_text
 
@@ -178,7 +178,7 @@ def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClien
 
 @pytest.mark.campaign
 def test_a_report_of_a_study_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
-    limits = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    limits = example_tables("limits")
     page, _ = _page_of_job(client, study=limits)
     assert page == _report_of(as_toml(limits), tmp_path / "whole")
 

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES
+from app.conftest import DOCUMENT
 from campaigns import sampled
+from folders import EXAMPLES
 from starlette.testclient import TestClient
 
 DESIGN = {"layout": "S3", "values": {"c": "2 kN s/m", "b": 100.0}, "name": "mine"}

@@ -13,9 +13,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask, changed
+from app.conftest import DOCUMENT, ask, changed
 from campaigns import sampled
 from combinations import CARS
+from folders import EXAMPLES, example_tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
@@ -164,7 +165,7 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
 )
 def test_panels_ask_what_the_study_asks(name: str) -> None:
     """Over conditions, at quantiles, of any vehicle: a study of the very designs has the panel's numbers."""
-    document = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    document = example_tables(name)
     study = study_from(document)
     designs = designs_of(study, {})
     values = {design.layout: design.values for design in designs}
@@ -182,7 +183,7 @@ def test_panels_ask_what_the_study_asks(name: str) -> None:
 @pytest.mark.parametrize("method", ["norm", pytest.param("statistical-linearisation", marks=pytest.mark.campaign)])
 def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
     """Of designs on either side of each limit, and of the best one, which lies on both."""
-    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    document = example_tables("limits")
     study = study_from(document)
     best = client.post("/api/panel/optimise", json={"study": document, "layouts": ["S3"], "indices": ["comfort"]})
     optimum = best.json()["designs"][0]["parameters"]
@@ -203,7 +204,7 @@ def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
 
 def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
     """Of a strut that friction alone holds linear analysis cannot tell: its limits are neither kept nor broken."""
-    document = tomllib.loads((EXAMPLES / "limits.toml").read_text(encoding="utf-8"))
+    document = example_tables("limits")
     document["elements"]["f"] = "20 N"
     document["layouts"] = {"S1": "k - f"}
     body = {"study": document, "methods": ["norm"], "indices": ["tyre-load"]}

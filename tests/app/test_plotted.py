@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask
+from app.conftest import DOCUMENT, ask
+from folders import EXAMPLES
 from starlette.testclient import TestClient
 
 from inerter.app.answers import answer_panel

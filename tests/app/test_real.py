@@ -19,7 +19,8 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from app.conftest import DOCUMENT, EXAMPLES, ask
+from app.conftest import DOCUMENT, ask
+from folders import EXAMPLES
 
 import inerter as it
 from inerter.app.documents import study_from

@@ -11,6 +11,7 @@ import pytest
 from app.conftest import DOCUMENT, ask, changed
 from app.test_work import begin, until
 from starlette.testclient import TestClient
+from wang_su import ROAD
 
 import inerter as it
 from inerter.app import searches
@@ -32,7 +33,7 @@ def _searched_by_library(*indices: str) -> Any:
     """The same search without files and server."""
     place = it.any_network(3, (1e3, 1e7), (10.0, 1e6), (0.01, 1e4))
     car = it.QuarterCar(sprung_mass=250.0, unsprung_mass=35.0, tyre_stiffness=150e3, strut=it.Spring(20e3, "k") | place)
-    asked = [it.INDICES[index](it.Road(roughness=5e-7, speed=25.0)) for index in indices]
+    asked = [it.INDICES[index](ROAD) for index in indices]
     return it.search(car, asked if len(asked) > 1 else asked[0], it.Norm())
 
 

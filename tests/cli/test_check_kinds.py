@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 
 from inerter.cli.main import call
 from inerter.files.common.kinds import kind_of, kinds
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SIMULATION = (EXAMPLES / "stick_slip.toml").read_text(encoding="utf-8")
 RIG = (EXAMPLES / "rig_fit.toml").read_text(encoding="utf-8")
 CONFIGURATION = """

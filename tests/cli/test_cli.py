@@ -14,12 +14,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from folders import EXAMPLES
 
 import inerter
 import inerter as it
 from inerter.cli.main import call
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SMALL = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8").replace('["J1", "J3", "J5"]', '["J1"]')
 
 

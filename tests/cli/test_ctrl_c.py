@@ -16,10 +16,10 @@ from pathlib import Path
 
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from processes import processor_time
 
 LATE = 60.0  # seconds after which a process is taken to hang, however busy the machine is
-EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLE = "time [s],displacement [mm],force [N]\n" + "".join(
     f"{i / 200},{sin(0.1 * i):.3f},{-20.0 * sin(0.1 * i):.3f}\n" for i in range(300)
 )

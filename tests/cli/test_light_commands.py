@@ -11,9 +11,8 @@ from pathlib import Path
 import matplotlib
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES, ROOT
 
-ROOT = Path(__file__).parents[2]
-EXAMPLES = ROOT / "examples"
 STUDIES = sorted(path.name for path in EXAMPLES.glob("*.toml") if "[study]" in path.read_text(encoding="utf-8"))
 HEAVY = {
     *("numba", "llvmlite", "matplotlib", "pandas", "xarray", "h5netcdf", "h5py", "jinja2", "rich.progress"),

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 
 from inerter.cli.main import app, call
 from inerter.exports.registry import EXPORTS
 from inerter.figures.plots.kinds import PLOTS
 
-STUDY = Path(__file__).parents[2] / "examples" / "quarter-car.toml"
+STUDY = EXAMPLES / "quarter-car.toml"
 
 
 @pytest.mark.parametrize(

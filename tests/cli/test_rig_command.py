@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from folders import EXAMPLES
 
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.rig.loading import load_rig
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SHORT = (
     (EXAMPLES / "rig_friction.toml")
     .read_text(encoding="utf-8")

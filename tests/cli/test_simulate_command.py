@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import sampled
+from folders import EXAMPLES
 
 from inerter.cli.main import call
 from inerter.files.simulation.loading import load_simulation
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 RATTLE = (EXAMPLES / "backlash_rattle.toml").read_text(encoding="utf-8").replace('"2 s"', '"0.5 s"')
 FILES = {"trajectory.csv", "trajectory.nc", "events.csv", "simulation.toml", "figures"}
 

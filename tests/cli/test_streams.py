@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from study_text import study_text
 
 from inerter.cli.main import call
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 COMMAND = f"{shlex.quote(sys.executable)} -m inerter"
 
 TITLE = 'title = "Größe ☃"'

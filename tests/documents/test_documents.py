@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from distributed import SSHCluster
-from pages import PAGES, ROOT, assert_figures, assert_printed, blocks, commands, printed, run, table, text_of
+from folders import ROOT
+from pages import PAGES, assert_figures, assert_printed, blocks, commands, printed, run, table, text_of
 
 import inerter as it
 from inerter.cli.main import app, call

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
-ROOT = Path(__file__).parent.parent.parent
+from folders import ROOT
+
 TABLE = re.search(
     r"\| source \| of \| bound \| tested by \|\n(.*?)\n\n",
     (ROOT / "docs" / "methods.md").read_text(encoding="utf-8"),

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import pytest
 from campaigns import sampled
+from folders import ROOT
 from newcomer import ANSWER, PAGE, changes, steps, with_lines
-from pages import ROOT, assert_printed, printed, text_of
+from pages import assert_printed, printed, text_of
 
 from inerter.cli.main import call
 

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from pages import NUMBER, ROOT, text_of
+from folders import ROOT
+from pages import NUMBER, text_of
 
 import inerter
 from inerter.cli.main import app

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from folders import ROOT
 from matplotlib import pyplot as plt
-from pages import ROOT, notebook, run, text_of
+from pages import notebook, run, text_of
 
 NOTEBOOKS = sorted(ROOT.glob("docs/notebooks/*.ipynb"))
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+from folders import EXAMPLES
 
 
 @pytest.fixture(scope="session")
 def examples() -> str:
-    return str(Path(__file__).parents[2] / "examples")
+    return str(EXAMPLES)

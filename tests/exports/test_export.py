@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.exports.registry import EXPORTS
 
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
-CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
-REAL = it.QuarterCar(181.75, 25.0, 120e3, K | C - (B | it.Friction(20.0)) | it.Spring(1e4, "stop") - it.Gap(0.01))
+CAR = paper_quarter_car(K | C - B)
+REAL = paper_quarter_car(K | C - (B | it.Friction(20.0)) | it.Spring(1e4, "stop") - it.Gap(0.01))
 FILES = [kind.key for kind in EXPORTS.values() if kind.is_file]
 LINEAR = [key for key in EXPORTS if key not in ("svg", "pdf", "latex", "fmu", "fmu3")]
 

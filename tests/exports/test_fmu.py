@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from designs import design
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.errors import ExportError, WorkError
@@ -28,7 +29,7 @@ from fmu_roads import driven, error, needs_compiler, road
 
 pytestmark = needs_compiler
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
-CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
+CAR = paper_quarter_car(K | C - B)
 KINDS = ("fmu", "fmu3")
 SHOWN = ("sprung_acceleration", "strut_force", "tyre_load", "sprung_displacement")
 
@@ -114,7 +115,7 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
 )
 def test_friction_and_gaps_move_as_the_simulation(name: str, kind: str, masters: list[Master], tmp_path: Path) -> None:
     strut, largest = ROUGH[name]
-    car, step = it.QuarterCar(181.75, 25.0, 120e3, strut), 1e-3
+    car, step = paper_quarter_car(strut), 1e-3
     signal, height, slope = road(2.0, step)
     found = driven(opened(masters, car, kind, tmp_path), height, slope, step, SHOWN)
     assert error(found, simulated(car, signal, step, 2.0, SHOWN)) < largest
@@ -130,7 +131,7 @@ LOOSE = {  # at nodes that only springs hold
 
 @pytest.mark.parametrize("name", sampled(LOOSE, ["a friction"]))
 def test_nodes_that_only_springs_hold(name: str, masters: list[Master], tmp_path: Path) -> None:
-    car, step = it.QuarterCar(181.75, 25.0, 120e3, LOOSE[name]), 1e-3
+    car, step = paper_quarter_car(LOOSE[name]), 1e-3
     signal, height, slope = road(1.0, step)
     found = driven(opened(masters, car, "fmu", tmp_path), height, slope, step, SHOWN)
     assert error(found, simulated(car, signal, step, 1.0, SHOWN)) < 3e-5
@@ -170,7 +171,7 @@ def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master
 
 
 def test_what_friction_and_gaps_must_stand_beside(tmp_path: Path) -> None:
-    alone = it.QuarterCar(181.75, 25.0, 120e3, K | C | it.Spring(1e5) - it.Gap(5e-4) - it.Friction(50.0))
+    alone = paper_quarter_car(K | C | it.Spring(1e5) - it.Gap(5e-4) - it.Friction(50.0))
     with pytest.raises(it.InerterError, match="The elongation of the gap 'gap' is unknown in an FMU"):
         it.export(alone, "fmu")
     assert it.export(alone, "fmu", linear=True)
@@ -182,7 +183,7 @@ def test_what_friction_and_gaps_must_stand_beside(tmp_path: Path) -> None:
     )
     with pytest.raises(it.InerterError, match="on the road itself"):
         it.export(tyre, "fmu")
-    car = it.QuarterCar(181.75, 25.0, 120e3, K | C | it.Friction(50.0))
+    car = paper_quarter_car(K | C | it.Friction(50.0))
     with pytest.raises(it.InerterError, match="has no output 'f_force'"):
         it.export(car, "fmu", outputs=["f_force"])
 
@@ -191,7 +192,7 @@ def test_what_friction_and_gaps_must_stand_beside(tmp_path: Path) -> None:
 def test_a_state_with_friction_is_restored_in_another_instance(
     kind: str, masters: list[Master], tmp_path: Path
 ) -> None:
-    car = it.QuarterCar(181.75, 25.0, 120e3, ROUGH["backlash and friction"][0])
+    car = paper_quarter_car(ROUGH["backlash and friction"][0])
     _, height, slope = road(0.4, 1e-3)
     one, other = opened(masters, car, kind, tmp_path), opened(masters, car, kind, tmp_path)
     driven(one, height[:201], slope[:201], 1e-3, SHOWN)
@@ -263,7 +264,7 @@ def test_directional_derivatives_are_what_acts_at_once(kind: str, masters: list[
 @pytest.mark.parametrize("strut", [K | C - B, ROUGH["backlash and friction"][0]], ids=["linear", "switching"])
 def test_its_sources_alone_make_the_same_library(strut: it.Network, kind: str, tmp_path: Path) -> None:
     """By a compiler that warns of everything, as C99."""
-    with zipfile.ZipFile(io.BytesIO(exported(it.QuarterCar(181.75, 25.0, 120e3, strut), kind))) as archive:
+    with zipfile.ZipFile(io.BytesIO(exported(paper_quarter_car(strut), kind))) as archive:
         archive.extractall(tmp_path)
     main = {"fmu": "fmi2.c", "fmu3": "fmi3.c"}[kind]
     options = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wno-type-limits", "-Werror", "-O2", "-fPIC", "-shared"]

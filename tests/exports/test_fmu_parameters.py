@@ -11,6 +11,7 @@ import pytest
 from campaigns import sampled
 from designs import design
 from scipy.integrate import solve_ivp
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.networks.transform import map_elements
@@ -69,7 +70,7 @@ def starts(master: Master) -> dict[str, float]:
 )
 def test_values_before_a_run(name: str, kind: str, masters: list[Master], tmp_path: Path) -> None:
     strut = STRUTS[name]
-    vehicle = it.QuarterCar(181.75, 25.0, 120e3, strut)
+    vehicle = paper_quarter_car(strut)
     other = of_other_values(vehicle, 3)
     expected = opened(masters, other, tmp_path, kind)
     assert len(starts(expected)) == len(list(strut.elements())) + 3
@@ -140,7 +141,7 @@ def test_friction_that_changes_during_a_run_holds_what_it_can(masters: list[Mast
 
 @pytest.mark.parametrize("kind", sampled(KINDS, ["fmu3"]))
 def test_what_cannot_be_set(kind: str, masters: list[Master], tmp_path: Path) -> None:
-    master = opened(masters, it.QuarterCar(181.75, 25.0, 120e3, REAL), tmp_path, kind)
+    master = opened(masters, paper_quarter_car(REAL), tmp_path, kind)
     of = {v.name: v.variability for v in master.description.modelVariables if v.causality == "parameter"}
     assert {name for name, variability in of.items() if variability == "tunable"} == {"c", "cs", "f"}
     with pytest.raises(Exception, match="failed with status"):
@@ -156,7 +157,7 @@ def test_what_cannot_be_set(kind: str, masters: list[Master], tmp_path: Path) ->
 
 @pytest.mark.parametrize("kind", sampled(KINDS))
 def test_a_state_brings_its_values(kind: str, masters: list[Master], tmp_path: Path) -> None:
-    car = it.QuarterCar(181.75, 25.0, 120e3, REAL)
+    car = paper_quarter_car(REAL)
     one, other = opened(masters, car, tmp_path, kind, b=100.0), opened(masters, car, tmp_path, kind)
     _, height, slope = road(0.2, 1e-3)
     shown = mounts_of(car)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from campaigns import sampled
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.exports.fmu.platforms import PLATFORMS
@@ -19,7 +20,7 @@ from fmu_functions import declared
 from fmu_roads import needs_compiler
 
 pytestmark = needs_compiler
-CAR = it.QuarterCar(181.75, 25.0, 120e3, it.Spring(120e3) | it.Damper(7544.2) - (it.Inerter(366.52) | it.Friction(9.0)))
+CAR = paper_quarter_car(it.Spring(120e3) | it.Damper(7544.2) - (it.Inerter(366.52) | it.Friction(9.0)))
 FOLDERS = {
     ("linux-arm", "fmu"): "aarch64-linux",
     ("linux-arm", "fmu3"): "aarch64-linux",

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from designs import design, network
+from wang_su import paper_quarter_car as car
 
 import inerter as it
 
@@ -25,10 +26,6 @@ HEAVY, LIGHT = K | it.Damper(5e3) | it.Inerter(60.0), K | it.Damper(5e3) | it.In
 BACKLASH = K | C - it.Gap(5e-4) - SHAFT - (B | it.Friction(20.0))
 STRUTS = {"S3": K | C - B, "inerter between the ends": HEAVY, "backlash": BACKLASH}
 KINDS = ("fmu", "fmu3")
-
-
-def car(strut: it.Network) -> it.QuarterCar:
-    return it.QuarterCar(181.75, 25.0, 120e3, strut)
 
 
 @pytest.fixture

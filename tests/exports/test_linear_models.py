@@ -14,13 +14,14 @@ import scipy
 from campaigns import sampled
 from designs import ALWAYS, COUNT, design, deviation, frequencies
 from nodal import Nodal
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.exports.matlab import matlab_file, matlab_script
 
 OCTAVE = shutil.which("octave")
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
-CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
+CAR = paper_quarter_car(K | C - B)
 
 
 def expected(number: int) -> np.ndarray:

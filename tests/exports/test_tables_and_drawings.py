@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from designs import ALWAYS, design
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.exports.request import ExportSpec
@@ -21,8 +22,7 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.responses import responses
 
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
-CAR = it.QuarterCar(181.75, 25.0, 120e3, K | C - B)
-ROAD = it.Road(roughness=5e-7, speed=25.0)
+CAR = paper_quarter_car(K | C - B)
 
 
 def table(text: str) -> pd.DataFrame:
@@ -128,7 +128,7 @@ def test_mounts_of_one_network_share_a_drawing() -> None:
 
 def test_free_values_are_drawn_and_nothing_else() -> None:
     free = it.Spring(1e5) | it.Damper(it.free(100, 1e5, name="c"))
-    car = it.QuarterCar(181.75, 25.0, 120e3, free)
+    car = paper_quarter_car(free)
     assert b"svg" in it.export(car, "svg")
     for kind in (key for key in it.EXPORTS if key not in ("svg", "pdf", "latex")):
         with pytest.raises(it.InerterError, match="free"):

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from campaigns import sampled
+from wang_su import J1
 
 import inerter as it
 
@@ -213,7 +214,7 @@ def test_the_ball_screw_is_the_network_that_it_stands_for(results: Path) -> None
         roads=(it.RoadInput("road"),),
         measures=it.PerformanceOutputs(comfort=(it.OutputWeight("a_acceleration"),)),
     )
-    comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+    comfort = J1
     assert it.evaluate(mechanism, comfort, it.Norm()).value == pytest.approx(float(row["value"]), rel=1e-10)
 
 

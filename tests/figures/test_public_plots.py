@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 import xarray as xr
+from wang_su import J1, ROAD
 
 import inerter as it
 
@@ -33,7 +34,7 @@ def test_bode_is_the_closed_form() -> None:
 
 
 def test_bode_of_an_index_is_that_of_its_response() -> None:
-    road = it.Road(roughness=5e-7, speed=25.0)
+    road = ROAD
     by_index = it.plot_bode(CAR, it.RideComfort(road))[0].lines[0].get_data()
     by_names = it.plot_bode(CAR, ("road", "sprung_acceleration"))[0].lines[0].get_data()
     np.testing.assert_allclose(by_index, by_names, rtol=1e-12)
@@ -178,7 +179,7 @@ def swept(folder: Path, line: str) -> xr.Dataset:
 def test_a_sweep_draws_what_is_evaluated(tmp_path: Path) -> None:
     results = swept(tmp_path, 'sweep = { c = ["1 kN s/m", "2 kN s/m", "4 kN s/m"] }')
     left, right = it.plot_sweep(results, "J1")
-    comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+    comfort = J1
 
     def value(c: float, *more: it.Network) -> float:
         strut = it.Spring(K) | it.Damper(c)

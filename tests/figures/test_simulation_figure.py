@@ -1,14 +1,13 @@
 """The figure of a simulation: it shows the numbers and the intervals, and nothing runs over anything else."""
 
-import tomllib
 from dataclasses import replace
 from functools import cache, partial
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES, example_tables
 from matplotlib.colors import to_hex
 
 from inerter.errors import StudyError
@@ -18,8 +17,6 @@ from inerter.files.common.layouts import StrutLayout
 from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import SimulationResult
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def result(name, duration=1.0, layout=None, roughness=None, **changes):
@@ -158,7 +155,7 @@ def test_each_tyre_that_would_lift_off_is_shaded_in_its_own_row():
 
 @pytest.mark.parametrize("name", ["full-car", "train"])
 def test_each_curve_is_called_by_what_tells_it_from_the_others(name, tmp_path):
-    study = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"))
+    study = example_tables(name)
     fixed = {key: value["from"] if isinstance(value, dict) else value for key, value in study["elements"].items()}
     file = tmp_path / "simulation.toml"
     tables = {

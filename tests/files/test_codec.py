@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
+from folders import EXAMPLES
 from jsonschema import Draft202012Validator
 
 from inerter.files.common.codec import INVALID, TableCodec, key, keyed_dataclass, load_tables, table_of
@@ -23,7 +23,6 @@ from inerter.files.study.sections import study_codec
 from inerter.networks.elements import Free
 from inerter.registry import cache_until_registration
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 TABLES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(EXAMPLES.glob("*.toml"))}
 STUDIES = [name for name, tables in TABLES.items() if "study" in tables]
 CODECS = {"study": study_codec, "simulation": simulation_codec, "rig": rig_codec, "fit": lambda: IDENTIFICATION}

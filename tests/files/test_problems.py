@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -22,7 +23,6 @@ from inerter.files.rig.loading import load_rig
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.loading import load_study
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 WORDS = st.text("abcdefgh", min_size=3, max_size=8)
 MAYBE = st.one_of(st.just(""), WORDS)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from folders import EXAMPLES
 
 import inerter as it
 from inerter.files.rig.loading import load_rig
@@ -17,8 +17,6 @@ from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
 from inerter.records.record import Record
 from inerter.work.processes import Processes
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")

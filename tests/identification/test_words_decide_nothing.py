@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from troubled_rig import Device, Sensors, Tones, measured
@@ -147,7 +148,7 @@ def test_a_record_that_is_refused_is_refused_with_tokens_too(force: np.ndarray) 
             it.identify(it.Record(time, np.cos(time), force), "ideal")
 
 
-STUDY = load_study(Path(__file__).parents[2] / "examples" / "quarter-car.toml")
+STUDY = load_study(EXAMPLES / "quarter-car.toml")
 
 
 @settings(max_examples=8)

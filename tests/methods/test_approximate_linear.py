@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from scipy.integrate import trapezoid
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter import (
     ApproximateLinear,
@@ -20,7 +20,6 @@ from inerter import (
     Norm,
     QuarterCar,
     RideComfort,
-    Road,
     Spring,
     StatusKind,
     TyreLoad,
@@ -33,7 +32,6 @@ from inerter import (
 from inerter.errors import PerformanceIndexError
 from inerter.methods.objective import Differentiable
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = INDICES = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()
 k, screw = Spring(120e3), Spring(1e6) | Damper(3200.0)
 

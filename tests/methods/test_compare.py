@@ -10,10 +10,10 @@ import pytest
 import scipy.stats
 from campaigns import sampled
 from filtered import Weighed, iso_2631_wk
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import J1, J3, ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, Spring, TyreLoad
 from inerter.errors import OK, Status, StatusKind
 from inerter.methods.averages import mean_and_error
 from inerter.methods.compare import Comparison, Difference, compare_estimates, difference_of
@@ -23,8 +23,6 @@ from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import random_excitation, realisation_seeds, run
 from inerter.systems.piecewise import piecewise
 
-ROAD = Road(roughness=5e-7, speed=25.0)
-J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 ROADS = 5
 

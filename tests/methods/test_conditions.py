@@ -6,14 +6,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from strategies import paper_quarter_car
+from wang_su import J1, J3, J5, ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError
 from inerter.methods.composite_index import objective_of
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
 USE = it.Conditions(
     [

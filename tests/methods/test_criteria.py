@@ -5,17 +5,17 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy
 from campaigns import sampled
 from filtered import iso_2631_wk
+from folders import ROOT
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from random_mechanisms import FAMILIES, mechanisms
-from strategies import paper_half_car
+from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Friction, Inerter, Spring
@@ -309,7 +309,7 @@ def test_elements_that_are_not_there_are_refused_with_those_that_are() -> None:
 def test_a_spring_has_its_stroke_wherever_it_stands_in_a_series(order: str) -> None:
     """Hooke's law: the stroke of a spring is its force over k, also between a damper and an inerter."""
     parts = {"k1": Spring(1e6, "k1"), "c1": Damper(3200.0, "c1"), "c": Damper(7e3, "c"), "b": Inerter(300.0, "b")}
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(120e3, "k") | it.network(order, **parts))
+    car = paper_quarter_car(Spring(120e3, "k") | it.network(order, **parts))
     of_spring, of_damper = (it.evaluate(car, it.ElementStroke(ROAD, name), it.Norm()).value for name in ("k1", "c1"))
     force = it.evaluate(car, it.ElementForce(ROAD, "k1"), it.Norm()).value
     assert of_spring == pytest.approx(force / 1e6, rel=1e-10)
@@ -317,7 +317,7 @@ def test_a_spring_has_its_stroke_wherever_it_stands_in_a_series(order: str) -> N
 
 
 def test_the_table_of_the_docs_is_that_of_the_rows() -> None:
-    page = (Path(__file__).parents[2] / "docs" / "criteria.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "criteria.md").read_text(encoding="utf-8")
     rows = page.splitlines()
     expected = []
     for symbol, kind in it.INDICES.items():

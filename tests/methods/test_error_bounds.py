@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.errors import ErrorSource, StatusKind
@@ -16,13 +17,12 @@ from inerter.methods import steady_squares
 from inerter.methods.error_bounds import of_weighted_sum, of_worst, with_error_sources
 from inerter.uncertainty.distributions import scatter_of
 
-ROAD = it.Road(roughness=5e-7, speed=25)
 COMFORT = it.RideComfort(ROAD)
 USUAL = it.Spring(120e3) | it.Damper(4981)
 
 
 def car(strut=USUAL):
-    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    return paper_quarter_car(strut)
 
 
 def off_by(value, **bounds):

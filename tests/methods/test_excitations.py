@@ -11,6 +11,7 @@ import pytest
 from campaigns import sampled
 from excited import ROAD, TwoSources, random_excitation, random_outputs
 from random_mechanisms import FAMILIES, mechanisms, opened
+from wang_su import J1, paper_half_car
 
 import inerter as it
 from inerter import Damper, Filter, Inerter, Spring, free
@@ -269,11 +270,7 @@ def test_the_displacement_of_a_road_drives_a_damped_tyre(seed, output):
     k, c, b, damping = np.exp(random.normal(0.0, 0.7, 4)) * [60e3, 3e3, 200.0, 400.0]
     strut = [Spring(k) | Damper(c), Spring(k) | Damper(c) - it.Inerter(b)][seed % 2]
     half = seed % 3 == 2
-    car = (
-        it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front=strut, rear=strut)
-        if half
-        else it.QuarterCar(250.0, 35.0, 180e3, strut)
-    )
+    car = paper_half_car(front=strut, rear=strut) if half else it.QuarterCar(250.0, 35.0, 180e3, strut)
     damped, road = with_damped_tyres(car.mechanism(), damping), "road_front" if half else "road"
     name = output if output != "travel" else "front_travel" if half else "strut_travel"
     found = it.evaluate(damped, it.PeakResponse(road, name), it.Norm())
@@ -439,7 +436,7 @@ def test_excitations_and_indices_of_the_previous_version_are_read():
     assert found.value == it.evaluate(car, force, it.Norm()).value
     assert found.error_bound == pytest.approx(0.01, rel=1e-3)
     with pytest.warns(DeprecationWarning, match="`question` is now `definition`"):
-        definition = it.RideComfort(it.Road(roughness=5e-7, speed=25.0)).question(car.mechanism())
+        definition = J1.question(car.mechanism())
     with pytest.warns(DeprecationWarning, match="`size` is now `amplitude_density`"):
         assert definition.drive.size == definition.drive.amplitude_density
     with pytest.warns(DeprecationWarning, match="`arrivals` is now `input_paths`"):

@@ -11,7 +11,7 @@ import pytest
 import scipy.signal
 import scipy.stats
 from campaigns import sampled
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import J1, J3, ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import (
@@ -37,8 +37,6 @@ from inerter.methods.out_of_band import on_roads, out_of_band_contribution
 from inerter.methods.realisations import realisation_seeds
 from inerter.systems.piecewise import piecewise
 
-ROAD = Road(roughness=5e-7, speed=25.0)
-J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
 LATE = 2.04 / 25.0
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 TWO = ExpectedValue(realisations=2, seed=5)

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strategies import elements, logarithmic, networks, paper_half_car, paper_quarter_car
+from strategies import elements, logarithmic, networks
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, ExpectedValue, Friction, Gap, InerterError, RideComfort, Road, Spring, TyreLoad
+from inerter import Damper, ExpectedValue, Friction, Gap, InerterError, RideComfort, Spring, TyreLoad
 from inerter.methods.equivalent_linear import has_play
 from inerter.systems.piecewise import piecewise
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = [RideComfort(ROAD), TyreLoad(ROAD)]
 
 

@@ -13,7 +13,7 @@ from filtered import Weighed, iso_2631_wk, random_filter, some_filters
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from random_mechanisms import FAMILIES, mechanisms, opened
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import J1, J3, J5, ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Filter, Friction, Inerter, Spring, free
@@ -22,8 +22,6 @@ from inerter.methods.notes import parts_of
 from inerter.methods.realisations import realisation_seeds
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 WK = iso_2631_wk()
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from exact import quarter_car_norms
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter import (
     ApproximateLinear,
@@ -34,7 +34,6 @@ from inerter import (
 from inerter.kernels import cache, gain, h2, harmonic
 from inerter.methods.objective import Differentiable
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
 c, b = Damper(free(10.0, 1e6, "c")), Inerter(free(0.01, 1e5, "b"))
 k, screw = Spring(120e3), Spring(1e6) | Damper(3200.0)

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from strategies import paper_half_car
+from wang_su import paper_half_car
 
 import inerter as it
 from inerter import Damper, Inerter, Spring, free

@@ -5,12 +5,11 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from strategies import paper_quarter_car
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.methods.network_norm import free_strut
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 INDICES = [it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()]
 CAR = paper_quarter_car(
     it.Spring(120e3) | it.Damper(it.free(1e2, 1e5, "c"), "c") - it.Inerter(it.free(1.0, 2e3, "b"), "b")

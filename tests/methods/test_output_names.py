@@ -10,6 +10,7 @@ import pytest
 from campaigns import sampled
 from nodal import Nodal
 from strategies import random_network, random_quarter_car
+from wang_su import ROAD, paper_half_car
 
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, frequency_response
@@ -19,7 +20,6 @@ from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import outputs
 from inerter.vehicle.mechanism import OutputWeight, PerformanceOutputs
 
-ROAD = it.Road(roughness=5e-7, speed=25)
 LINEAR = (it.Norm(), it.StatisticalLinearisation())
 SIMULATING = (it.ExpectedValue(realisations=3), it.ApproximateLinear(seed=0))
 k, c, b = Spring(22e3), Damper(1.5e3), Inerter(20.0)
@@ -72,7 +72,7 @@ def test_what_a_friction_does_is_told_by_simulation_only():
 
 
 def test_elements_keep_their_names_when_others_are_left_out():
-    twins = it.HalfCar(363.5, 200, 25, 20, 120e3, 100e3, 0.775, 1.265, front=k | Damper(1e3) - Gap(1e-3), rear=k | c)
+    twins = paper_half_car(front=k | Damper(1e3) - Gap(1e-3), rear=k | c)
     left_out = it.HalfCar(
         363.5, 200, 25, 20, 120e3, 100e3, 0.775, 1.265, front=k | (c - Friction(9.0)), rear=k | c | Friction(1.0)
     )

@@ -8,7 +8,8 @@ import pytest
 from exact import h2_square, quarter_car_norms, root
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strategies import logarithmic, paper_half_car, paper_quarter_car, random_network, random_quarter_car
+from strategies import logarithmic, random_network, random_quarter_car
+from wang_su import J1, J3, J5, ROAD, paper_half_car, paper_quarter_car
 
 from inerter import (
     GROUND,
@@ -17,7 +18,6 @@ from inerter import (
     Force,
     HalfCar,
     Inerter,
-    LoadCarrying,
     Mechanism,
     Norm,
     PeakResponse,
@@ -31,9 +31,6 @@ from inerter import (
     frequency_response,
     state_space,
 )
-
-ROAD = Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying()
 
 
 def both(car):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from random_mechanisms import FAMILIES, mechanisms
-from strategies import paper_quarter_car
+from wang_su import ROAD, paper_quarter_car
 
 from inerter import (
     Damper,
@@ -20,7 +20,6 @@ from inerter import (
     LoadCarrying,
     Norm,
     RideComfort,
-    Road,
     Spring,
     TyreLoad,
     evaluate,
@@ -35,7 +34,6 @@ from inerter.errors import MechanismError
 from inerter.networks.transform import map_elements
 
 rational = pytest.importorskip("rational_norms", reason="python-flint is not installed")
-ROAD = Road(roughness=5e-7, speed=25.0)
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
 
 

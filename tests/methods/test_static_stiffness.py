@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strategies import paper_quarter_car, random_network
+from strategies import random_network
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.methods.composite_index import objective_of

@@ -10,10 +10,11 @@ from campaigns import sampled
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from nodal import Nodal
-from strategies import elements, logarithmic, networks, paper_half_car, paper_quarter_car
+from strategies import elements, logarithmic, networks
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, TyreLoad
+from inerter import Damper, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Spring, TyreLoad
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import DesignError, PerformanceIndexError
 from inerter.methods.equivalent import POORLY
@@ -21,7 +22,6 @@ from inerter.methods.notes import parts_of
 from inerter.networks.transform import map_elements
 from inerter.norms.h2 import h2
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 J1, J3, J5 = RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying(amplitude=1000.0)
 k, c, b = Spring(120e3), Damper(4e3), Inerter(300.0)
 screw = Spring(1e6) | Damper(3200.0)

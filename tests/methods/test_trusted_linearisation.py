@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from campaigns import sampled
-from strategies import paper_half_car
+from wang_su import paper_half_car, paper_quarter_car
 from white_noise import ROAD, drawn
 
 import inerter as it
@@ -60,12 +60,12 @@ def test_ok_means_within_three_per_cent(name):
     ids=["friction alone", "alike for J1", "alike for J3"],
 )
 def test_alike_without_friction_and_with_a_rigid_link_is_not_alike_between(strut):
-    judged(it.QuarterCar(181.75, 25.0, 120e3, strut))
+    judged(paper_quarter_car(strut))
 
 
 def test_many_at_once_have_no_value_that_one_would_not_trust():
     c = Damper(it.free(1e-8, 1.0, name="c"))
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(120e3) | c | Inerter(1e-6) - Friction(30.0))
+    car = paper_quarter_car(Spring(120e3) | c | Inerter(1e-6) - Friction(30.0))
     assert it.evaluate(car.with_values({"c": 1e-6}), INDICES[2], METHOD).status.kind == "marginal"
     assert np.isnan(it.evaluate_many(car, INDICES[2], {"c": [1e-6]}, METHOD)).all()
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Inerter, Spring
 from inerter.errors import DesignError, NetworkError
 from inerter.networks.free_network import free_networks, with_free_networks
 
-ROAD = it.Road(roughness=5e-7, speed=25)
 COMFORT, NORM = it.RideComfort(ROAD), it.Norm()
 SPRINGS = {"springs": (1e3, 1e6)}
 

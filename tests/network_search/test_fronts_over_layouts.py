@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from strategies import paper_quarter_car
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter import Spring
@@ -18,7 +18,6 @@ from inerter.methods.network_norm import join_indices
 from inerter.network_search import fronts
 from inerter.network_search.plan import plan_search
 
-ROAD = it.Road(roughness=5e-7, speed=25)
 COMFORT, LOAD, TRAVEL = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.SuspensionTravel(ROAD)
 BOUNDS = {"springs": (1e2, 1e7), "dampers": (1e1, 1e6), "inerters": (1e-2, 1e5)}
 NORM = it.Norm()

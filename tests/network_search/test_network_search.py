@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from campaigns import sampled
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Spring
@@ -20,7 +20,6 @@ from inerter.network_search.results import TIED, reduced_topology
 from inerter.networks.enumeration import Topology, enumerate_networks
 from inerter.networks.equivalence import equivalence_classes
 
-ROAD = it.Road(roughness=5e-7, speed=25)
 INDICES = {
     "comfort": it.RideComfort(ROAD),
     "weighted comfort": it.RideComfort(ROAD, weighting="Wk"),

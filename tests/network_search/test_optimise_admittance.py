@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from campaigns import sampled
+from wang_su import ROAD
+from wang_su import paper_quarter_car as car
 
 import inerter as it
 from inerter.network_search.admittance import _AdmittanceIndex, _compile_index
 from inerter.network_search.plan import plan_search
 from inerter.synthesis.best_admittance import _families
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 INDICES = {"J1": it.RideComfort(ROAD), "J3": it.TyreLoad(ROAD)}
 ANY = it.any_network(1, dampers=(10.0, 1e6))
 KINDS = {"springs": (1.0, 1e8), "dampers": (1.0, 1e7), "inerters": (1e-3, 1e5)}
@@ -38,10 +39,6 @@ HALF_CAR = it.HalfCar(
     front=it.Spring(2e4) | ANY,
     rear=it.Spring(4e4) | it.Damper(1500.0),
 )
-
-
-def car(strut):
-    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25.0, tyre_stiffness=120e3, strut=strut)
 
 
 def of_car(index, strut=STRUTS["beside a spring"]):

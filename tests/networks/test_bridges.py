@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from nodal import Nodal
 from quadrature import h2_by_quadrature
-from strategies import logarithmic, networks, paper_quarter_car, random_network
+from strategies import logarithmic, networks, random_network
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter import Bridge, Coordinate, Damper, Force, Friction, Gap, Inerter, Mechanism, Spring, Strut

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from wang_su import J1, paper_quarter_car
+
 import inerter as it
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import plan_search
@@ -13,8 +15,8 @@ def test_best_values_that_fewer_elements_have_too() -> None:
     """Values at equal bounds have no counterpart in another network of the class; each keeps its own."""
     bounds = {"springs": (1e3, 1e5), "inerters": (1.0, 1e3)}
     strut = it.Spring(120e3) | it.Damper(2e3) | it.any_network(5, **bounds)
-    car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
-    plan = plan_search(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm())
+    car = paper_quarter_car(strut)
+    plan = plan_search(car, J1, it.Norm())
     degenerate = Topology(("|", "k", ("-", ("|", "k", "b"), ("|", "k", "b"))))
     searched = [
         SearchedNetwork(one, 1, 1, 1.0 if one == degenerate else 2.0, tuple({"k": 1e5, "b": 1.0}[s] for s in one.kinds))

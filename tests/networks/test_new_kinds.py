@@ -9,6 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from wang_su import ROAD
+from wang_su import paper_quarter_car as car
 
 import inerter as it
 from inerter.cli.main import call
@@ -26,7 +28,6 @@ from inerter.networks.parser import network
 from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import outputs
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 COMFORT = it.RideComfort(ROAD)
 
 
@@ -119,10 +120,6 @@ def known():
     yield
     for kind in OWN:
         ELEMENTS.remove(kind)
-
-
-def car(strut: Network) -> it.QuarterCar:
-    return it.QuarterCar(181.75, 25.0, 120e3, strut=strut)
 
 
 k, c = it.Spring(120e3, "k"), it.Damper(7353.0, "c")

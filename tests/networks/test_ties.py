@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strategies import paper_quarter_car, random_half_car
+from strategies import random_half_car
+from wang_su import J1, J3, J5, paper_quarter_car
 
 import inerter as it
 from inerter.methods.composite_index import objective_of
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
 
 

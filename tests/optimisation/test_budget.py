@@ -9,16 +9,14 @@ import pytest
 import scipy.optimize
 import scipy.stats
 from campaigns import sampled
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import J1, J3, paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, TyreLoad, break_even
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, break_even
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import OK, DesignError, PerformanceIndexError, StatusKind
 from inerter.optimisation.budget import Crossing, is_within_range, with_element
 
-ROAD = Road(roughness=5e-7, speed=25.0)
-J1, J3 = RideComfort(ROAD), TyreLoad(ROAD)
 shaft = Spring(1e6, "ks") | Damper(3200.0, "cs")
 
 
@@ -320,7 +318,7 @@ def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
 
     spring, damper = it.Spring(22e3), it.Damper(1500.0)
     struts = spring | damper - it.Inerter(50.0) | it.Friction(10.0, name="f"), spring | damper
-    comfort = it.RideComfort(it.Road(5e-7, 25.0))
+    comfort = J1
     laden = it.Conditions([it.Condition(1.0, vehicle={"sprung_mass": 300.0, "mass": 100.0})])
     asked = {"parameter": "f", "method": it.StatisticalLinearisation(), "bounds": (1.0, 500.0)}
     over = it.break_even(*(seated(strut, 320.0, 70.0) for strut in struts), laden.mean(comfort), **asked)

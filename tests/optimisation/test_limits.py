@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
-from strategies import paper_quarter_car, random_half_car, random_quarter_car
+from strategies import random_half_car, random_quarter_car
+from wang_su import J1, J3, J5, paper_quarter_car
 
 import inerter as it
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.limits import bounds_of, for_each
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.optimize
-from strategies import paper_quarter_car
+from wang_su import J1, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, RideComfort, Road, Spring, free
+from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring, free
 from inerter.optimisation.local import LocalOptimum, descend, trust_region
 from inerter.work.progress import ProgressStep, receiving_steps
 
-J1 = RideComfort(Road(roughness=5e-7, speed=25.0))
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 c = Damper(free(500.0, 5e4, "c"))
 

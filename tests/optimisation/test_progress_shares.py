@@ -7,14 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from strategies import paper_quarter_car
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.optimise import _costly_searches
 from inerter.work.progress import ProgressStep, receiving_steps
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 COMFORT, LOAD = it.RideComfort(ROAD), it.at_most(it.TyreLoad(ROAD), 520.0)
 CAR = paper_quarter_car(
     it.Spring(it.free(30e3, 200e3)) | it.Damper(it.free(500.0, 5e4)) - it.Inerter(it.free(1.0, 5e3))

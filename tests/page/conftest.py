@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, free_port, guard, launched_chromium
+from browser import Served, Visitor, free_port, guard, launched_chromium
+from folders import EXAMPLES
 
 
 @pytest.fixture(scope="session")

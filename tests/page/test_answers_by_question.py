@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Visitor, drop, wait_until
+from browser import Visitor, drop, wait_until
 from campaigns import sampled
+from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 import inerter as it

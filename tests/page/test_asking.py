@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Visitor, drop, wait_until
+from browser import Visitor, drop, wait_until
 from campaigns import sampled
+from folders import EXAMPLES, example_tables
 from study_text import PAPER_CAR, study_text
 
 import inerter as it
@@ -75,7 +76,7 @@ _STEP = """each => {
 def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) -> None:
     """Each has a slider, an entry and bounds; a step of the slider, up or down, keeps sign and unit."""
     page = visitor.page
-    written = tomllib.loads((EXAMPLES / f"{name}.toml").read_text())
+    written = example_tables(name)
     visitor.open(EXAMPLES / f"{name}.toml")
     page.wait_for_selector(f"text={name}.toml is open")
     visitor.settled()

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import Served, Visitor, wait_until
 from campaigns import sampled
+from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 import inerter as it

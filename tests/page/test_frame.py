@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, drop, wait_until
+from browser import Served, Visitor, drop, wait_until
+from folders import EXAMPLES
 
 SCROLLED = """() => {
   const page = document.documentElement;

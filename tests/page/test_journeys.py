@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, drop, free_port, wait_until
+from browser import Served, Visitor, drop, free_port, wait_until
+from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 import inerter as it

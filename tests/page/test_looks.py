@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor
+from browser import Served, Visitor
 from campaigns import sampled
+from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 AXE = pytest.importorskip("axe_playwright_python.sync_playwright")

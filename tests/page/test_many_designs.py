@@ -7,8 +7,9 @@ import re
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Visitor
+from browser import Visitor
 from campaigns import sampled
+from folders import EXAMPLES
 
 import inerter as it
 

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import Served, Visitor, wait_until
+from folders import EXAMPLES
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]

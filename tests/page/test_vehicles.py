@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import Served, Visitor, wait_until
+from folders import EXAMPLES
 
 _INK = """() => {
   const canvas = document.querySelector(".vehicle canvas");

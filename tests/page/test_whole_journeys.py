@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import EXAMPLES, Served, Visitor, wait_until
+from browser import Served, Visitor, wait_until
 from campaigns import sampled
+from folders import EXAMPLES
+from wang_su import J1
 
 import inerter as it
 from inerter.files.rig.loading import load_rig
@@ -216,9 +218,7 @@ def test_a_search_is_stopped_and_resumed(
     assert "so far" in job.inner_text()
     person.press(job.get_by_role("button", name="Resume"))
     page.wait_for_selector(".job[data-state=done] [data-network]", timeout=240_000)
-    library = it.search(
-        it.load_study(path).design("any"), it.RideComfort(it.Road(roughness=5e-7, speed=25.0)), it.Norm(), jobs=2
-    )
+    library = it.search(it.load_study(path).design("any"), J1, it.Norm(), jobs=2)
     assert f"of {library.n_networks} networks" in job.inner_text()
     (first,) = [one for one in json.loads(nothing.get("work"))["work"] if one["kind"] == "search"]
     (searched,) = json.loads(nothing.get(f"work/{first['id']}/result"))["searches"]

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import sampled
+from folders import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -95,7 +96,7 @@ def test_a_row_of_the_approximated_linear_model() -> None:
 @pytest.mark.timeout(1200)
 def test_how_far_method_1_is_from_the_printed_table() -> None:
     """As docs/methods.md tells."""
-    page = (Path(__file__).parents[2] / "docs" / "methods.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "methods.md").read_text(encoding="utf-8")
     text = " ".join(page.partition("**Comparison with the printed table.**")[2].split())
     comfort, load, both = re.findall(r"within ([\d.]+) %", text)[:3]
     off: dict[tuple[str, bool], list[float]] = {}

@@ -8,13 +8,12 @@ from itertools import pairwise, product
 import numpy as np
 import pytest
 from campaigns import sampled
-from strategies import paper_quarter_car, random_half_car, random_quarter_car
+from strategies import random_half_car, random_quarter_car
+from wang_su import J1, J3, J5, ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.methods.multisine_lines import SampledObjective
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
 
 

@@ -3,10 +3,10 @@
 import math
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from folders import EXAMPLES
 from study_text import study_text
 from synthetic import designs, judged, with_value
 
@@ -17,7 +17,6 @@ from inerter.files.study.running import run_study
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.index_summary import best_layouts
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 BY_BOTH = ("norm", "expected-value")
 
 

@@ -6,16 +6,13 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
 import pytest
+from wang_su import ROAD
+from wang_su import paper_quarter_car as car
 
 import inerter as it
 from inerter.errors import Status, StatusKind
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 COMFORT = it.RideComfort(ROAD)
-
-
-def car(strut: it.Network) -> it.QuarterCar:
-    return it.QuarterCar(181.75, 25.0, 120e3, strut)
 
 
 FREE = it.Spring(120e3) | it.Damper(it.free(1e3, 1e4, name="c"))

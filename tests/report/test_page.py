@@ -4,13 +4,14 @@ import math
 import re
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from report_pages import Page
 from synthetic import LONG, designs, judged, sweep, with_value
+from wang_su import paper_half_car
 
 import inerter as it
 from inerter.figures.layouts import draw_layouts
@@ -21,7 +22,6 @@ from inerter.report.problem_statement import index_rows
 from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 SPACE = "\N{NO-BREAK SPACE}"
 
 
@@ -243,7 +243,7 @@ def test_an_index_of_several_outputs_says_how_they_are_combined():
         "J3": {"tyre_front_load": 1.0, "tyre_rear_load": 1.0},
         "J1": {"sprung_acceleration": 1.0, "pitch_acceleration": lever},
     }
-    car = it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, *[it.Spring(60e3) | it.Damper(3e3)] * 2)
+    car = paper_half_car(*[it.Spring(60e3) | it.Damper(3e3)] * 2)
     for name, outputs in parts.items():
         index = half.index(name)
         single = [it.RandomResponse({output: 1.0}, index.road) for output in outputs]

@@ -13,6 +13,7 @@ from dataclasses import replace
 import pytest
 from study_text import load_text, study_text
 from synthetic import terminal_text
+from wang_su import J1, J3, ROAD
 
 import inerter as it
 from inerter.errors import Status, StatusKind
@@ -30,8 +31,6 @@ from inerter.report.study_data import as_text
 from inerter.report.text import table_lines
 from inerter.uncertainty.distributions import scatter_of
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3 = it.RideComfort(ROAD), it.TyreLoad(ROAD)
 K, C, B = it.Spring(60e3, "k"), it.Damper(3e3, "c"), it.Inerter(50.0, "b")
 ELEMENTS = 'k = "60 kN/m"\nc = { from = "500 N s/m", to = "9 kN s/m" }\nb = "50 kg"'
 TEXT = study_text(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from study_text import load_text
 from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_text
 
@@ -35,7 +36,6 @@ from inerter.report.verdicts import verdict_sentences
 from inerter.signals.road import ROAD_CLASSES
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 KEYS = re.compile("|".join(rf"\b{key}\b" for key in METHODS))  # "norms" is another word
 LIMITS = (StudyLimit("suspension-travel", "at_most", 9e-3, "m"), StudyLimit("tyre-load", "at_most", 1300.0, "N"))
 

@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from wang_su import ROAD
 
 from inerter.signals.harmonics import Harmonics, cosine, flat_multisine, multisine, sine
-from inerter.signals.road import Road
-
-ROAD = Road(roughness=5e-7, speed=25.0)
 
 
 def plain_sum(signal: Harmonics, times):

@@ -6,15 +6,14 @@ import math
 
 import numpy as np
 import pytest
+from wang_su import ROAD
 
 from inerter.errors import SignalError
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise
-from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.signals.transients import bump, chirp, step
 
-ROAD = Road(5e-7, 25.0)
 SINE = sine(1.0, 1.0)
 T, V = [0.0, 1.0, 2.0], [0.0, 1.0, 0.0]
 

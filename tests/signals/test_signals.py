@@ -10,15 +10,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from wang_su import ROAD
 
 from inerter.errors import SignalError
 from inerter.signals.harmonics import cosine, flat_multisine, multisine, sine
 from inerter.signals.records import held_noise
-from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.signals.transients import bump, chirp, step
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 RNG = np.random.default_rng(0)
 TIMES = np.concatenate([[0.0], np.cumsum(RNG.uniform(0.05, 0.2, 20))])
 VALUES = RNG.standard_normal(21)

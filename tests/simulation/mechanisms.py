@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter import (
     Damper,
     Friction,
     Gap,
-    HalfCar,
     Inerter,
-    QuarterCar,
     Rig,
     Road,
     Signal,
@@ -61,11 +60,11 @@ def random_case(seed: int) -> tuple[str, Vehicle, dict[str, object]]:
         device = (Spring(log_uniform(rng, 1e5, 1e6)) | Damper(log_uniform(rng, 1e3, 1e4))) - random_network(rng, count)
         return kind, Rig(device), {"displacement": motion(rng)}
     if kind == "quarter":
-        car: Vehicle = QuarterCar(181.75, 25.0, 120e3, base | random_network(rng, count))
+        car: Vehicle = paper_quarter_car(base | random_network(rng, count))
     else:
         front = int(rng.integers(0, count + 1))
         sides = [base | random_network(rng, n) if n else base for n in (front, count - front)]
-        car = HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, *sides)
+        car = paper_half_car(*sides)
     return kind, car, {"road": road(rng)}
 
 
@@ -73,7 +72,7 @@ def road(rng: np.random.Generator) -> Signal:
     choice = int(rng.integers(4))
     seed = int(rng.integers(1 << 30))
     if choice == 0:
-        return multisine(Road(roughness=5e-7, speed=25.0), seed=seed, highest=100.0)
+        return multisine(ROAD, seed=seed, highest=100.0)
     if choice == 1:
         return sine(amplitude=rng.uniform(1e-3, 2e-2), frequency=rng.uniform(0.5, 12.0), speed=25.0)
     if choice == 2:

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 from mechanisms import log_uniform, random_network
+from wang_su import paper_half_car
 
 import inerter as it
-from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Rig, Road, Signal, Spring
+from inerter import Damper, Friction, Gap, Inerter, Mechanism, QuarterCar, Rig, Road, Signal, Spring
 from inerter.networks.elements import Network
 from inerter.vehicle.vehicle import Vehicle
 
@@ -95,7 +96,7 @@ def half_car(rng: np.random.Generator) -> tuple[str, Vehicle, str]:
     (front, first), (rear, second) = drawn(rng, STRUTS), drawn(rng, STRUTS)
     return (
         f"half car, {front} and {rear}",
-        HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, first, second),
+        paper_half_car(first, second),
         "road",
     )
 

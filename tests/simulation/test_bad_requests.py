@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError, InerterError, MechanismError, SignalError, SimulationError
@@ -86,7 +86,7 @@ MECHANISMS: dict[str, tuple[Callable[[], object], str]] = {
 
 REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     "a step too long for a formula": (
-        lambda: drive(road=it.multisine(it.Road(5e-7, 25.0), seed=0), step=1e-3),
+        lambda: drive(road=it.multisine(ROAD, seed=0), step=1e-3),
         r"step of 1 ms is too long for .*goes up to 1000 Hz\. Take 0.5 ms or less",
     ),
     "a step too long for a table": (

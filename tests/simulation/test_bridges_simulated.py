@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from mechanisms import random_network
-from strategies import paper_quarter_car
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter import Bridge, Damper, Spring
 from inerter.errors import MechanismError
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 NAMES = ("sprung_velocity", "unsprung_velocity", "sprung_displacement")
 DURATION, SAMPLING, STEPS = 0.4, 2e-4, (4e-5, 1e-5)
 CASES = 10  # a chunk

@@ -9,7 +9,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import expm
 from scipy.optimize import brentq
-from strategies import paper_half_car, paper_quarter_car, random_half_car, random_network, random_quarter_car
+from strategies import random_half_car, random_network, random_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.networks.elements import Network
@@ -18,7 +19,6 @@ from inerter.vehicle.vehicle import Vehicle
 Array = Any
 SCREW = (it.Spring(1e6, name="shaft") | it.Damper(3200.0)) - it.Gap(1e-4) - (it.Inerter(113.0) | it.Friction(10.0))
 LEG = (it.Spring(1e6) | it.Damper(3200.0)) - it.Inerter(300.0)
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 
 
 def run(vehicle: Vehicle, *, exchanged: float = 0.0, **request: Any) -> it.Trajectory:
@@ -504,7 +504,7 @@ def test_symmetric_struts_stay_symmetric() -> None:
     leg = (it.Spring(4e5) | it.Damper(2000.0)) - it.Gap(2e-4) - (it.Inerter(150.0) | it.Friction(25.0))
     strut = it.Spring(60e3) | it.Damper(1500.0) | leg
     car = it.HalfCar(363.5, 200.0, 25.0, 25.0, 120e3, 120e3, 1.0, 1.0, strut, strut)
-    push = it.multisine(it.Road(roughness=5e-7, speed=25.0), seed=4, highest=30.0) * 3e5
+    push = it.multisine(ROAD, seed=4, highest=30.0) * 3e5
     result = run(car, forces={"sprung_force": push}, duration=2.0, step=2e-4)
     for front, rear in (("front_force", "rear_force"), ("front.f_force", "rear.f_force"),
                         ("unsprung_front_velocity", "unsprung_rear_velocity")):  # fmt: skip

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 
 Array = Any
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 STATES = (
     "sprung_displacement",
     "sprung_velocity",

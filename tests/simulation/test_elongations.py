@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.networks.elements import CombinedNetwork, Element, Network, Parallel, Series
@@ -39,8 +40,8 @@ NETWORKS = [
 def _run(
     text: str, integrator: Literal["event-driven", "time-stepping"] = "event-driven"
 ) -> tuple[it.QuarterCar, Trajectory]:
-    car = it.QuarterCar(181.75, 25.0, 120e3, strut=it.network(text, **PARTS))
-    road = it.multisine(it.Road(roughness=5e-7, speed=25.0), seed=3)
+    car = paper_quarter_car(it.network(text, **PARTS))
+    road = it.multisine(ROAD, seed=3)
     return car, it.simulate(car, road=road, duration=2.0, step=5e-4, integrator=integrator)
 
 
@@ -92,8 +93,8 @@ def test_a_gap_stays_between_its_ends_and_friction_that_sticks_does_not_move() -
 def test_a_node_that_no_spring_tells_is_where_a_very_soft_spring_would_say() -> None:
     """A spring of 1 mN/m in parallel with the inerter changes nothing but tells its elongation exactly."""
     car, run = _run("k | c - b")
-    soft = it.QuarterCar(181.75, 25.0, 120e3, strut=it.network("k | c - (b | s)", **PARTS, s=it.Spring(1e-3)))
-    road = it.multisine(it.Road(roughness=5e-7, speed=25.0), seed=3)
+    soft = paper_quarter_car(it.network("k | c - (b | s)", **PARTS, s=it.Spring(1e-3)))
+    road = it.multisine(ROAD, seed=3)
     told = it.simulate(soft, road=road, duration=2.0, step=5e-4)["b_stroke"]
     found = elongations(run, car.mechanism())["strut"]["b"]
     np.testing.assert_allclose(found - found[0], told - told[0], atol=5e-6)
@@ -107,8 +108,8 @@ def test_both_integrators_agree() -> None:
 
 
 def test_an_element_of_the_same_name_has_a_number() -> None:
-    car = it.QuarterCar(181.75, 25.0, 120e3, strut=it.network("k | c - k", **PARTS))
-    run = it.simulate(car, road=it.multisine(it.Road(roughness=5e-7, speed=25.0), seed=3), duration=0.1, step=5e-4)
+    car = paper_quarter_car(it.network("k | c - k", **PARTS))
+    run = it.simulate(car, road=it.multisine(ROAD, seed=3), duration=0.1, step=5e-4)
     inside = elongations(run, car.mechanism())
     assert list(inside["strut"]) == ["k", "c", "k 2"]
     np.testing.assert_allclose(inside["strut"]["c"] + inside["strut"]["k 2"], inside["strut"]["k"], atol=1e-12)

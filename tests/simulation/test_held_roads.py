@@ -7,10 +7,10 @@ import pytest
 import scipy.linalg
 from campaigns import sampled
 from mechanisms import random_network
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
-from inerter import Damper, Friction, Inerter, Mechanism, Road, Spring, Tyre
+from inerter import Damper, Friction, Inerter, Mechanism, Spring, Tyre
 from inerter.errors import SimulationError
 from inerter.simulation import event_driven
 from inerter.simulation.initial_state import initial_state
@@ -19,7 +19,6 @@ from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import mean_squares, recorded_period
 from inerter.systems.piecewise import piecewise
 
-ROAD = Road(roughness=5e-7, speed=25.0)
 HOLD = 1e-3
 S3 = Spring(120e3) | Damper(3e3) - (Inerter(300.0) | Friction(20.0, "f"))
 

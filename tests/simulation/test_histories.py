@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray
+from wang_su import ROAD
 
 import inerter as it
 from inerter.errors import SimulationError
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 OUTPUTS = ["sprung_acceleration", "tyre_load"]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from members import Member, member
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import MechanismError

@@ -2,16 +2,15 @@
 
 import numpy as np
 import pytest
+from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter.simulation import inputs
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-
 
 def car(damping=3000.0):
     strut = it.Spring(1.2e5) | it.Damper(damping) - (it.Inerter(300.0) | it.Friction(10.0))
-    return it.QuarterCar(sprung_mass=181.75, unsprung_mass=25.0, tyre_stiffness=1.2e5, strut=strut)
+    return paper_quarter_car(strut)
 
 
 def run(signal, **options):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from wang_su import paper_quarter_car
 
 import inerter as it
 from inerter.simulation import event_driven
@@ -21,7 +22,7 @@ MEMBERS = {"friction": (FRICTION, ROAD), "backlash": (BACKLASH, ROAD), "held roa
 
 def member(name: str) -> tuple[PiecewiseSystem, InputTable]:
     strut, road = MEMBERS[name]
-    return piecewise(it.QuarterCar(181.75, 25, 120e3, strut)), tabulate([road, None], [0.0, 0.0], 4.0, STEP, every=3)
+    return piecewise(paper_quarter_car(strut)), tabulate([road, None], [0.0, 0.0], 4.0, STEP, every=3)
 
 
 def started(name: str) -> event_driven.Integration:

@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import tabulate
 from inerter.systems.piecewise import piecewise
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 STRUT = it.Spring(1.2e5) | it.Damper(3000.0) | it.Friction(40.0)
 
 

@@ -15,13 +15,12 @@ import numba
 import numpy as np
 import pytest
 from scipy.io import loadmat
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import SimulationError
 from inerter.kernels import compiler
 from inerter.kernels.flow import first_root, over_columns
-
-ROAD = it.Road(roughness=5e-7, speed=25)
 
 
 def screw(friction: float = 10.0, gap: float | None = None) -> it.networks.elements.Network:
@@ -37,7 +36,7 @@ def quarter_car(friction: float = 10.0, gap: float | None = None) -> it.QuarterC
 
 
 def half_car(front, rear) -> it.HalfCar:
-    return it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front, rear)
+    return paper_half_car(front, rear)
 
 
 def test_the_lines_of_the_readme_of_issue_and_docs():
@@ -217,7 +216,7 @@ def test_an_output_that_is_not_there_is_named_with_what_is_close():
 
 
 def test_a_road_too_large_to_compute_with_is_refused():
-    car = it.QuarterCar(181.75, 25, 120e3, it.Spring(120e3) | it.Friction(1.0))
+    car = paper_quarter_car(it.Spring(120e3) | it.Friction(1.0))
     for size in (1e101, 1e160, 1e300):
         with pytest.raises(SimulationError, match="too large to compute with"):
             it.simulate(car, road=it.sine(amplitude=size, frequency=1.0), duration=0.1)

@@ -10,8 +10,9 @@ from campaigns import sampled
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.signal import lsim
+from wang_su import paper_quarter_car
 
-from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, QuarterCar, Spring, free, state_space
+from inerter import Damper, Friction, Gap, HalfCar, Inerter, Mechanism, Spring, free, state_space
 from inerter.errors import SimulationError
 from inerter.kernels.stepping import march
 from inerter.networks.elements import Network
@@ -23,10 +24,6 @@ from inerter.vehicle.vehicle import Vehicle
 
 Signal = Callable[[np.ndarray], np.ndarray]
 SCREW = (Spring(1e6) | Damper(3200.0)) - Gap(1e-4) - (Inerter(113.0) | Friction(10.0))
-
-
-def quarter_car(strut: Network) -> QuarterCar:
-    return QuarterCar(sprung_mass=181.75, unsprung_mass=25.0, tyre_stiffness=120e3, strut=strut)
 
 
 def block(network: Network, mass: float = 2.0) -> Mechanism:
@@ -186,7 +183,7 @@ def test_open_gap_relaxes_and_its_inerter_coasts() -> None:
 @pytest.mark.parametrize("hold", ["linear", "zero", "cubic"])
 def test_linear_quarter_car_at_second_order(hold: str) -> None:
     ms, mu, kt, k, c, b = 181.75, 25.0, 120e3, 90e3, 1500.0, 60.0
-    car = quarter_car(Spring(k) | Damper(c) | Inerter(b))
+    car = paper_quarter_car(Spring(k) | Damper(c) | Inerter(b))
     M, pair = np.array([[ms + b, -b], [-b, mu + b]]), np.array([[1.0, -1.0], [-1.0, 1.0]])
     solve = np.linalg.inv(M)
     A = np.block([[np.zeros((2, 2)), np.eye(2)], [-solve @ (k * pair + np.diag([0.0, kt])), -c * solve @ pair]])
@@ -227,7 +224,7 @@ def test_linear_quarter_car_at_second_order(hold: str) -> None:
 )
 def test_linear_networks_with_massless_nodes_at_second_order(strut: Network) -> None:
     """Free motion from a velocity, against the matrix exponential of the assembled system."""
-    car = quarter_car(strut)
+    car = paper_quarter_car(strut)
     system = state_space(car)
     names = [f"{c.name}_velocity" for c in car.mechanism().coordinates]
     start = np.zeros(len(system.states))
@@ -335,7 +332,7 @@ DEVICES: dict[str, Network] = {
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_energy_balance_closes_at_first_order(device: str) -> None:
-    car = quarter_car(DEVICES[device])
+    car = paper_quarter_car(DEVICES[device])
     graph, left = full_graph(car.mechanism()), []
     mass = np.array([181.75, 25.0, *[0.0] * (len(graph.nodes) - 2)])
     for h in (2e-4, 5e-5):
@@ -363,7 +360,7 @@ def test_energy_balance_closes_at_first_order(device: str) -> None:
 
 @pytest.mark.parametrize("device", ["screw", "series", "several"])
 def test_contact_never_pulls_and_never_passes(device: str) -> None:
-    car = quarter_car(DEVICES[device])
+    car = paper_quarter_car(DEVICES[device])
     branches = full_graph(car.mechanism()).branches
     i = next(i for i, branch in enumerate(branches) if isinstance(branch.element, Gap))
     half = float(branches[i].element.value)  # type: ignore[arg-type]
@@ -379,7 +376,7 @@ def test_contact_never_pulls_and_never_passes(device: str) -> None:
 
 @pytest.mark.parametrize("device", DEVICES)
 def test_friction_is_bounded_and_against_the_motion(device: str) -> None:
-    car = quarter_car(DEVICES[device])
+    car = paper_quarter_car(DEVICES[device])
     r = run(car, 1.0, 1e-4, road=bumpy)
     for branch, force in zip(full_graph(car.mechanism()).branches, r.forces.T, strict=True):
         if isinstance(branch.element, Friction):
@@ -416,7 +413,7 @@ SAME_AS: list[tuple[Network, Network]] = [
 
 @pytest.mark.parametrize(("one", "other"), SAME_AS)
 def test_networks_that_are_the_same(one: Network, other: Network) -> None:
-    first, second = (run(quarter_car(network), 0.6, 2e-4, road=bumpy, every=10) for network in (one, other))
+    first, second = (run(paper_quarter_car(network), 0.6, 2e-4, road=bumpy, every=10) for network in (one, other))
     for what in ("displacement", "velocity"):
         a, b = getattr(first, what)[:, :2], getattr(second, what)[:, :2]
         assert a == pytest.approx(b, abs=2e-6 * np.abs(b).max())
@@ -431,14 +428,14 @@ def test_gaps_without_a_place_of_their_own() -> None:
 
 
 def test_samples_are_those_of_every_step() -> None:
-    car = quarter_car(DEVICES["screw"])
+    car = paper_quarter_car(DEVICES["screw"])
     full, some = (run(car, 0.3, 1e-4, road=bumpy, every=every) for every in (1, 7))
     for name in ("time", "displacement", "velocity", "acceleration", "forces"):
         assert np.array_equal(getattr(some, name), getattr(full, name)[::7]), name
 
 
 def test_laying_out_inputs_in_pieces_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    car = quarter_car(DEVICES["several"])
+    car = paper_quarter_car(DEVICES["several"])
     whole = run(car, 0.3, 1e-4, road=bumpy, every=7)
     monkeypatch.setattr("inerter.simulation.time_stepping.CHUNK", 331)
     pieces = run(car, 0.3, 1e-4, road=bumpy, every=7)
@@ -469,7 +466,7 @@ def random_strut(rng: np.random.Generator) -> Network:
 def random_vehicle(rng: np.random.Generator) -> Vehicle:
     match rng.integers(3):
         case 0:
-            return quarter_car(random_strut(rng) | Spring(4e4))
+            return paper_quarter_car(random_strut(rng) | Spring(4e4))
         case 1:
             struts = random_strut(rng) | Spring(4e4), random_strut(rng) | Damper(2e3)
             return HalfCar(700.0, 900.0, 30.0, 25.0, 2e5, 1.5e5, 0.8, 1.2, *struts)
@@ -503,9 +500,9 @@ def test_convergence_on_random_mechanisms(count: int) -> None:
 @pytest.mark.parametrize(
     ("vehicle", "message"),
     [
-        (quarter_car(Spring(1e4) | Gap(1e-3)), "no compliance"),
-        (quarter_car(Spring(1e4) | Gap(1e-3) - Inerter(10.0)), "no compliance"),
-        (quarter_car(Spring(1e4) | (Inerter(10.0) - Gap(1e-3) - Gap(1e-3))), "no compliance"),
+        (paper_quarter_car(Spring(1e4) | Gap(1e-3)), "no compliance"),
+        (paper_quarter_car(Spring(1e4) | Gap(1e-3) - Inerter(10.0)), "no compliance"),
+        (paper_quarter_car(Spring(1e4) | (Inerter(10.0) - Gap(1e-3) - Gap(1e-3))), "no compliance"),
         (Rig(Gap(1e-3)), "no compliance"),
         (Rig(Gap(0.0) - Gap(0.0)), "rigidly"),
         (Rig(Spring(1e3) | Damper(free(1.0, 2.0))), "free"),
@@ -531,5 +528,5 @@ def test_a_node_that_springs_hold_starts_in_balance() -> None:
 
 
 def test_steps_are_made_of_the_types_that_their_code_is_prepared_for() -> None:
-    run(quarter_car(Spring(120e3) | Damper(3705.4) | SCREW), 0.01, 1e-3)
+    run(paper_quarter_car(Spring(120e3) | Damper(3705.4) | SCREW), 0.01, 1e-3)
     assert len(march.ready().signatures) == 1

@@ -13,6 +13,7 @@ from campaigns import sampled
 from mechanisms import element, log_uniform, motion, network, road
 from test_two_integrators import differences
 from uneven import OneSidedStop, OneWay, Push, UnevenFriction, valved_damper
+from wang_su import J1, ROAD, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Friction, Gap, Inerter, Spring, simulate
@@ -156,7 +157,7 @@ def uneven_case(seed: int):
     if seed % 2:
         shaft = Spring(log_uniform(rng, 1e5, 1e6)) | Damper(log_uniform(rng, 1e3, 1e4))
         return it.Rig(shaft - part), {"displacement": motion(rng)}
-    return it.QuarterCar(181.75, 25.0, 120e3, base | part), {"road": road(rng)}
+    return paper_quarter_car(base | part), {"road": road(rng)}
 
 
 @pytest.mark.parametrize("chunk", sampled(range(40), [0, 1], often=[2, 3, 4], kept=5))
@@ -179,7 +180,7 @@ def test_two_integrators_agree_on_random_networks_of_uneven_laws(chunk):
 
 
 def test_what_does_not_treat_such_laws_says_so():
-    road = it.Road(roughness=5e-7, speed=25.0)
+    road = ROAD
     car = it.QuarterCar(180.0, 25.0, 120e3, Spring(20e3) | valved_damper(800.0, 2400.0))
     with pytest.raises(PerformanceIndexError, match=r"'w' in 'strut' is a one-way clutch\. Use expected-value"):
         it.evaluate(car, it.RideComfort(road), it.StatisticalLinearisation())
@@ -272,12 +273,12 @@ def test_a_rest_between_a_slot_and_a_gap_is_one_that_both_can_have():
 def test_what_rests_at_a_limit_with_none_beyond_is_not_struck_by_rounding(drag):
     noise = 1e-3 * np.random.default_rng(1).standard_normal(150)
     rough = it.Signal.sampled(np.arange(0.0, 0.3, 0.002), noise, "zero", speed=10.0)
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) | between(drag, math.inf))
+    car = paper_quarter_car(Spring(5e4) | Damper(1500.0) | between(drag, math.inf))
     assert simulate(car, road=rough, duration=0.2, step=2e-4).status.ok
 
 
-CAR = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0))
-COMFORT = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+CAR = paper_quarter_car(Spring(5e4) | Damper(1500.0))
+COMFORT = J1
 
 
 def with_in_series(law):
@@ -305,14 +306,14 @@ def test_a_budget_of_what_has_no_usual_size_asks_for_bounds():
 
 def test_a_constant_force_leaves_gains_as_they_are():
     struts = (Spring(5e4) | Damper(1500.0), Spring(5e4) | Damper(1500.0) | Push(800.0))
-    plain, loaded = (it.QuarterCar(181.75, 25.0, 120e3, strut) for strut in struts)
+    plain, loaded = (paper_quarter_car(strut) for strut in struts)
     methods = (it.Norm(), it.ExpectedValue(realisations=2))
     found = {it.evaluate(car, it.LoadCarrying(), method).value for car in (plain, loaded) for method in methods}
     assert len(found) == 1
 
 
 def test_new_values_that_change_what_holds_are_refused():
-    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
+    car = paper_quarter_car(Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
     system = piecewise(car)
     assert with_element_values(system, {"u": 20.0}).mechanics.limits.tolist() == [[-10.0, 20.0]]
     with pytest.raises(DesignError, match="'u' changes whether it holds against small forces"):

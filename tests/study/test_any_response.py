@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from random_mechanisms import FAMILIES, mechanisms
@@ -513,7 +514,7 @@ def test_a_kind_that_cannot_do_without_settings_says_them(kind: str, load: Load)
 
 # --- the example ---
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "building_quake.toml"
+EXAMPLE = EXAMPLES / "building_quake.toml"
 
 
 def test_the_example_is_that_of_python_and_keeps_its_limit(tmp_path: Path) -> None:

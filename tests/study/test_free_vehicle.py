@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 from study_text import assert_survives, load_text, study_text
+from wang_su import ROAD
 
 import inerter as it
 from inerter.errors import InerterError
@@ -40,7 +42,7 @@ def test_a_study_chooses_a_mass_as_python_does(tmp_path: Path) -> None:
     found = run_study(study, tmp_path / "out").data.squeeze()
     strut = it.Spring(20e3) | it.Damper(it.free(100.0, 10e3, name="c"))
     car = it.QuarterCar(250.0, it.free(20.0, 90.0, name="unsprung_mass"), 150e3, strut)
-    best = it.optimise(car, it.TyreLoad(it.Road(roughness=5e-7, speed=25.0)), it.Norm(), seed=0)
+    best = it.optimise(car, it.TyreLoad(ROAD), it.Norm(), seed=0)
     one = found.sel(layout="S1")
     assert float(one["value"]) == pytest.approx(best.value, rel=1e-9)
     assert [str(name) for name in one["parameter"].values] == ["c", "unsprung_mass"]
@@ -85,7 +87,7 @@ def test_what_cannot_be_is_said(tmp_path: Path, vehicle: dict[str, str], setting
 
 def test_a_distance_and_a_simulation_have_one_value(tmp_path: Path) -> None:
     path = tmp_path / "half.toml"
-    half = Path(__file__).parents[2] / "examples" / "half-car.toml"
+    half = EXAMPLES / "half-car.toml"
     lines = half.read_text(encoding="utf-8").splitlines()
     free = 'distance_front = { from = "0.7 m", to = "0.8 m" }'
     path.write_text("\n".join(free if line.startswith("distance_front") else line for line in lines), encoding="utf-8")

@@ -13,6 +13,7 @@ import pytest
 from combinations import CARS
 from study_text import assert_refused, assert_survives, load_text, study_text
 from synthetic import terminal_text
+from wang_su import ROAD
 
 import inerter as it
 from inerter.app.designs import design_of
@@ -122,7 +123,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
 
 def test_a_limit_that_nothing_keeps_is_named_once_over_conditions() -> None:
     car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(60e3) | it.Damper(it.free(100.0, 1e5, "c")))
-    grip = it.TyreLoad(it.Road(5e-7, 25.0))
+    grip = it.TyreLoad(ROAD)
     limits = [it.at_most(it.Conditions([it.Condition(1.0, road={"speed": v})]).mean(grip), 10.0) for v in (15.0, 30.0)]
     message = it.optimise(car, grip, it.Norm(), subject_to=limits, seed=0).status.message
     assert message.startswith(
@@ -133,7 +134,7 @@ def test_a_limit_that_nothing_keeps_is_named_once_over_conditions() -> None:
 
 @pytest.mark.parametrize("symbol", list(INDICES))
 def test_the_words_of_a_limit_say_whether_its_value_is_a_peak(symbol: str) -> None:
-    road = it.Road(5e-7, 25.0)
+    road = ROAD
     given = {"road": road, "excitation": road, "element": "k", "outputs": {"tyre_load": 1.0}}
     given |= {"input": "sprung_force", "output": "sprung_displacement"}
     index = INDICES[symbol](**{key: given[key] for key in INDICES[symbol].__dataclass_fields__ if key in given})

@@ -7,6 +7,7 @@ import pickle
 from dataclasses import replace
 from pathlib import Path
 
+from folders import EXAMPLES
 from hypothesis import given
 from hypothesis import strategies as st
 from study_text import ELEMENTS, study_text
@@ -16,7 +17,7 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.results import dataset
 from inerter.methods.notes import Note, parts_of, text_of
 
-STUDY = load_study(Path(__file__).parents[2] / "examples" / "quarter-car.toml")
+STUDY = load_study(EXAMPLES / "quarter-car.toml")
 WORDS = st.text("abc 0123456789.{}", min_size=1, max_size=12)
 NUMBERS = st.floats(1e-3, 1e6)
 

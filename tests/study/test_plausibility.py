@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 
 from inerter.cli.main import call
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 QUARTER = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
 
 

@@ -10,6 +10,7 @@ from random import Random
 
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 from hypothesis import given
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
@@ -24,7 +25,6 @@ from inerter.files.study.schema import study_schema
 from inerter.roads.reading import Columns
 from inerter.units import parse_quantity
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 STUDIES = [path for path in sorted(EXAMPLES.glob("*.toml")) if "\n[study]" in path.read_text(encoding="utf-8")]
 SCHEMA = study_schema()
 EDITOR = Draft202012Validator(SCHEMA)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from folders import EXAMPLES
 from study_text import assert_refused, load_text, study_text
 
 import inerter as it
@@ -21,7 +22,6 @@ from inerter.files.study.study import Study
 from inerter.networks.enumeration import enumerate_networks
 from inerter.report.search import search_sections, search_sentences
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = (
     'springs = { from = "1 kN/m", to = "10 MN/m" }, dampers = { from = "10 N s/m", to = "1 MN s/m" }, '
     'inerters = { from = "10 g", to = "100 t" }'

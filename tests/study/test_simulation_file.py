@@ -1,10 +1,11 @@
 """Simulation files: what a good one means, that it survives being written out, and what is said about a bad one."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from folders import EXAMPLES, ROOT
+from wang_su import ROAD, paper_quarter_car
 
 from inerter.errors import StudyError
 from inerter.files.common.codec import REQUIRED, keys_in
@@ -16,16 +17,10 @@ from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.files.simulation.sections import INITIAL, SimulationSettings
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
-from inerter.signals.road import Road
-from inerter.vehicle.quarter_car import QuarterCar
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.rig import Rig
 
-EXAMPLES = sorted(
-    path
-    for path in (Path(__file__).parents[2] / "examples").glob("*.toml")
-    if "[simulation]" in path.read_text("utf-8")
-)
+MOTIONS = sorted(path for path in EXAMPLES.glob("*.toml") if "[simulation]" in path.read_text("utf-8"))
 
 CAR = """
 [vehicle]
@@ -154,9 +149,9 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
 def test_the_vehicle_and_the_signal_are_those_of_the_library(load):
     request = load(CAR)
     strut = Spring(60e3, "k") | Damper(3e3, "c") | (Inerter(300.0, "b") | Friction(10.0, "f"))
-    assert request.design() == QuarterCar(181.75, 25.0, 120e3, strut)
+    assert request.design() == paper_quarter_car(strut)
     time = np.linspace(0.0, 1.0, 7)
-    assert np.array_equal(request.make_signal()(time), multisine(Road(5e-7, 25.0), seed=3)(time))
+    assert np.array_equal(request.make_signal()(time), multisine(ROAD, seed=3)(time))
 
 
 def test_a_rig_has_one_device_and_needs_no_road(load):
@@ -217,12 +212,12 @@ def assert_survives(request, folder):
     assert load_simulation(copy) == request
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MOTIONS, ids=lambda path: path.stem)
 def test_examples_survive_being_written(path, tmp_path):
     assert_survives(load_simulation(path), tmp_path)
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", MOTIONS, ids=lambda path: path.stem)
 def test_examples_run(path):
     request = load_simulation(path)
     run = replace(request, duration=0.5).run()
@@ -231,7 +226,7 @@ def test_examples_run(path):
 
 
 def test_there_are_examples():
-    assert {path.stem for path in EXAMPLES} >= {"stick_slip", "backlash_rattle", "half_car_friction"}
+    assert {path.stem for path in MOTIONS} >= {"stick_slip", "backlash_rattle", "half_car_friction"}
 
 
 def test_every_setting_survives_being_written(load, tmp_path):
@@ -254,7 +249,7 @@ def test_the_steady_state_is_one_period(load):
 
 
 def test_every_key_is_in_the_documentation():
-    text = (Path(__file__).parents[2] / "docs" / "simulation.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
     words = {
         *SIGNALS,
         *(key for kind in SIGNALS.values() for key in kind.keys),

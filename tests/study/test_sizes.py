@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from campaigns import sampled
+from folders import EXAMPLES
 
 from inerter.cli.main import call
 from inerter.formatting import format_percent
 
-QUARTER = (Path(__file__).parents[2] / "examples" / "quarter-car.toml").read_text(encoding="utf-8")
+QUARTER = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

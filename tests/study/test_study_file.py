@@ -14,9 +14,11 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
+from folders import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
 from study_text import assert_survives
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter.errors import NetworkError, StudyError
 from inerter.field_metadata import fields_of
@@ -32,12 +34,9 @@ from inerter.methods.registry import METHODS
 from inerter.networks.elements import Damper, Free, Friction, Gap, Inerter, Spring
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.signals.road import Road
-from inerter.vehicle.half_car import HalfCar
-from inerter.vehicle.quarter_car import QuarterCar
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.rig import Rig
 
-ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(path for path in (ROOT / "examples").glob("*.toml") if "[study]" in path.read_text("utf-8"))
 
 GOOD = """
@@ -113,7 +112,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
         path=tmp_path / "study.toml",
         model="quarter-car",
         vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
-        road=Road(roughness=5e-7, speed=25.0),
+        road=ROAD,
         elements={
             "k": Spring(60e3, "k"),
             "c": Damper(Free(100.0, 100e3, "c"), "c"),
@@ -175,13 +174,13 @@ def test_swept_values(load, sweep, values):
 
 def test_a_design_of_a_quarter_car(load):
     strut = Spring(60e3, "k") | Damper(Free(100.0, 100e3, "c"), "c")
-    assert load(GOOD).design("S1") == QuarterCar(181.75, 25.0, 120e3, strut)
+    assert load(GOOD).design("S1") == paper_quarter_car(strut)
 
 
 def test_a_swept_value_replaces_the_value_of_the_element(load):
     study = load(GOOD, ("[study]", '[study]\nsweep = { k = ["20 kN/m", "10 kN/m"] }'))
     strut = Spring(20e3, "k") | Damper(Free(100.0, 100e3, "c"), "c")
-    assert study.design("S1", 20e3) == QuarterCar(181.75, 25.0, 120e3, strut)
+    assert study.design("S1", 20e3) == paper_quarter_car(strut)
     assert study.design("S1") == load(GOOD).design("S1")
 
 
@@ -223,7 +222,7 @@ def test_two_places_are_swept_together(load, tmp_path):
 def test_a_design_of_a_half_car(load):
     study = load(HALF)
     k, c = Spring(120e3, "k"), Damper(Free(100.0, 100e3, "c"), "c")
-    car = HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, front=k | c, rear=k | Damper(2e3, "c_r"))
+    car = paper_half_car(front=k | c, rear=k | Damper(2e3, "c_r"))
     assert study.design("unlike") == car
     assert study.design("alike") == replace(car, rear=k | c)
     assert list(study.design("alike").free_values()) == ["c"]

@@ -7,7 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from folders import ROOT
 from study_text import assert_survives, load_text
+from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.cli.main import call
@@ -19,7 +21,6 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.study import Study
 from inerter.report.problem_statement import vehicle_rows
 
-ROOT = Path(__file__).parents[2]
 OURS = ("full-car", "seat", "absorber", "train")
 Load = Callable[..., Study]
 
@@ -104,7 +105,7 @@ tyre_stiffness = "120 kN/m"
         assert_survives(study, tmp_path)
     parts = {"k1": it.Spring(1e4), "c1": it.Damper(2e3), "b": it.Inerter(50.0), "c2": it.Damper(1e3)}
     strut = it.network("k | bridge(k1, c1, b, c2, k2)", k=it.Spring(1e5), k2=it.Spring(2e4), **parts)
-    assert bridge.design("S") == it.QuarterCar(181.75, 25.0, 120e3, strut)
+    assert bridge.design("S") == paper_quarter_car(strut)
     for index in ("J1", "J3"):
         values = [it.evaluate(one.design("S"), one.index(index), it.Norm()).value for one in (bridge, nodes)]
         assert values[1] == pytest.approx(values[0], rel=1e-10)
@@ -226,7 +227,7 @@ def test_a_mechanism_is_the_one_of_python(load: Load) -> None:
     study = load_study(path)
     k, c, b = it.Spring(60e3), it.Damper(3e3), it.Inerter(100.0)
     for layout, struts in {"S3": (k | c - b, k | c - b), "S1": (k | c, k | c | b)}.items():
-        car = it.HalfCar(363.5, 200.0, 25.0, 20.0, 120e3, 100e3, 0.775, 1.265, *struts)
+        car = paper_half_car(*struts)
         for symbol in study.indices:
             index = study.index(symbol)
             expected = it.evaluate(car, index, it.Norm()).value

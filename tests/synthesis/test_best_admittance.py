@@ -7,12 +7,12 @@ import pytest
 from exact import admittance
 from scipy.optimize import minimize
 from strategies import random_network
+from wang_su import paper_quarter_car
 
 from inerter import (
     Damper,
     Inerter,
     Norm,
-    QuarterCar,
     RideComfort,
     Road,
     Spring,
@@ -99,7 +99,7 @@ def test_no_network_of_a_degree_is_closer_than_the_best_admittance():
 
 
 def car(strut):
-    return QuarterCar(181.75, 25.0, 120e3, Spring(120e3) | strut)
+    return paper_quarter_car(Spring(120e3) | strut)
 
 
 def ride_comfort(numerator, denominator):

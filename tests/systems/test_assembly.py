@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from nodal import Nodal, eliminate
-from strategies import paper_half_car, paper_quarter_car, random_half_car, random_network, random_quarter_car
+from strategies import random_half_car, random_network, random_quarter_car
+from wang_su import J1, paper_half_car, paper_quarter_car
 
 from inerter import (
     GROUND,
@@ -16,9 +17,6 @@ from inerter import (
     Inerter,
     Mechanism,
     Norm,
-    QuarterCar,
-    RideComfort,
-    Road,
     RoadInput,
     Spring,
     Strut,
@@ -334,9 +332,9 @@ def test_unknown_inputs_and_outputs_are_refused_with_the_known_ones():
 
 def test_matrices_without_a_certain_digit_are_refused_and_the_indices_are_there_all_the_same():
     strut = Spring(1e5) | Damper(1e3) - Inerter(1e300)
-    car = QuarterCar(181.75, 25.0, 120e3, strut)
+    car = paper_quarter_car(strut)
     with pytest.raises(LinearSystemError, match="no digit of its matrices is certain"):
         state_space(car)
-    rigid = QuarterCar(181.75, 25.0, 120e3, Spring(1e5) | Damper(1e3))  # so heavy an inerter is a fixed end
-    comfort = RideComfort(Road(roughness=5e-7, speed=25.0))
+    rigid = paper_quarter_car(Spring(1e5) | Damper(1e3))  # so heavy an inerter is a fixed end
+    comfort = J1
     assert evaluate(car, comfort, Norm()).value == pytest.approx(evaluate(rigid, comfort, Norm()).value, rel=1e-9)

@@ -7,6 +7,7 @@ import pytest
 from nodal import Nodal
 from quadrature import h2_by_quadrature
 from strategies import random_network
+from wang_su import ROAD
 
 import inerter as it
 from inerter import (
@@ -28,7 +29,6 @@ from inerter.errors import InerterError, MechanismError
 from inerter.norms.exact import h2_exactly
 
 TOP, BOTTOM = {"body": 1.0}, {"wheel": 1.0}
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 MEASURES = PerformanceOutputs((OutputWeight("body_acceleration"),), (OutputWeight("tyre_load"),))
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import MechanismError
@@ -44,8 +45,8 @@ def test_two_axles_by_moments(seed):
 
 def test_the_cars():
     strut = it.Spring(1e5) | it.Damper(it.free(1.0, 2.0))
-    assert it.static_tyre_loads(it.QuarterCar(181.75, 25.0, 1.2e5, strut)) == {"tyre": pytest.approx(G * 206.75)}
-    found = it.static_tyre_loads(it.HalfCar(363.5, 200.0, 25.0, 20.0, 1.2e5, 1e5, 0.775, 1.265, strut, strut))
+    assert it.static_tyre_loads(paper_quarter_car(strut)) == {"tyre": pytest.approx(G * 206.75)}
+    found = it.static_tyre_loads(paper_half_car(strut, strut))
     assert found["tyre_front"] == pytest.approx(G * (25.0 + 363.5 * 1.265 / 2.04))
     assert found["tyre_rear"] == pytest.approx(G * (20.0 + 363.5 * 0.775 / 2.04))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from random_mechanisms import FAMILIES, mechanisms, opened
+from wang_su import J1, paper_quarter_car
 
 import inerter as it
 from inerter.networks.transform import map_elements
@@ -142,7 +143,7 @@ def test_errors_name_the_mechanism_itself():
 def test_threads_get_their_own_values():
     rng = np.random.default_rng(14)
     designs = [with_other_values(car(K | C - B), rng) for _ in range(200)]
-    index = it.RideComfort(it.Road(roughness=5e-7, speed=25.0))
+    index = J1
     expected = [it.evaluate(design, index, it.Norm()) for design in designs]
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(lambda design: it.evaluate(design, index, it.Norm()), designs)) == expected
@@ -151,6 +152,6 @@ def test_threads_get_their_own_values():
 def test_an_answer_by_structure_is_computed_once_for_all_values():
     asked = []
     answer = once_per_structure(lambda mechanism: asked.append(mechanism) or len(asked))
-    soft, stiff = (it.QuarterCar(181.75, 25.0, 120e3, it.Spring(k) | it.Damper(1e3)).mechanism() for k in (1e4, 1e5))
-    damped = it.QuarterCar(181.75, 25.0, 120e3, it.Spring(1e4) | it.Inerter(1e3)).mechanism()
+    soft, stiff = (paper_quarter_car(it.Spring(k) | it.Damper(1e3)).mechanism() for k in (1e4, 1e5))
+    damped = paper_quarter_car(it.Spring(1e4) | it.Inerter(1e3)).mechanism()
     assert [answer(soft), answer(stiff), answer(damped), answer(soft)] == [1, 1, 2, 1]

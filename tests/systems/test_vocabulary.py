@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from random_mechanisms import FAMILIES, mechanisms
+from wang_su import ROAD
 
 import inerter as it
 from inerter import Damper, Friction, Gap, Spring
@@ -18,8 +19,6 @@ from inerter.systems.graph import full_graph, linear_graph
 from inerter.systems.outputs import force_of, main_outputs, stroke_of, velocity_of
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.mechanism import OutputWeight, PerformanceOutputs
-
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 
 
 def with_friction_and_gaps(rng, mechanism):

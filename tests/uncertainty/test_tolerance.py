@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
-from strategies import paper_quarter_car
+from wang_su import J1, J3, J5, paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError
@@ -17,8 +17,6 @@ from inerter.methods.composite_index import objective_of
 from inerter.uncertainty.distributions import scatter_of
 from inerter.uncertainty.tolerance import quantile_error
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
-J1, J3, J5 = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()
 NORM = it.Norm()
 
 

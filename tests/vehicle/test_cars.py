@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from strategies import networks, paper_half_car, paper_quarter_car
+from strategies import networks
+from wang_su import J1, ROAD, paper_half_car, paper_quarter_car
 
 from inerter import (
     GROUND,
@@ -13,8 +14,6 @@ from inerter import (
     Force,
     Inerter,
     Mechanism,
-    RideComfort,
-    Road,
     Spring,
     Strut,
     free,
@@ -103,7 +102,7 @@ def test_free_values_of_a_mechanism_include_its_tyres():
 
 
 def test_pitch_counts_in_comfort_with_the_mean_lever():
-    definition = RideComfort(Road(5e-7, 25.0)).definition(paper_half_car(k | c, k | c).mechanism())
+    definition = J1.definition(paper_half_car(k | c, k | c).mechanism())
     assert [(o.output, o.weight) for o in definition.outputs] == [
         ("sprung_acceleration", 1.0),
         ("pitch_acceleration", pytest.approx(1.02)),  # (0.775 + 1.265) / 2, Wang and Su (2008)
@@ -113,7 +112,7 @@ def test_pitch_counts_in_comfort_with_the_mean_lever():
 
 def test_the_road_velocity_of_the_paper():
     """Wang and Su (2008): F = 2 pi sqrt(V kappa) with V = 25 m/s and kappa = 5e-7 m^3/cycle."""
-    assert Road(5e-7, 25.0).velocity_intensity == pytest.approx(2.0 * np.pi * np.sqrt(12.5e-6), rel=1e-15)
+    assert ROAD.velocity_intensity == pytest.approx(2.0 * np.pi * np.sqrt(12.5e-6), rel=1e-15)
 
 
 @pytest.mark.parametrize(

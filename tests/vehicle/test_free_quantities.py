@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from numpy.typing import NDArray
+from wang_su import ROAD
 
 import inerter as it
 from inerter.vehicle.replace_values import replace_values
 
 Array = NDArray[np.float64]
 STRUT = it.Spring(120e3) | it.Damper(3e3) - it.Inerter(200.0)
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 NORM = it.Norm()
 
 

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from wang_su import ROAD
 
 import inerter as it
 from inerter.errors import MechanismError
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 AXLES, SIDES = ("front", "rear"), ("left", "right")
 WHEELS = [(axle, side) for axle in AXLES for side in SIDES]
 

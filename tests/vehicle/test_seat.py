@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from campaigns import sampled
-from strategies import paper_half_car, paper_quarter_car
+from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter.errors import DesignError, MechanismError, NetworkError
 
-ROAD = it.Road(roughness=5e-7, speed=25.0)
 STRUT = it.Spring(60e3) | it.Damper(3e3) - it.Inerter(100.0)
 CUSHION = it.Spring(15e3, "cushion_spring") | it.Damper(500.0, "cushion_damper")
 FULL = it.FullCar(1400, 2400, 520, 45, 40, 220e3, 210e3, 1.2, 1.5, 1.52, 1.5, STRUT, STRUT, it.Spring(8e3))

@@ -16,6 +16,8 @@ from typing import Any
 import pytest
 from campaigns import sampled
 from clusters import PATIENCE, Cluster, cluster, kill, results
+from folders import EXAMPLES
+from wang_su import J1, paper_quarter_car
 
 import inerter as it
 from inerter.cli.cluster import cluster_executor
@@ -25,7 +27,6 @@ from inerter.work.pool import Pool
 from inerter.work.processes import Processes
 
 SOURCES = Path(it.__file__).parent
-EXAMPLES = Path(__file__).parents[2] / "examples"
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
 STUDY = """
 title = "With friction, on simulated roads"
@@ -212,8 +213,8 @@ def test_what_one_executor_began_another_ends(alone: Mapping[str, bytes], tmp_pa
 def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there: Cluster) -> None:
     k, c, b = it.Spring(120e3), it.Damper(4000.0), it.Inerter(366.0)
     strut = k | c - (b | it.Friction(30.0))
-    car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
-    comfort, roads = it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.ExpectedValue(realisations=16)
+    car = paper_quarter_car(strut)
+    comfort, roads = J1, it.ExpectedValue(realisations=16)
     record = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=1).run(it.cosine(1e-3, 3.0), 1.0)
     with cluster_executor(there.address, None, {}) as workers, Processes(2) as processes:
         there.start_worker()

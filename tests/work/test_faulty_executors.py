@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from study_text import study_text
+from wang_su import J1, paper_quarter_car
 
 import inerter as it
 from inerter.cli import cluster as of_command
@@ -183,8 +184,8 @@ def test_values_are_right_or_there_is_a_sentence(fault: Callable[..., Any], seed
     "executor", [object(), "dask", 4, Executor, {}], ids=["object", "text", "number", "class", "mapping"]
 )
 def test_what_is_no_executor_is_told(executor: Any, study: it.Study, tmp_path: Path) -> None:
-    car = it.QuarterCar(181.75, 25, 120e3, strut=it.Spring(120e3) | it.Damper(it.free(1e3, 1e4)))
-    comfort = it.RideComfort(it.Road(roughness=5e-7, speed=25))
+    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(1e3, 1e4)))
+    comfort = J1
     for work in (
         lambda: it.run_study(study, tmp_path / "out", executor=executor),
         lambda: it.optimise(car, comfort, it.Norm(), executor=executor),

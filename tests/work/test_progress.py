@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from wang_su import J1, ROAD
 
 import inerter as it
 from inerter.kernels.decorators import kernel
@@ -52,8 +53,8 @@ def lighter_car() -> it.QuarterCar:
     return replace(car("b"), unsprung_mass=it.free(20.0, 30.0))
 
 
-COMFORT = it.RideComfort(it.Road(roughness=5e-7, speed=25))
-LOAD = it.at_most(it.TyreLoad(it.Road(roughness=5e-7, speed=25)), 2000.0)
+COMFORT = J1
+LOAD = it.at_most(it.TyreLoad(ROAD), 2000.0)
 WORK: dict[str, Callable[[], object]] = {
     "search": lambda: it.optimise(lighter_car(), COMFORT, it.Norm()),
     "limits": lambda: it.optimise(car("b"), COMFORT, it.Norm(), subject_to=[LOAD]),

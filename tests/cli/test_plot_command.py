@@ -116,6 +116,7 @@ def test_motions_are_plots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caps
     assert not Path("late.svg").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_results_are_plots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     text = STUDY.read_text(encoding="utf-8")

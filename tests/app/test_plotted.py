@@ -55,8 +55,9 @@ def test_independent_sources_have_gains_and_no_phase() -> None:
 
 
 def test_a_sweep_tells_in_which_unit_it_is_written(client: TestClient) -> None:
-    trading = {**DOCUMENT, "study": {"optimise": "norm", "baseline": "S1", "trade_off": ["J1", "J3"]}}
-    for study in (DOCUMENT, trading):  # a sweep leaves the trade-off out
+    alone = {**DOCUMENT, "layouts": {"S1": "k | c"}}
+    for asked in ({"indices": ["J1", "J3"]}, {"trade_off": ["J1", "J3"]}):  # a sweep leaves the trade-off out
+        study = {**alone, "study": {"optimise": "norm", **asked}}
         told = ask(client, "work", kind="sweep", study=study, sweep={"k": ["15 kN/m", "25 kN/m"]}, wait=30)
         (swept,) = told["result"]["swept"]
         assert swept["words"] == "spring k"

@@ -297,6 +297,7 @@ def test_where_the_methods_agree_and_where_they_part(row: list[str]) -> None:
         assert_figures(cell, figures, f"{row[0]} N, {method.name}")
 
 
+@pytest.mark.campaign
 def test_how_far_harmonic_balance_is_off() -> None:
     said = re.search(r"Its error is (.*?) N\.\n", text_of("methods.md"), re.DOTALL)
     assert said is not None

@@ -69,7 +69,9 @@ def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, 
 
 @pytest.mark.parametrize(
     ("kind", "number"),
-    sampled([(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2), ("fmu3", 1)]),
+    sampled(
+        [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=3
+    ),
 )
 def test_fmpy_has_nothing_against_it(kind: str, number: int) -> None:
     data = it.export(design(number), kind)
@@ -86,7 +88,7 @@ def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master
     assert error(found, simulated(CAR, signal, step, 1.0, SHOWN)) < 1e-11
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (1, 2, 4, 5)))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 4), kept=9))
 def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = design(number), 1e-3
     signal, height, slope = road(0.5, step, number)
@@ -156,7 +158,7 @@ def rough(number: int) -> it.Mechanism:
     )
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (0, 2, 9, 14)))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 9), kept=9))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = rough(number), 1e-3
     signal, height, slope = road(0.5, step, number)

@@ -113,7 +113,11 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
 
 @pytest.mark.parametrize(
     ("kind", "name"),
-    sampled([(kind, name) for kind in KINDS for name in ROUGH], [("fmu", "backlash and friction"), ("fmu3", "a stop")]),
+    sampled(
+        [(kind, name) for kind in KINDS for name in ROUGH],
+        [("fmu", "backlash and friction"), ("fmu3", "a stop")],
+        kept=4,
+    ),
 )
 def test_friction_and_gaps_move_as_the_simulation(name: str, kind: str, masters: list[Master], tmp_path: Path) -> None:
     strut, largest = ROUGH[name]

@@ -65,7 +65,7 @@ def coupled(
 
 
 @pytest.mark.parametrize(
-    ("kind", "name"), sampled([(kind, name) for kind in KINDS for name in STRUTS], [("fmu3", "backlash")])
+    ("kind", "name"), sampled([(kind, name) for kind in KINDS for name in STRUTS], [("fmu3", "backlash")], kept=3)
 )
 def test_a_vehicle_of_strut_fmus_moves_as_the_simulation(
     name: str, kind: str, masters: list[Master], tmp_path: Path
@@ -81,7 +81,7 @@ def test_directional_derivatives_alone_are_of_second_order(masters: list[Master]
     assert 3.5 < errors[0] / errors[1] < 4.5
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 < 3], kept=8))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 < 3], kept=4))
 def test_random_vehicles_of_strut_fmus(number: int, masters: list[Master], tmp_path: Path) -> None:
     """One road under all axles at once, and a step of which ten are a period of the fastest motion."""
     vehicle = design(number)
@@ -122,7 +122,7 @@ def test_inertance_and_coupling_ratio(masters: list[Master], tmp_path: Path) -> 
     assert list(master.slopes("strut_force", ["upper_velocity", "lower_displacement"])) == pytest.approx([5e3, -120e3])
 
 
-@pytest.mark.parametrize("number", sampled(range(30), [0], kept=6))
+@pytest.mark.parametrize("number", sampled(range(30), [0], kept=3))
 def test_inertance_is_that_of_the_admittance(number: int, masters: list[Master], tmp_path: Path) -> None:
     """Which is b s at high frequencies."""
     strut = network(np.random.default_rng([74, number]))

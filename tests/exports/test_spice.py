@@ -44,7 +44,7 @@ def admittance(netlist: str, folder: Path) -> tuple[np.ndarray, np.ndarray]:
     return 2.0 * np.pi * rows[:, 0].real, 1.0 / rows[:, names.index("v(upper)")]
 
 
-@pytest.mark.parametrize("number", sampled(range(COUNT), (0, 1, 2, 3, 5, 10)))
+@pytest.mark.parametrize("number", sampled(range(COUNT), (0, 1, 2, 3, 5, 10), kept=12))
 def test_ngspice_finds_the_admittance(number: int, tmp_path: Path) -> None:
     if NGSPICE is None:
         pytest.skip("ngspice is not installed (Debian: ngspice).")

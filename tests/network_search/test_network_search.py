@@ -271,7 +271,7 @@ def test_names_of_the_elements_are_those_that_are_left():
     assert all(np.isfinite(one.value) for one in result.ranking)
 
 
-@pytest.mark.parametrize("number", sampled(range(30), range(1)))
+@pytest.mark.parametrize("number", sampled(range(30), range(1), kept=9))
 def test_networks_with_bridges_are_searched_too(number):
     rng = np.random.default_rng([61, number])
     kinds = ("springs", "dampers") if rng.random() < 0.5 else ("dampers", "inerters")

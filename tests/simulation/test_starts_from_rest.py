@@ -96,7 +96,7 @@ def off(seed: int) -> float:
     return float(np.max(np.abs(found - other)) / np.max(np.abs(other)))
 
 
-@pytest.mark.parametrize("chunk", sampled(range(200), [0], often=[1, 2, 3, 4], kept=6))
+@pytest.mark.parametrize("chunk", sampled(range(200), [0], often=[1, 2, 3, 4], kept=2))
 def test_every_member_starts_and_both_integrators_agree(chunk: int) -> None:
     """Ten members a chunk, 2000 in all; time stepping is of first order where contacts are met."""
     found = np.array([off(seed) for seed in range(10 * chunk, 10 * (chunk + 1))])
@@ -126,8 +126,7 @@ def test_a_contact_that_is_too_stiff_for_the_step_names_its_elements() -> None:
     assert "k_shaft and c_shaft relax in 0.01 us" in run.status.message
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", sampled(range(20), kept=5))
 def test_expected_values_of_valved_dampers_are_numbers(seed: int) -> None:
     car = it.QuarterCar(250, 35, 150e3, Spring(22e3) | valved_damper(400.0, 2400.0))
     found = it.evaluate(car, it.RideComfort(it.Road(2e-6, 20)), it.ExpectedValue(realisations=16, seed=seed))

@@ -243,7 +243,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", sampled(CASES, ["light J1", "half J3 filtered"]))
 def test_a_small_friction_changes_each_road_as_predicted(case):
     design, index, outputs, conventions = CASES[case]
     system = piecewise(design(0.0))

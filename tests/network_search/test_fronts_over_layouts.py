@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
@@ -43,7 +44,7 @@ def gain_on(front: np.ndarray, values: np.ndarray) -> float:
     return max(float(np.min((front - one) / size, axis=1).max()) for one in values)
 
 
-@pytest.mark.parametrize(("most", "points"), [(2, 9), (3, 9), pytest.param(4, 25, marks=pytest.mark.marathon)])
+@pytest.mark.parametrize(("most", "points"), sampled([(2, 9), (3, 9), (4, 25)], [(2, 9)], [(4, 25)]))
 def test_no_front_of_one_network_is_better(most, points):
     """By `pareto_front`, a minimax search in other code, for the networks on the front and for two others."""
     result = found(most, points)

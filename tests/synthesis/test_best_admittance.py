@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from exact import admittance
 from scipy.optimize import minimize
 from strategies import random_network
@@ -54,17 +55,17 @@ def test_every_point_of_the_search_is_positive_real(family):
         np.testing.assert_allclose(quick, family.polynomials(x, 1e3, 10.0, exact=True)[0], rtol=1e-9, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("network", "degree"),
-    [
-        (Damper(800.0), 0),
-        (Damper(800.0) - Inerter(50.0), 1),
-        (Spring(5e3) | Damper(800.0), 1),
-        (Damper(800.0) | Inerter(50.0), 1),
-        (Spring(5e3) | Damper(800.0) | Inerter(30.0), 2),
-        (Spring(5e3) - (Damper(800.0) | Inerter(30.0)), 2),
-    ],
-)
+FOUND = [
+    (Damper(800.0), 0),
+    (Damper(800.0) - Inerter(50.0), 1),
+    (Spring(5e3) | Damper(800.0), 1),
+    (Damper(800.0) | Inerter(50.0), 1),
+    (Spring(5e3) | Damper(800.0) | Inerter(30.0), 2),
+    (Spring(5e3) - (Damper(800.0) | Inerter(30.0)), 2),
+]
+
+
+@pytest.mark.parametrize(("network", "degree"), sampled(FOUND, [FOUND[1], FOUND[-1]]))
 def test_an_admittance_of_the_degree_is_found(network, degree):
     found = best_admittance(distance_to(network), degree, damping=1e3, omega=10.0, starts=7)
     assert found.value < 1e-7

@@ -99,6 +99,7 @@ def test_norms_of_dependent_struts_are_those_of_quadrature(seed):
         assert norm == pytest.approx(h2_by_quadrature(response, [0.0], 1e4), rel=1e-8)
 
 
+@pytest.mark.campaign
 def test_a_simulated_impulse_has_the_energy_of_the_norm():
     """A step of the road is an impulse of its velocity: what an output is then, squared and added up, is its norm's."""
     mechanism = full_car(np.random.default_rng(43), one_road=True)

@@ -58,7 +58,7 @@ def test_no_front_of_one_network_is_better(most, points):
             assert gain_on(alone.values, own) < 0.02  # its points are at other places of the same front
 
 
-@pytest.mark.parametrize("most", [2, 4])
+@pytest.mark.parametrize("most", sampled([2, 4], [2]))
 def test_no_random_design_is_better(most):
     """20000 designs: of all networks, and near those on the front."""
     result, rng = found(most), np.random.default_rng(most)

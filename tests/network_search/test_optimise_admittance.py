@@ -111,8 +111,9 @@ def test_the_best_admittance_of_degree_one_is_that_of_a_network_of_three_element
     assert best.value == pytest.approx(lowest(index, 3, 1, springs_at_most=1, inerters_at_most=1), rel=1e-6)
 
 
-@pytest.mark.parametrize("index", INDICES.values(), ids=INDICES)
-def test_no_network_of_degree_two_is_better(index):
+@pytest.mark.parametrize("symbol", sampled(INDICES, ["J1"]))
+def test_no_network_of_degree_two_is_better(symbol):
+    index = INDICES[symbol]
     best = it.optimise_admittance(car(it.Spring(120e3) | ANY), index, 2)
     assert best.value <= lowest(index, 4, 2, springs_at_most=2, inerters_at_most=2) * (1.0 + 1e-9)
     assert best.status.ok
@@ -161,6 +162,7 @@ def test_a_value_that_is_not_that_of_the_network_is_told():
 
 
 FREE = it.Spring(it.free(1e4, 1e6, "k")) | ANY
+QUICK = {"degree": 1, "starts": 2}  # for what only the best admittance shows
 REFUSED = {
     "no free network": (car(it.Spring(120e3)), INDICES["J1"], {}, "with one free network"),
     "two places": (car(it.Spring(120e3) | ANY | it.Damper(1.0) - ANY), INDICES["J1"], {}, "is in 2 places"),
@@ -173,8 +175,8 @@ REFUSED = {
     ),
     "conditions": (car(it.Spring(120e3) | ANY), USES.mean(INDICES["J1"]), {}, "computed from several indices"),
     "two axles": (HALF_CAR, INDICES["J1"], {}, "a road that reaches several axles"),
-    "rigid link": (car(it.Spring(120e3) | ANY), it.SuspensionTravel(ROAD), {"degree": 1}, "with a rigid link"),
-    "no network": (car(ANY), INDICES["J1"], {"degree": 1}, "with no network"),
+    "rigid link": (car(it.Spring(120e3) | ANY), it.SuspensionTravel(ROAD), QUICK, "with a rigid link"),
+    "no network": (car(ANY), INDICES["J1"], QUICK, "with no network"),
     "infinite": (HALF_CAR, it.RandomResponse({"sprung_acceleration": 1.0}, PUSH), {"degree": 1}, "is infinite for all"),
     "degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": -1}, "from 0 to 10, got -1"),
     "half a degree": (car(it.Spring(120e3) | ANY), INDICES["J1"], {"degree": 1.5}, "got 1.5"),

@@ -8,11 +8,14 @@ roots of the slope.
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import flint
+import numpy as np
+import pytest
 
-from inerter import GROUND, Damper, Inerter, Mechanism, Spring
+from inerter import GROUND, Damper, Inerter, Mechanism, Norm, Spring, evaluate, evaluate_many
 from inerter.indices.definition import Combination
 from inerter.indices.excitation import RoadVelocity
 from inerter.networks.elements import Bridge, Parallel, Series
@@ -285,3 +288,32 @@ def _filter(given):
     if given is None:
         return S**0, S**0
     return tuple(flint.fmpq_poly([rational(c) for c in reversed(p)]) for p in (given.numerator, given.denominator))
+
+
+def is_right(mechanism: Mechanism, index) -> bool:
+    """Whether the norm has a value, which is right to 1e-9; False where it has none and says so, or none is known."""
+    expected, found = index_value(mechanism, index), evaluate(mechanism, index, Norm())
+    if expected is None or (math.isnan(found.value) and not found.status.ok):
+        return False
+    assert found.value == (math.inf if expected is INFINITE else pytest.approx(expected, rel=1e-9))
+    return True
+
+
+def assert_compiled_value(made: Mechanism, index, values: dict[str, float]) -> None:
+    """Compiled code gives the value at these free values, or none."""
+    (found,) = evaluate_many(made, index, values, Norm())[:, 0]
+    assert np.isnan(found) or found == pytest.approx(index_value(made.with_values(values), index), rel=1e-9)
+
+
+def assert_gradient(made: Mechanism, index, values: dict[str, float]) -> None:
+    """The gradient over the free values is that of differences of fourth order of their logarithms."""
+    objective, step = Norm().objective(made, index), 5e-4
+    value, gradient = objective.value_and_gradient(np.array(list(values.values())))
+
+    def at(name: str, shift: float):
+        return index_value(made.with_values(values | {name: values[name] * math.exp(step * shift)}), index)
+
+    for slope, name in zip(gradient, values, strict=True):
+        near, far = (at(name, shift) - at(name, -shift) for shift in (1.0, 2.0))
+        expected = (8.0 * near - far) / (12.0 * step)
+        assert slope * values[name] == pytest.approx(expected, rel=0.0, abs=1e-7 * value)

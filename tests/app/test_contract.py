@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from app.conftest import DOCUMENT, ask, changed
+from campaigns import sampled
 from folders import EXAMPLES, ROOT, example_tables
 from hypothesis import given
 from hypothesis import strategies as st
@@ -297,7 +298,7 @@ def test_several_designs_of_one_layout_have_names_of_their_own(client: TestClien
     assert ask(client, "study/check", study=told)["problems"] == []
 
 
-@pytest.mark.parametrize("name", ["limits", pytest.param("full-car", marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("name", sampled(["limits", "full-car"], ["limits"]))
 def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> None:
     """What `places` offers a sweep takes, and it offers all that is fixed, in and beyond elements."""
     document = example_tables(name)

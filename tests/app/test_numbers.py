@@ -153,16 +153,10 @@ def test_a_study_of_designs_gives_the_numbers_of_the_panel(
         assert curve["gain"] in gains.values.tolist()
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        "conditions",
-        *(
-            pytest.param(name, marks=pytest.mark.campaign)
-            for name in ("limits", "trade_off", "seat", "full-car", "quarter-car")
-        ),
-    ],
-)
+ASKED = ("conditions", "limits", "trade_off", "seat", "full-car", "quarter-car")
+
+
+@pytest.mark.parametrize("name", sampled(ASKED, ["conditions"]))
 def test_panels_ask_what_the_study_asks(name: str) -> None:
     """Over conditions, at quantiles, of any vehicle: a study of the very designs has the panel's numbers."""
     document = example_tables(name)
@@ -180,7 +174,7 @@ def test_panels_ask_what_the_study_asks(name: str) -> None:
             assert there.improvement.item() == row["improvement_percent"]
 
 
-@pytest.mark.parametrize("method", ["norm", pytest.param("statistical-linearisation", marks=pytest.mark.campaign)])
+@pytest.mark.parametrize("method", sampled(["norm", "statistical-linearisation"], ["norm"]))
 def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
     """Of designs on either side of each limit, and of the best one, which lies on both."""
     document = example_tables("limits")
@@ -438,10 +432,7 @@ def test_a_device_is_identified_and_fits_into_a_study(client: TestClient, tmp_pa
     client.delete(f"/api/records/{sent['id']}")
 
 
-@pytest.mark.parametrize(
-    "kind",
-    ["networks", *(pytest.param(kind, marks=pytest.mark.campaign) for kind in ("improvement", "response-J1"))],
-)
+@pytest.mark.parametrize("kind", sampled(["networks", "improvement", "response-J1"], ["networks"]))
 def test_pictures(client: TestClient, kind: str) -> None:
     body = {"kind": kind, "study": DOCUMENT, "designs": [{"layout": "S1"}, {"layout": "S3"}]}
     assert client.post("/api/figure", json=body).content.startswith(b"<?xml")

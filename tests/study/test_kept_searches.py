@@ -5,9 +5,11 @@ from __future__ import annotations
 import random
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 
 import pytest
+from campaigns import sampled
 from study_text import load_text, study_text
 
 import inerter as it
@@ -50,14 +52,7 @@ def counted(stop_at: int | None = None) -> Iterator[list[int]]:
         yield count
 
 
-CASES = [
-    pytest.param(name, seed, marks=[] if (name, seed) == ("limits", 0) else pytest.mark.campaign)
-    for name in STUDIES
-    for seed in range(2)
-]
-
-
-@pytest.mark.parametrize(("name", "seed"), CASES)
+@pytest.mark.parametrize(("name", "seed"), sampled(product(STUDIES, range(2)), [("limits", 0)]))
 def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, seed: int, tmp_path: Path) -> None:
     path, draw = tmp_path / "study.toml", random.Random(f"{name} {seed}")
     path.write_text(STUDIES[name], encoding="utf-8")

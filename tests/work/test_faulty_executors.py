@@ -7,11 +7,13 @@ import re
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from study_text import study_text
 from wang_su import J1, paper_quarter_car
 
@@ -141,11 +143,7 @@ def ever_after(number: int) -> bool:
 
 
 ALWAYS_RUN = {(earlier, once), (earlier, ever_after), (nothing, once), (without_memory, ever_after)}
-RUNS = [
-    pytest.param(fault, when, marks=[] if (fault, when) in ALWAYS_RUN else pytest.mark.campaign)
-    for fault in FAULTS
-    for when in (once, ever_after)
-]
+RUNS = sampled(product(FAULTS, (once, ever_after)), ALWAYS_RUN)
 
 
 @pytest.mark.parametrize(("fault", "when"), RUNS, ids=lambda given: given.__name__)

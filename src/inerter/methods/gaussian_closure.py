@@ -7,7 +7,7 @@ With a Gaussian velocity of r.m.s. sigma across it, a Coulomb friction f has the
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -177,6 +177,14 @@ class Pattern:
             return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
         return solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
 
+    def combine(self, norms: Array) -> Array:
+        """The index of norms (..., outputs)."""
+        return self.index.problem.definition.combine(norms, self.index.problem.weights)
+
+    def range(self, norms: Sequence[Array]) -> Array:
+        """How far the index (designs,) can move if each output moves over its norms (several, designs, outputs)."""
+        return self.combine(np.max(norms, axis=0)) - self.combine(np.min(norms, axis=0))
+
     def value_and_gradient(self, definition: CompiledNorm, row: Array) -> tuple[float, Array]:
         """A value and its gradient over (values of the design, dampers)."""
         value, over_free = definition.value_and_gradient(row)
@@ -285,6 +293,9 @@ class GaussianClosure:
         with a rigid link in its place, and with any damper between: it may not matter. (The ends alone do not tell: the
         index may have a minimum between two that are alike.)
 
+        The range of an index of several outputs is that of all together: what one gains another may lose, in the index
+        but not in its error.
+
         An index that vanishes with the slip of a friction that sticks, such as the travel across it, has no bound.
         """
         free, designs, unlike = self.free, solved.designs, solved.unlike.copy()
@@ -299,17 +310,17 @@ class GaussianClosure:
             for damper in free.parts.scale * np.geomspace(1.0 / _FIRM, _FIRM, _BETWEEN):
                 damping_there = damping[here].copy()
                 damping_there[:, i] = damper
-                found.append(free.index.evaluate_points(free.rows(points[designs[here]], damping_there)))
+                found.append(free.index.output_norms(free.rows(points[designs[here]], damping_there)))
             with np.errstate(invalid="ignore"):
-                spread = np.ptp(found, axis=0) / np.min(found, axis=0)
+                spread = free.range(found) / np.min(free.combine(np.array(found)), axis=0)
             part = solved.share[here, i] * np.where(np.isnan(spread), np.inf, spread)
             unlike[here, i] = np.fmin(unlike[here, i], part)
         stuck = np.ones(unlike.shape, dtype=bool)
         stuck[:, self._numbers(solved.pattern)] = solved.dampers.sticks
         if stuck.any():
             softer = np.where(stuck, damping / _SOFTER, damping)
-            held, less = (free.index.evaluate_points(free.rows(points[designs], one)) for one in (damping, softer))
-            unlike[stuck & (np.abs(less - held) > PROMISE * held)[:, None]] = np.inf
+            held, less = (free.index.output_norms(free.rows(points[designs], one)) for one in (damping, softer))
+            unlike[stuck & (free.range([held, less]) > PROMISE * free.combine(held))[:, None]] = np.inf
         return np.asarray(unlike.sum(axis=1))
 
     def values(self, points: Array) -> Array:

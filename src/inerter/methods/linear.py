@@ -51,15 +51,15 @@ CONVENTIONS = {
     for row in (
         Conventions(
             "exact",
-            "The delay from one axle to the next is exact, and no filter is added to what the indices define.",
+            "Any delay between axles is exact, and no filter is added to what the indices define.",
             pade_order=None,
             load_filter=None,
             hold=None,
         ),
         Conventions(
             "paper2008",
-            "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for the delay "
-            "from one axle to the next, and where the road arrives at two axles tyre loads are taken over "
+            "As for the printed numbers of Wang and Su (2008), a fifth-order Padé approximant stands for any "
+            "delay between axles, and where the road arrives at two axles tyre loads are taken over "
             "s + 2 pi rad/s.",
             pade_order=5,
             load_filter=high_pass(2.0 * math.pi),

@@ -248,8 +248,6 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     assert all("not chosen yet" in text for text in better.all_inner_texts())
     assert "%" not in page.inner_text(".answers table")
     page.click("#tab-compare")
-    for layout in ("S1", "S3"):
-        page.get_by_role("group", name="Designs to compare").get_by_role("button", name=layout).click()
     page.wait_for_selector("[aria-label=Comparison] td[data-value]")
     assert "%" not in page.inner_text("[aria-label=Comparison]")
     assert page.locator("td.best").count() == 0

@@ -87,10 +87,11 @@ export const unchosenIn = (state, { layout, values }) =>
   freeIn(state, layout).filter((name) => own(values, name) === undefined);
 
 /** The row of an element's kind. @param {State} state @param {string} name @returns {any} */
-export function kindOf(state, name) {
-  const known = at(partsOf(state).elements, name)?.kind;
-  return known ? state.about?.elements.find((/** @type {any} */ { key }) => key === known) : null;
-}
+export const kindOf = (state, name) => kindNamed(state, at(partsOf(state).elements, name)?.kind);
+
+/** The row of a kind. @param {State} state @param {string | null | undefined} known @returns {any} */
+export const kindNamed = (state, known) =>
+  (known ? state.about?.elements.find((/** @type {any} */ { key }) => key === known) : null);
 
 /** The unit of a free value. @param {State} state @param {string} name @returns {string} */
 export const unitOf = (state, name) => partsOf(state).numbers.find((row) => row.name === name)?.unit ?? "";

@@ -81,14 +81,16 @@ export const comparable = (state) =>
   choicesOf(state.history.present).filter(({ kept, design }) => kept || !isSearched(state, design.layout));
 
 /** What stands in the comparison, first what the others are compared with. Where nothing is chosen among them, the
- * design that is edited stands beside the baseline. @param {State} state @returns {Choice[]} */
+ * baseline stands beside the design that is edited, or beside the first other one. @param {State} state
+ * @returns {Choice[]} */
 export function comparedOf(state) {
   const { view, history: { present } } = state;
   const choices = comparable(state);
-  const usual = shownDesigns(present).toReversed().map(({ layout }) => `layout ${layout}`);
-  const [chosen, shown] = [view.compared, usual].map((keys) =>
-    keys.flatMap((key) => choices.filter((choice) => choice.key === key)));
-  const those = chosen.length > 0 ? chosen : shown;
+  const chosen = view.compared.flatMap((key) => choices.filter((choice) => choice.key === key));
+  const [base, here] = [baselineOf(present).layout, present.layout].map((layout) => `layout ${layout}`);
+  const [first, others] = [choices.filter(({ key }) => key === base), choices.filter(({ key }) => key !== base)];
+  const other = others.find(({ key }) => key === here) ?? others[0];
+  const those = chosen.length > 0 ? chosen : [...first, ...(other ? [other] : [])];
   return [...those.filter(({ key }) => key === view.against), ...those.filter(({ key }) => key !== view.against)];
 }
 

@@ -10,7 +10,7 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
-from inerter.app.answers import Body, texts_of
+from inerter.app.answers import Body, texts_of, tree_of
 from inerter.app.documents import searched_study_from
 from inerter.app.kinds import RESULTS, JobStopped, Tell
 from inerter.errors import OK, Status, StatusKind, StudyError
@@ -251,6 +251,7 @@ class _Ranking:
         entry = self.document["layouts"][self.layout]
         return {
             "network": expression,
+            "tree": tree_of(network),
             "n_elements": topology.size,
             "elements": {name: f"{element.value!r} {element.unit}" for name, element in elements.items()},
             "active_bounds": {new_names[name]: end for name, end in plan.active_bounds(topology, values).items()},

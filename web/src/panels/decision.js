@@ -58,7 +58,7 @@ function vehicleOf({ history }) {
 function strutOf(state) {
   const document = state.history.present;
   if (document.layout === "") return "None";
-  if (isSearched(state, document.layout)) return `${document.layout}, to be searched`;
+  if (isSearched(state, document.layout)) return `${document.layout}, free`;
   if (unchosenIn(state, designOf(document)).length > 0) return `${document.layout}, not chosen`;
   const { is, value } = answerOf(state, "decision");
   /** @type {any[]} */

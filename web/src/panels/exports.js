@@ -1,6 +1,6 @@
 // The design that is edited in the formats of other programs: the library declares the kinds.
 
-import { elementsIn, kindOf } from "../library.js";
+import { elementsIn, isSearched, kindOf } from "../library.js";
 import { DropDown } from "../parts/controls.js";
 import { Unchosen } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
@@ -31,13 +31,15 @@ export function ExportMenu({ store, api }) {
   };
   return html`<${DropDown} title="Export" id="export-menu">
     <b>${layout} for other programs</b>
-    <${Unchosen} state=${state} designs=${[design]} />
-    ${isNonlinear && html`<label><input type="checkbox" checked=${linear} onChange=${() => setLinear(!linear)} />
-      linear: without friction and gaps</label>`}
-    <ul class="exports">${(state.about?.exports ?? []).map((/** @type {ExportKind} */ kind) => html`<li key=${kind.key}>
-      <span>${kind.description}${kind.requires && html` <span class="quiet">requires ${kind.requires}</span>`}</span>
-      ${kind.suffixes.map((suffix) => html`<button type="button" key=${suffix} class="edged"
-        aria-label=${`${kind.description} (${suffix})`}
-        onClick=${(/** @type {Event} */ event) => save(event, kind, suffix)}>${suffix}</button>`)}
-    </li>`)}</ul><//>`;
+    ${isSearched(state, layout) ? html`<p class="quiet">Its network is free: search for the best one first.</p>`
+      : html`<${Unchosen} state=${state} designs=${[design]} />
+      ${isNonlinear && html`<label><input type="checkbox" checked=${linear} onChange=${() => setLinear(!linear)} />
+        linear: without friction and gaps</label>`}
+      <ul class="exports">${(state.about?.exports ?? []).map((/** @type {ExportKind} */ kind) => html`<li
+        key=${kind.key}><span>${kind.description}${kind.requires
+          && html` <span class="quiet">requires ${kind.requires}</span>`}</span>
+        ${kind.suffixes.map((suffix) => html`<button type="button" key=${suffix} class="edged"
+          aria-label=${`${kind.description} (${suffix})`}
+          onClick=${(/** @type {Event} */ event) => save(event, kind, suffix)}>${suffix}</button>`)}
+      </li>`)}</ul>`}<//>`;
 }

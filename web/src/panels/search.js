@@ -12,6 +12,7 @@ import { estimated, printed, rounded, shown } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
 import { Files } from "./files.js";
+import { Sketch } from "./sketch.js";
 import { FrontView, valuesIn } from "./front.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
@@ -76,6 +77,7 @@ export const searchBody = (_, form) => ({ layouts: form.getAll("layout"), indice
 /** The best networks, also of a search that goes on or was stopped.
  * @param {{store: Store, api: Api, job: Job}} props */
 export function SearchResult({ store, api, job }) {
+  const state = store.get();
   const found = job.result ?? job.found;
   /** @type {any[]} */
   const searches = found.searches;
@@ -85,7 +87,7 @@ export function SearchResult({ store, api, job }) {
   /** @param {Row} row */
   const take = (row) => store.say(takeNetwork(store, found, row), "taken");
   return html`${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
-    ${one ? html`<${Ranking} key=${view} found=${found} one=${one} take=${take} />`
+    ${one ? html`<${Ranking} key=${view} state=${state} found=${found} one=${one} take=${take} />`
       : html`<${NetworkFront} found=${found} take=${take} />`}
     ${job.result && html`<${Files} api=${api} job=${job} />`}`;
 }
@@ -101,8 +103,9 @@ function NetworkFront({ found: { front, baseline }, take }) {
     take=${(/** @type {any} */ { point }) => take(point.row)} />`;
 }
 
-/** The best networks for an index. @param {{found: any, one: any, take: (row: Row) => void}} props */
-function Ranking({ found: { baseline, complete, networks }, one, take }) {
+/** The best networks for an index.
+ * @param {{state: State, found: any, one: any, take: (row: Row) => void}} props */
+function Ranking({ state, found: { baseline, complete, networks }, one, take }) {
   const { index, unit, ranking, frontier, real_inerters: real } = one;
   const compared = complete && baseline !== null;
   const better = compared ? [["better by", `than ${baseline}`]] : [];
@@ -112,17 +115,18 @@ function Ranking({ found: { baseline, complete, networks }, one, take }) {
       ({ of: network, status, message }))} />
     ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} take=${take} />`}
     <p class="quiet">The best ${ranking.length} ${complete ? `of ${networks} networks` : "so far"} (* at a bound)</p>
-    <${Table} label="Ranking" heads=${["", "network", index, ...better, ""]}>
+    <${Table} label="Ranking" heads=${["network", index, ...better, ""]}>
       ${ranking.map((/** @type {Row} */ row, /** @type {number} */ i) => html`<${NetworkRow} key=${row.network}
-        row=${row} take=${take} rank=${i + 1} text=${shown(row.value)} unit=${unit} compared=${compared} />`)}
+        state=${state} row=${row} take=${take} rank=${i + 1} text=${shown(row.value)} unit=${unit}
+        compared=${compared} />`)}
     <//>
     ${methods.map((method) => html`<p class="quiet" key=${method}>With real inerters, elastic and with friction:
         optimised by ${method}</p>
       <${Table} key=${`${method} table`} label=${`Real inerters by ${method}`}
         heads=${["network", index, ...better, ""]}>
         ${real.filter((/** @type {Row} */ row) => row.method === method).map((/** @type {Row} */ row) =>
-          html`<${NetworkRow} key=${row.network} row=${row} take=${take} text=${optimised(row)} unit=${unit}
-            compared=${compared} />`)}
+          html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take} text=${optimised(row)}
+            unit=${unit} compared=${compared} />`)}
       <//>`)}`;
 }
 
@@ -130,13 +134,13 @@ function Ranking({ found: { baseline, complete, networks }, one, take }) {
 const optimised = ({ value, standard_error: error }) =>
   (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
 
-/** @param {{row: Row, rank?: number, text: string, unit: string, compared: boolean, take: (row: Row) => void}}
- * props */
-function NetworkRow({ row, rank, text, unit, compared, take }) {
+/** @param {{state: State, row: Row, rank?: number, text: string, unit: string, compared: boolean,
+ * take: (row: Row) => void}} props */
+function NetworkRow({ state, row, rank, text, unit, compared, take }) {
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
-    ${rank !== undefined && html`<td class="number">${rank}</td>`}
-    <td><code>${network}</code><div class="scatter">${valuesOf(row)}</div></td>
+    <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
+      <div><code>${network}</code><div class="scatter">${valuesOf(row)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
       ${text} <span class="unit">${printed(unit)}</span>
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
@@ -179,4 +183,4 @@ function frontierOf({ index, title, unit, frontier, baseline_value: base }, base
 /** The values of a network, and those of what else is free. @param {Row} row */
 const valuesOf = ({ elements, values, active_bounds: bounds }) =>
   Object.entries({ ...elements, ...values }).map(([name, text]) =>
-    `${name} = ${rounded(String(text))}${name in bounds ? "*" : ""}`).join(", ");
+    `${name} = ${rounded(String(text))}${name in bounds ? "*" : ""}`.replaceAll(" ", "\u00a0")).join(", ");

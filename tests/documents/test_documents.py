@@ -27,6 +27,8 @@ from inerter.files.identification.loading import load_identification
 PYTHON = [page for page in PAGES if blocks(page)]
 LONG = {
     "README.md",
+    "identification.md",
+    "synthesis.md",
     "recipes.md",
     "staged-protocol.md",
     "methods.md",

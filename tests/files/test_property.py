@@ -235,15 +235,16 @@ def courses(seeds: range, steps: int, folder: Path, monkeypatch: pytest.MonkeyPa
     return found
 
 
-@pytest.mark.parametrize("seed", sampled(range(2), [0]))
+@pytest.mark.parametrize(("seed", "steps"), sampled([(0, 8), (0, 16), (1, 16)], [(0, 8)]))
 def test_what_is_a_users_stays(
     seed: int,
+    steps: int,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     identified: IdentificationResult,
 ) -> None:
-    assert courses(range(seed, seed + 1), 16, tmp_path, monkeypatch, capsys, identified) == []
+    assert courses(range(seed, seed + 1), steps, tmp_path, monkeypatch, capsys, identified) == []
 
 
 @pytest.mark.marathon

@@ -135,6 +135,7 @@ def test_with_more_elements_no_front_is_worse():
             assert np.min(np.max((larger - one) / size, axis=1)) < 0.1
 
 
+@pytest.mark.campaign
 def test_three_indices():
     result = it.search(car(2, springs=None), (COMFORT, LOAD, TRAVEL), NORM, points=10)
     assert result.values.shape[1] == 3

@@ -164,6 +164,8 @@ class Status(Statement):
     >>> found = it.evaluate(undamped, it.RideComfort(it.Road(5e-7, 25.0)), it.Norm())
     >>> found.value, found.status.ok, found.status.kind.value
     (inf, False, 'marginal')
+    >>> bool(found.status)  # as `ok`
+    False
     """
 
     kind: StatusKind = StatusKind.OK
@@ -173,6 +175,10 @@ class Status(Statement):
     def ok(self) -> bool:
         """True if the result is reliable."""
         return self.kind is StatusKind.OK
+
+    def __bool__(self) -> bool:
+        """True if the result is reliable, as `ok`."""
+        return self.ok
 
     @property
     def severity(self) -> Severity:

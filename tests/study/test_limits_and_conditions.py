@@ -329,6 +329,12 @@ BAD = {
     "limits are a text": (LIMIT + '"J3"', "", "study.subject_to", ["not a table"]),
     "conditions but none": (ASK + 'conditions = "mean"', "", "study.conditions", ["there are none", "[[conditions]]"]),
     "conditions otherwise": (ASK + 'conditions = "median"', TWO, "study.conditions", ['"mean", "worst"']),
+    "conditions of one name": (
+        ASK,
+        '[[conditions]]\nname = "wet"\nroad.speed = "9 m/s"\n[[conditions]]\nname = "wet"\nroad.speed = "8 m/s"\n',
+        '"conditions[2]".name',
+        ["'wet', the name of another condition"],
+    ),
     "condition of no place": (
         ASK,
         '[[conditions]]\nroad.sped = "1 m/s"\n',

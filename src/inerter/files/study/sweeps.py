@@ -147,6 +147,9 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
                 problems.append(replace(error.problem, place=where))
             except InerterError as error:
                 problems.append(at(where, str(error)))
+        if entry.name and entry.name in [known.name for known in conditions]:
+            got = f"{entry.name!r}, the name of another condition"
+            problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a name that tells it apart"))
         conditions.append(StudyCondition(numbers, entry.share, entry.name or ""))
     swept = {sweep.label for sweep in study.sweeps}
     for i, condition in enumerate(conditions, start=1):

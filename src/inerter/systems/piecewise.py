@@ -6,9 +6,9 @@ layout; what a mode makes of it is `kernels.modes`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -25,12 +25,13 @@ from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
 from inerter.systems.observe import add, motion
 from inerter.systems.outputs import Output
+from inerter.systems.structure import structure_of
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, check_values
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 Matrix = NDArray[np.float64]
-_KEPT = 128  # rows of outputs
+_KEPT, _KEPT_SYSTEMS = 128, 16  # rows of outputs, and systems
 _LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the larger
 
 
@@ -106,9 +107,31 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     free = ", ".join(mechanism.free_values())
     if free:
         raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
-    mechanism = switching(mechanism)
-    check_values(mechanism)
-    return _system(mechanism, kinematics(mechanism))
+    structure = structure_of(mechanism)
+    if structure is None:
+        return _assemble(mechanism)
+    known, system = _assemble_once(_Design((structure.key, *structure.values), mechanism))
+    return system if known == mechanism else _assemble(mechanism)  # such as with other measures
+
+
+@dataclass(frozen=True)
+class _Design:
+    """A mechanism, equal to others of the same structure and values."""
+
+    key: tuple[Hashable, ...]
+    mechanism: Mechanism = field(compare=False)
+
+
+@lru_cache(maxsize=_KEPT_SYSTEMS)
+def _assemble_once(design: _Design) -> tuple[Mechanism, PiecewiseSystem]:
+    """A mechanism and its system, which further runs share, and with it what is kept for a system."""
+    return design.mechanism, _assemble(design.mechanism)
+
+
+def _assemble(mechanism: Mechanism) -> PiecewiseSystem:
+    switched = switching(mechanism)
+    check_values(switched)
+    return _system(switched, kinematics(switched))
 
 
 def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:

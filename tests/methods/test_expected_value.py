@@ -31,6 +31,7 @@ from inerter import (
     TyreLoad,
 )
 from inerter.errors import DesignError, PerformanceIndexError
+from inerter.methods import out_of_band
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.objective import Differentiable
 from inerter.methods.out_of_band import on_roads, out_of_band_contribution
@@ -391,3 +392,14 @@ def test_what_lies_outside_the_band_is_uncertain_by_at_most_itself(scale):
     assert missing.beyond <= part
     if scale < 0.01:
         assert missing.beyond == pytest.approx(part - 2.0 * missing.unseen, rel=1e-3)
+
+
+@pytest.mark.parametrize("index", [J1, J3])
+def test_images_of_lines_are_as_good_as_by_elimination(index, monkeypatch):
+    friction = Friction(10.0)
+    car = paper_half_car(
+        k | Damper(3705.4) | Inerter(128.57) | friction, k | Damper(3705.4) | Inerter(128.57) | friction
+    )
+    found = it.evaluate(car, index, TWO).value
+    monkeypatch.setattr(out_of_band, "_IMAGES_WITHIN", 0.0)  # which no sum over modes keeps
+    assert found == pytest.approx(it.evaluate(car, index, TWO).value, rel=1e-13)

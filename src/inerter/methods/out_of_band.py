@@ -54,6 +54,7 @@ _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
+_IMAGES_WITHIN = 1e-8  # of the largest response to images, which are a per cent of any line, or less
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
 _UNLIKE = "no equivalent linear model of backlash: nothing is added for the road outside 0.1 to 1000 Hz"
 _STEPPED = 2e-6  # relative error of a value by the time step
@@ -237,7 +238,7 @@ def _squared_gains(design: OnRoads, speeds: Array) -> tuple[Array, Array]:
         if source in linear.problem.excesses:
             here[:, :, i] *= linear.problem.excesses[source].factor(omega)[:, None]
     at_once = linear.at_inputs(speeds)
-    responses = modal_response(at_once, lines.images.ravel())
+    responses = modal_response(at_once, lines.images.ravel(), within=_IMAGES_WITHIN)
     responses = responses.reshape(*lines.images.shape, len(at_once.outputs), len(at_once.inputs))
     sampled = here * lines.kept[:, None, None]
     for j, name in enumerate(at_once.inputs):

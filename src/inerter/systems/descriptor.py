@@ -140,7 +140,10 @@ def _beside(left: Matrix, right: Matrix) -> Matrix:
 
 
 def _sum_stack(p: NDArray[Any], stack: Matrix) -> Matrix:
-    return stack[0] if p.size == 1 else np.tensordot(p, stack, 1)
+    if p.size == 1:
+        return np.asarray(stack[0])
+    rows = stack.reshape(p.size, -1)
+    return np.asarray(np.dot(p[None], rows).reshape(stack.shape[1:]))  # `tensordot` takes three times as long
 
 
 def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:

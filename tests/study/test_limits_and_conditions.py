@@ -466,6 +466,6 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
     (entry,) = data["limits"]
     assert (entry["each"], entry["part"], entry["value"]) == (f"each {kind}" if kind else "", part, found)
     (shown,) = limits_at(study, design_of(study, "S1", data["parameters"]), "norm")
-    assert shown["part"] in (outputs or {"": ""})
-    named = f"{said}, {shown['part']}, at most " if kind else f"{said} at most "
-    assert shown["title"].startswith(named)
+    assert shown.part in (outputs or {"": ""})
+    named = f"{said}, {shown.part}, at most " if kind else f"{said} at most "
+    assert shown.to_json()["title"].startswith(named)

@@ -74,7 +74,7 @@ def indices(study: Study, body: Body) -> Answer:
                 "results": [
                     describe_result(evaluate_design(design, *each), one) for each, one in zip(asked, base, strict=True)
                 ],
-                "limits": limits_at(study, design, asked[0][1]),
+                "limits": [one.to_json() for one in limits_at(study, design, asked[0][1])],
             }
             for design in designs
         ],

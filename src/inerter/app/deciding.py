@@ -5,18 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
-from math import inf, isfinite, log, nan
+from math import nan
 from typing import Any
 
 from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
 from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
-from inerter.app.index_values import limits_at
+from inerter.app.index_values import DesignLimit, limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult, improvement_bound
+from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound
 from inerter.errors import Status
 from inerter.files.study.study import Study
-from inerter.formatting import format_list, format_quantity, typeset
+from inerter.formatting import format_list, typeset
 from inerter.methods.compare import Comparison
 from inerter.methods.registry import brief_words_of, decisive_method_clause
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
@@ -118,7 +118,7 @@ class _DesignComparison:
     def __init__(self, study: Study, method: str, baseline: Design | None, indices: Sequence[str]) -> None:
         self.study, self.method, self.baseline, self.indices = study, method, baseline, indices
         self._base = [] if baseline is None else [evaluate_design(baseline, index, method) for index in indices]
-        self._known: dict[int, tuple[Design, list[DesignEstimate], list[Answer]]] = {}
+        self._known: dict[int, tuple[Design, list[DesignEstimate], list[DesignLimit]]] = {}
 
     def result(self, design: Design) -> DesignResult:
         """Results of a design; the same object identifies it in `over` and `row`."""
@@ -130,7 +130,7 @@ class _DesignComparison:
             name=design.name,
             goal=goal,
             others=tuple(others),
-            limits=tuple(map(_limit_result, limits)),
+            limits=tuple(one.result() for one in limits),
             unchosen=design.unchosen,
             at_bounds=at_bounds(design.free, design.values, self.study.free_units),
             modelled=modelled,
@@ -161,7 +161,7 @@ class _DesignComparison:
             "problem_digest": problem_digest(self.study, design.layout, self.indices[0]),
             "is_baseline": result.is_baseline,
             "others": [{key: one[key] for key in keys} for one in told[1:]],
-            "limits": limits,
+            "limits": [one.to_json() for one in limits],
         }
 
     def _index_result(self, one: DesignEstimate, i: int) -> IndexResult:
@@ -193,14 +193,3 @@ def _with_remedy(method: str, status: Status) -> Status:
     """Status whose message names the method that can decide."""
     clause = decisive_method_clause(method, status)
     return replace(status, message=f"{status.message.rstrip('.')}{clause}") if clause else status
-
-
-def _limit_result(told: Answer) -> LimitResult:
-    """Limit of a design as a decision compares it."""
-    value, limit = told["value"], told["limit"]
-    side = f"{told['sense'].replace('_', ' ')} {format_quantity(limit, told['unit'], digits=12)}"
-    excess = inf
-    if isfinite(value) and value > 0.0 and limit > 0.0:
-        beyond = log(value / limit)
-        excess = {"at_most": beyond, "at_least": -beyond}.get(told["sense"], abs(beyond))
-    return LimitResult(told["quantity"], side, told["text"], told["kept"], excess, told["message"])

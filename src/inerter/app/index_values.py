@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import inf, isnan, nan
 from typing import Any
 
 from inerter.app.designs import Design
+from inerter.decision.results import LimitResult
 from inerter.errors import Status, StatusKind
 from inerter.files.study.limits import StudyLimit, limited_quantity_words, limits_in, part_words
 from inerter.files.study.parts import FAILURES
@@ -43,33 +44,63 @@ def _estimate_index(vehicle: Vehicle, index: IndexLike, method: Method) -> Estim
 _remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leaves most designs as they were
 
 
-def limits_at(study: Study, design: Design, name: str) -> list[dict[str, Any]]:
+@dataclass(frozen=True)
+class DesignLimit:
+    """Limit of a study at a design: the quantity in words, and the estimate closest to the limit.
+
+    `kept` is None where that is not known; `excess` is the logarithm of value over limit, towards the forbidden side.
+    """
+
+    limit: StudyLimit
+    quantity: str
+    part: str
+    estimate: Estimate
+    kept: bool | None
+    excess: float
+
+    @property
+    def text(self) -> str:
+        """Value with its unit; empty where it is not known."""
+        return "" if self.kept is None else format_quantity(self.estimate.value, self.limit.unit)
+
+    def to_json(self) -> dict[str, Any]:
+        """The limit for an answer."""
+        return {
+            "of": self.limit.of,
+            "sense": self.limit.sense,
+            "limit": self.limit.value,
+            "quantity": self.quantity,
+            "title": f"{self.quantity} {self.limit.side}",
+            "part": self.part,
+            "unit": self.limit.unit,
+            "value": self.estimate.value,
+            "text": self.text,
+            "kept": self.kept,
+            "status": self.estimate.status.kind.value,
+            "message": self.estimate.status.message,
+        }
+
+    def result(self) -> LimitResult:
+        """The limit as a decision compares it."""
+        message = self.estimate.status.message
+        return LimitResult(self.quantity, self.limit.side, self.text, self.kept, self.excess, message)
+
+
+def limits_at(study: Study, design: Design, name: str) -> list[DesignLimit]:
     """Limits of a study at a design, each with the value closest to it, by the method of that name."""
     pairs = zip(study.limits, limits_in(study), strict=True)
     return [_limit(study, one, several, design.vehicle, study.method(name)) for one, several in pairs]
 
 
-def _limit(study: Study, said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> dict[str, Any]:
+def _limit(study: Study, said: StudyLimit, several: list[Limit], vehicle: Vehicle, method: Method) -> DesignLimit:
     try:
         single = [replace(limit, of=one) for limit in several for one in for_each(limit.of, vehicle)]
         held = [ConstraintResult(limit, estimate_index(vehicle, limit.of, method), False, 0.0) for limit in single]
         closest = max(held, key=lambda one: inf if isnan(one.value) else one.excess)
-        worst, part = closest.estimate, part_words(vehicle, output_of(closest.limit.of))
-        kept = None if isnan(worst.value) else all(one.excess <= KEPT_COSTLY for one in held)
+        estimate, part = closest.estimate, part_words(vehicle, output_of(closest.limit.of))
+        kept = None if isnan(estimate.value) else all(one.excess <= KEPT_COSTLY for one in held)
+        excess = inf if kept is None else closest.excess
     except FAILURES as error:
-        part, worst, kept = "", Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error))), None
-    words = limited_quantity_words(study, said.of, part)
-    return {
-        "of": said.of,
-        "sense": said.sense,
-        "limit": said.value,
-        "quantity": words,
-        "title": f"{words} {said.sense.replace('_', ' ')} {format_quantity(said.value, said.unit, digits=12)}",
-        "part": part,
-        "unit": said.unit,
-        "value": worst.value,
-        "text": "" if kept is None else format_quantity(worst.value, said.unit),
-        "kept": kept,
-        "status": worst.status.kind.value,
-        "message": worst.status.message,
-    }
+        estimate = Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error)))
+        part, kept, excess = "", None, inf
+    return DesignLimit(said, limited_quantity_words(study, said.of, part), part, estimate, kept, excess)

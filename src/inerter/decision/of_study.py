@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import isclose
 
-from inerter.files.study.limits import limit_words
+from inerter.files.study.limits import limit_text
 from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
@@ -39,8 +39,7 @@ def goal_sentence(study: Study, index: str, method: str) -> str:
     quantile = (
         "" if study.quantile is None else f", at the {format_share(study.quantile, 4)} quantile of its tolerances"
     )
-    limits = [f"{limit_words(study, one)} {format_quantity(one.value, one.unit, digits=12)}" for one in study.limits]
-    within = f", with {format_list(limits)}" if limits else ""
+    within = f", with {format_list([limit_text(study, one) for one in study.limits])}" if study.limits else ""
     what = title_with_name(study.index(index).title, index)
     return f"Lowest {what}{over}{quantile}{within}, by {brief_words_of(method)}."
 

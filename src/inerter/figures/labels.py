@@ -19,6 +19,7 @@ from inerter.formatting import (
     label_with_unit,
     typeset_unit,
 )
+from inerter.indices.names import title_with_name
 from inerter.table import Quantity
 from inerter.units import parse_quantity
 
@@ -159,6 +160,11 @@ def indices(results: xr.Dataset) -> list[str]:
 def index_title(results: xr.Dataset, index: str) -> str:
     """The name of an index in words, such as "ride comfort"."""
     return str(results["index_title"].sel(index=index).item())
+
+
+def index_words(results: xr.Dataset, index: str, template: str = "{} ({})") -> str:
+    """The title of an index with its name, in that order of the template."""
+    return title_with_name(index_title(results, index), index, template)
 
 
 def index_unit(results: xr.Dataset, index: str) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import infeasible, layouts, one_method, swept_words
-from inerter.files.study.limits import is_swept, limit_words, limited_quantity_words
+from inerter.files.study.limits import is_swept, limit_text, limited_quantity_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
@@ -50,8 +50,7 @@ def conclusion_sentences(
 def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
     """Sentence on the constraints, and on layouts without a feasible design."""
     limits = [
-        f"{limit_words(study, one)} "
-        + ("the swept value" if is_swept(study, one) else format_quantity(one.value, one.unit))
+        limit_text(study, one, "the swept value" if is_swept(study, one) else format_quantity(one.value, one.unit))
         for one in study.limits
     ]
     missed = infeasible(results)

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inerter.field_metadata import Field, fields_of
-from inerter.figures.labels import index_title, indices, infeasible
+from inerter.figures.labels import index_words, indices, infeasible
 from inerter.files.common.vehicles import vehicle_words
-from inerter.files.study.limits import limit_words
+from inerter.files.study.limits import limit_text
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.places import places
 from inerter.files.study.quantity_texts import as_written
@@ -126,7 +126,7 @@ def free_network_text(study: Study, network: FreeNetwork) -> str:
 
 def further_rows(study: Study) -> list[tuple[str, str]]:
     """Rows on constraints and tasks."""
-    given = {"Limits": [f"{limit_words(study, one)} {_value_text(study, one.value, one.unit)}" for one in study.limits]}
+    given = {"Limits": _limit_texts(study)}
     for task in tasks():
         given |= task.description(study)
     return [(what, ", ".join(told)) for what, told in given.items() if told]
@@ -171,7 +171,7 @@ def index_rows(study: Study, *, combined: bool = False) -> list[tuple[str, str]]
 
 def indices_asked(results: xr.Dataset) -> str:
     """The indices in a sentence."""
-    names = [title_with_name(index_title(results, index), index) for index in indices(results)]
+    names = [index_words(results, index) for index in indices(results)]
     return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
 
 
@@ -195,11 +195,8 @@ def computation(study: Study, results: xr.Dataset) -> Iterator[str]:
             what = brief_words_of(study.optimise)
             yield f"The minimised value is that by {what}: {words_of(study.optimise)}."
     if study.limits:
-        limits = "; ".join(
-            f"{limit_words(study, limit)} {_value_text(study, limit.value, limit.unit)}" for limit in study.limits
-        )
         satisfy = "must satisfy" if bool(infeasible(results).any()) else "satisfies"
-        yield f"Every design {satisfy} these constraints: {limits}."
+        yield f"Every design {satisfy} these constraints: {'; '.join(_limit_texts(study))}."
     if study.conditions:
         how = (
             "mean over the operating conditions by shares" if study.over == OVER[0] else "worst value in any condition"
@@ -228,6 +225,11 @@ def _of_roads(study: Study, results: xr.Dataset) -> Iterator[str]:
         if isinstance(field, Field) and field.key in settings:
             amplitude = _value_text(study, settings[field.key], field.unit)
             yield f"The sinusoidal force of {name} has an amplitude of {amplitude}."
+
+
+def _limit_texts(study: Study) -> list[str]:
+    """The limits in words, with the values as the study file has them."""
+    return [limit_text(study, one, _value_text(study, one.value, one.unit)) for one in study.limits]
 
 
 def _number_text(study: Study, place: str) -> str:

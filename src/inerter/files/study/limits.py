@@ -53,9 +53,14 @@ class StudyLimit:
         return ".".join((*_PLACE, self.of, self.sense))
 
     @property
-    def label(self) -> str:
-        """The limit in words."""
-        return f"{self.words} {format_quantity(self.value, self.unit, digits=12)}"
+    def value_text(self) -> str:
+        """Value with its unit, all digits."""
+        return format_quantity(self.value, self.unit, digits=12)
+
+    @property
+    def side(self) -> str:
+        """Sense and value, such as "at most 8 mm"."""
+        return f"{self.sense.replace('_', ' ')} {self.value_text}"
 
     def entry(self) -> str | float:
         """Value of the limit for the study file: a number if dimensionless, else text with the unit."""
@@ -210,15 +215,14 @@ def limit_words(study: Study, limit: StudyLimit) -> str:
     return f"{limited_quantity_words(study, limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
 
 
+def limit_text(study: Study, limit: StudyLimit, value: str = "") -> str:
+    """The limit in words, with this text for its value; without one, the value in SI units."""
+    return f"{limit_words(study, limit)} {value or limit.value_text}"
+
+
 def is_swept(study: Study, limit: StudyLimit) -> bool:
     """Whether the study sweeps the value of a limit."""
     return limit.place in {sweep.label for sweep in study.sweeps}
-
-
-def limit_text(study: Study, limit: StudyLimit) -> str:
-    """The limit in words with its value; `(swept)` where the study sweeps it."""
-    value = "(swept)" if is_swept(study, limit) else format_quantity(limit.value, limit.unit, digits=12)
-    return f"{limit_words(study, limit)} {value}"
 
 
 def quantity_limited(study: Study, of: str) -> IndexLike:

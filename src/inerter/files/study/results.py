@@ -243,9 +243,10 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "index_title": ("index", [index.title for index in indices.values()]),
     }
     if study.limits:
-        coords["limit"] = [f"{one.words} (swept)" if is_swept(study, one) else one.label for one in study.limits]
+        told = [(one, "(swept)" if is_swept(study, one) else one.value_text) for one in study.limits]
+        coords["limit"] = [f"{one.words} {text}" for one, text in told]
         coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
-        coords["limit.words"] = ("limit", [limit_text(study, limit) for limit in study.limits])
+        coords["limit.words"] = ("limit", [limit_text(study, *one) for one in told])
         coords["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if beside and study.road is not None:
         coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})

@@ -139,8 +139,7 @@ def run_study(
         gathered, done, computed = _compute_outcomes(study, results, pool, progress, compiling)
         answers = tuple(done[part] for part in parts_of(study))
         data = gathered.dataset()
-        write_text(results.draft / RESOLVED, write_resolved(study))
-        write_text(results.draft / VERSIONS, json.dumps(origins(study), indent=2) + "\n")
+        write_study(study, results.draft)
         for task, own in by_task(answers).items():
             data = task.add_to_dataset(study, data, own)
             table = task.table(TaskResults(study, data, own))
@@ -166,10 +165,12 @@ def result_names() -> tuple[str, ...]:
     return (journals.NAME, RESOLVED, SUMMARY, DATASET, *tables, VERSIONS, f"{FIGURES}/", REPORT)
 
 
-def origins(study: Study) -> dict[str, Any]:
-    """Provenance of the results: versions, seed, and SHA-256 of a measured profile."""
+def write_study(study: Study, folder: Path) -> None:
+    """Write the resolved study, and the provenance of its results: versions, seed, SHA-256 of a measured profile."""
+    write_text(folder / RESOLVED, write_resolved(study))
     measured = {} if study.line is None else {"inputs": {study.line.path.name: study.line.digest}}
-    return {**versions(), "seed": study.seed, **measured}
+    origins = {**versions(), "seed": study.seed, **measured}
+    write_text(folder / VERSIONS, json.dumps(origins, indent=2) + "\n")
 
 
 @contextmanager
@@ -205,8 +206,8 @@ def _compute_outcomes(
         journal.appending(results.resume) as append,
         storing_checkpoints(lambda kept: append(kept.to_json())),
     ):
-        of_designs = _results(study, {}, pending, pool, known)
-        of_tasks = _results(study, found.designs, left, pool, known)
+        of_designs = part_results(study, {}, pending, pool, known)
+        of_tasks = part_results(study, found.designs, left, pool, known)
         for ready in chain(of_designs, of_tasks):
             append(*map(journal_entry, ready))
             for result in ready:
@@ -239,10 +240,10 @@ def _enter(result: PartResult, found: DatasetBuilder, done: _Done) -> None:
         done[result.part] = result
 
 
-def _results(
+def part_results(
     study: Study, designs: Designs, pending: Iterable[StudyPart[Any]], pool: Pool, known: _Known
 ) -> Iterator[list[PartResult]]:
-    """Lists of results of parts, in the order in which they are completed."""
+    """Lists of results of parts, in the order in which they are completed; searches begun go on from what is known."""
     run = partial(_resumed_result, portable(study), designs, known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, portable(study)))
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import partial
 from math import nan
 from pathlib import Path
 from typing import Any
@@ -17,9 +15,8 @@ from inerter.files.common.folder import FIGURES, REPORT, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.checking import fixed_part, kernels, search_plans
-from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
-from inerter.files.study.quantity_texts import write_resolved
-from inerter.files.study.running import RESOLVED, VERSIONS, Progress, origins
+from inerter.files.study.parts import PartResult, StudyPart
+from inerter.files.study.running import RESOLVED, VERSIONS, Progress, part_results, write_study
 from inerter.files.study.search_parts import (
     GroupResult,
     NetworkFrontPart,
@@ -38,7 +35,6 @@ from inerter.network_search.plan import SearchPlan
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.networks.parser import names
 from inerter.table import Table, csv_rows, csv_text
-from inerter.work.journal import Journal
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 
@@ -121,13 +117,14 @@ def search_study(
     mode = WriteMode(Path(folder), "search", _result_names(), study.inputs, resume, force)
     with open_results(mode) as results, worker_pool(jobs, executor) as pool:
         journal = journals.journal_of(study, results.place / journals.NAME)
-        done: dict[Any, PartResult] = {one.part: one for one in _read(journal)} if results.resume else {}
+        done: dict[Any, PartResult] = (
+            {one.part: one for one in map(result_of, journal.read())} if results.resume else {}
+        )
         results.list_journal(journals.NAME)
         with logging_steps(), journal.appending(results.resume) as append:
             work = _Work(study, pool, append, done, progress, compiling, on_groups)
             found = _search(study, plans, work, results.folder)
-        write_text(results.draft / RESOLVED, write_resolved(study))
-        write_text(results.draft / VERSIONS, json.dumps(origins(study), indent=2) + "\n")
+        write_study(study, results.draft)
         for name, table in tables_of(found).items():
             write_text(results.draft / name, csv_text(csv_rows(table)))
         results.publish()
@@ -251,9 +248,7 @@ class _Work:
         if not is_begun:
             self._tell(known, None)
         designs = {part: one for part, one in self.done.items() if isinstance(one, Outcome)}
-        run = partial(_result, self.study, designs)
-        lost = partial(lost_part, self.study)
-        for ready in self.pool.batches(run, pending, partial(run, threads=self.pool.jobs), lost):
+        for ready in part_results(self.study, designs, pending, self.pool, {}):
             self.append(*(one.to_json() for one in ready))
             self.done |= {one.part: one for one in ready}
             self.ready += sum(sizes[one.part] for one in ready)
@@ -274,16 +269,6 @@ class _Work:
         self.on_groups([one for one in ready if isinstance(one, GroupResult)])
         troubled = sum(not one.ok for one in self.done.values())
         self.progress(self.ready, self.total + self.more, last, troubled)
-
-
-def _result(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[Any], threads: int = 1) -> PartResult:
-    result: PartResult = run_part(study, designs, part, threads)
-    return result
-
-
-def _read(journal: Journal) -> Iterator[PartResult]:
-    for entry in journal.read():
-        yield result_of(entry)
 
 
 def _kernels(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Any]:

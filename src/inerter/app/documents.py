@@ -109,25 +109,24 @@ def study_without(document: Document, error: FileError) -> tuple[Study, dict[str
 
     Raises `error` if it has other problems, and `StudyError` if the other layouts are no study.
     """
-    faults: dict[str, str] = {}
-    for problem in error.problems:
-        if len(problem.place) < 2 or problem.place[0] != _LAYOUTS:
+    settings, faults = document["study"], dict[str, str]()
+    baseline = settings.get("baseline", next(iter(document[_LAYOUTS])))
+    while True:  # free networks are found once all else is valid
+        for problem in error.problems:
+            if len(problem.place) < 2 or problem.place[0] != _LAYOUTS:
+                raise error
+            faults.setdefault(problem.place[1], str(problem))
+        layouts = {name: entry for name, entry in document[_LAYOUTS].items() if name not in faults}
+        if not layouts:
             raise error
-        faults.setdefault(problem.place[1], str(problem))
-    layouts = {name: entry for name, entry in document[_LAYOUTS].items() if name not in faults}
-    if not layouts:
-        raise error
-    settings = document["study"]
-    keeps_baseline = settings.get("baseline", next(iter(document[_LAYOUTS]))) not in faults
-    if not keeps_baseline:
-        settings = {key: value for key, value in settings.items() if key != "baseline"}
-    others = {**document, _LAYOUTS: layouts, "study": settings}
-    try:
-        study = study_from(others)
-    except FileError as further:  # free networks are found once all else is valid
-        study, more = study_without(others, further)
-        faults |= more
-    return study if keeps_baseline else replace(study, baseline=None), faults
+        if baseline in faults:
+            settings = {key: value for key, value in settings.items() if key != "baseline"}
+        try:
+            study = study_from({**document, _LAYOUTS: layouts, "study": settings})
+        except FileError as further:
+            error = further
+        else:
+            return replace(study, baseline=None) if baseline in faults else study, faults
 
 
 def searched_study_from(document: object) -> Study:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -17,6 +19,16 @@ class Tell(Protocol):
 
     def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
         """Raises `JobStopped` if the job is to stop."""
+
+
+def tell_compiling(tell: Tell) -> Callable[[str, int, int], None]:
+    """Report of the kernel compilation. Other threads give it too, so that it does not stop: the next part will."""
+
+    def compiling(title: str, number: int, total: int) -> None:
+        with suppress(JobStopped):
+            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
+
+    return compiling
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import isfinite, nan
 from pathlib import Path
@@ -12,10 +11,8 @@ from typing import Any
 
 from inerter.app.answers import Body, texts_of, tree_of
 from inerter.app.documents import searched_study_from
-from inerter.app.kinds import RESULTS, JobStopped, Tell
+from inerter.app.kinds import RESULTS, Tell, tell_compiling
 from inerter.errors import OK, Status, StatusKind, StudyError
-from inerter.figures.search import draw_search
-from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
 from inerter.files.study.search_parts import GroupResult, RealResult
@@ -51,14 +48,9 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
         done[0] = count
         tell(count, total, ranking.progress(last), ranking.so_far())
 
-    def compiling(title: str, number: int, total: int) -> None:
-        with suppress(JobStopped):  # other threads tell this too; the next group will stop
-            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
-
     def show(found: StudySearch, into: Path) -> None:
         tell(done[0], done[0], "figures and report")
-        draw_search(found, into / FIGURES)
-        write_search_report(found, into / FIGURES, into / REPORT)
+        write_search_report(found, into)
 
     found = search_study(
         study,
@@ -66,7 +58,7 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
         jobs=max((os.cpu_count() or 2) - 1, 1),
         resume=True,
         progress=on_part_done,
-        compiling=compiling,
+        compiling=tell_compiling(tell),
         on_groups=on_groups,
         finish=show,
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from inerter.app.deciding import margins_of
 from inerter.app.designs import designs_of, problem_digest
 from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
-from inerter.app.kinds import RESULTS, JobStopped, Tell
+from inerter.app.kinds import RESULTS, Tell, tell_compiling
 from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.checking import check_study
@@ -114,10 +113,6 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
     def preparing(count: int, total: int) -> None:
         tell(0, 0, f"preparing {count} of {total}")
 
-    def compiling(title: str, number: int, total: int) -> None:
-        with suppress(JobStopped):  # other threads tell this too; the next design will stop
-            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
-
     done = [0]
     check_study(study, preparing)
     return run_study(
@@ -125,7 +120,7 @@ def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
         folder / RESULTS,
         jobs=max((os.cpu_count() or 2) - 1, 1),
         progress=on_part_done,
-        compiling=compiling,
+        compiling=tell_compiling(tell),
         finish=show,
     )
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import logging
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
 
 from inerter.cli.options import Cluster
+from inerter.cli.streams import say
 from inerter.errors import StudyError, WorkError
 from inerter.work import cluster as clusters
 from inerter.work.progress import report
@@ -36,7 +36,7 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
     given = {name: str(path) for name, path in tls.items() if path is not None}
     with cluster_executor(asked.scheduler, asked.scheduler_file, given) as executor:
         clusters.check(executor)
-        print(f"inerter: {_describe_workers(clusters.places(executor))}", file=sys.stderr, flush=True)
+        say(_describe_workers(clusters.places(executor)))
         yield executor
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shlex
-import sys
 from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
@@ -16,6 +15,7 @@ from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
 from inerter.cli.pace import Pace
 from inerter.cli.progress import progress, steps
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.cases import cases
@@ -70,7 +70,7 @@ def run(
             compiling=shown.kernels,
             finish=write_figures_and_report,
         )
-    _say(f"report: {folder / REPORT}")
+    say(f"report: {folder / REPORT}")
     if as_json:
         for text in as_text(result):
             print(text, end="")
@@ -130,7 +130,7 @@ def reproduce(
     settings = {"jobs": own, "resume": resume, "force": force}
     with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps() as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
-    _say(f"report: {folder / REPORT}")
+    say(f"report: {folder / REPORT}")
     print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
     for result in found.studies.values():
         _report_failures(result)
@@ -155,10 +155,6 @@ def processes(jobs: int | None) -> int:
 def _report_failures(result: StudyResult) -> None:
     """Report designs whose status is not ok on stderr."""
     for line in islice(result.iterate_failures(), _MOST):
-        _say(line)
+        say(line)
     if result.n_failures > _MOST:
-        _say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")
-
-
-def _say(message: str) -> None:
-    print(f"inerter: {message}", file=sys.stderr, flush=True)
+        say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")

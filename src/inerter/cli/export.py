@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from inerter.cli.interrupts import interruptible
 from inerter.cli.quantity_options import positive_option
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
@@ -62,4 +62,4 @@ def export(
         contents = export_contents(kind, request, path)
         with single(path, by=_BY, inputs=design.inputs, force=force) as draft:
             draft.write_bytes(contents)
-    print(f"inerter: {kind.description}: {path}", file=sys.stderr)
+    say(f"{kind.description}: {path}")

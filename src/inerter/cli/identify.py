@@ -15,6 +15,7 @@ from inerter.cli.options import Cluster
 from inerter.cli.progress import fraction
 from inerter.cli.quantity_options import positive_option
 from inerter.cli.reading import time_interval
+from inerter.cli.streams import say
 from inerter.errors import RecordError, StudyError, UnitError
 from inerter.files.common.folder import REPORT, WriteMode, open_results
 from inerter.files.common.toml import check_measurements
@@ -81,9 +82,9 @@ def identify(
                 write_identification(found, results.draft, callback)
     except RecordError as error:
         raise RecordError(as_options(error.args)) from None
-    print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
+    say(f"report: {folder / REPORT}")
     if not found.fit.status.ok:
-        print(f"inerter: {found.title}: {found.fit.status}", file=sys.stderr, flush=True)
+        say(f"{found.title}: {found.fit.status}")
     return (found.fit.status,)
 
 

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
+from inerter.cli.streams import say
 from inerter.statements import INTERRUPTED
 
 _PATIENCE = 1.2  # [s] that work has to put its things away
@@ -56,7 +57,7 @@ def tell(kept: object = "") -> None:
     """Say once that the work was interrupted, and what is kept of it, in words as of `interruptible`."""
     if not _told.is_set():
         _told.set()
-        print(f"inerter: interrupted{str(kept) or '.'}", file=sys.stderr, flush=True)
+        say(f"interrupted{str(kept) or '.'}")
 
 
 def came() -> bool:

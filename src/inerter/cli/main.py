@@ -22,7 +22,7 @@ from inerter.cli.interrupts import came, heed, interruptible, tell
 from inerter.cli.options import OWN, BestFor, ClusterOptions, Force, ForceFile, Jobs, Json, Output, Resume, SweepPoint
 from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
-from inerter.cli.streams import endure, problem
+from inerter.cli.streams import endure, problem, say
 from inerter.errors import InerterError, StudyError, WorkError
 from inerter.statements import INTERRUPTED, Statement, exit_code
 
@@ -530,5 +530,5 @@ def _writes(arguments: list[str]) -> bool:
 
 
 def _fail(error: InerterError) -> int:
-    print(f"inerter: {error.sentence}", file=sys.stderr, flush=True)
+    say(error.sentence)
     return exit_code([error])

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from inerter.atomic_io import write_text
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.files.study.sections import judged_models
 from inerter.files.study.starting import starting_text
@@ -39,7 +39,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
         ) from None
     except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
         raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
-    print(f"inerter: wrote {path}; run it: inerter run {path}", file=sys.stderr)
+    say(f"wrote {path}; run it: inerter run {path}")
 
 
 def _check_own(path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
 from inerter.cli.reading import time_interval
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.figures.plots.kinds import PLOTS, DesignsToPlot, MotionToPlot, PlotKind, PlotSource, ResultsToPlot
 from inerter.figures.style import style_context
@@ -72,7 +72,7 @@ def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, 
             figure = row.draw(content)
             with single(path, by=_BY, inputs=inputs, force=force) as draft:
                 figure.savefig(draft, dpi=200)
-    print(f"inerter: {row.description}: {path}", file=sys.stderr)
+    say(f"{row.description}: {path}")
 
 
 def _designs(source: Path, options: PlotOptions) -> tuple[DesignsToPlot, tuple[Path, ...]]:

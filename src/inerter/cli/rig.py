@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from inerter.cli.interrupts import interruptible
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.files.common.folder import check_single, single
 from inerter.files.rig import KIND
@@ -26,7 +26,7 @@ def rig(config: Path, output: Path, *, force: bool) -> None:
         with single(output, by=KIND.command, inputs=inputs, force=force) as draft:
             write_record(record, draft)
     print(rig_text(request, record))
-    print(f"inerter: record: {output}", file=sys.stderr)
+    say(f"record: {output}")
 
 
 def _check_output(output: Path) -> None:

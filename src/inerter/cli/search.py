@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 
 from inerter.cli.cluster import workers
@@ -11,8 +10,8 @@ from inerter.cli.commands import continuation_clause, processes
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import OWN, Cluster
 from inerter.cli.progress import progress
-from inerter.figures.search import draw_search
-from inerter.files.common.folder import FIGURES, REPORT
+from inerter.cli.streams import say
+from inerter.files.common.folder import REPORT
 from inerter.files.study.loading import load_study
 from inerter.files.study.searching import StudySearch, search_study
 from inerter.report.search import search_data, search_notes, search_sections, search_sentences, write_search_report
@@ -35,10 +34,6 @@ def search(
     folder = output or Path(f"{study.stem}-search")
     own = processes(jobs)
 
-    def show(found: StudySearch, into: Path) -> None:
-        draw_search(found, into / FIGURES)
-        write_search_report(found, into / FIGURES, into / REPORT)
-
     kept = continuation_clause(("search", str(study)), folder, jobs, cluster, as_json=as_json)
     with (
         interruptible(lambda: kept),
@@ -54,9 +49,9 @@ def search(
             force=force,
             progress=shown.cases,
             compiling=shown.kernels,
-            finish=show,
+            finish=write_search_report,
         )
-    print(f"inerter: report: {folder / REPORT}", file=sys.stderr, flush=True)
+    say(f"report: {folder / REPORT}")
     print(json.dumps(search_data(found), indent=2) if as_json else _text(found))
     return (found.status,)
 

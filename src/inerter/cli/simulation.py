@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import math
-import sys
 from pathlib import Path
 
 from inerter.cli.interrupts import interruptible
 from inerter.cli.progress import fraction
+from inerter.cli.streams import say
 from inerter.errors import StudyError
 from inerter.figures.simulation import Window, draw_simulation, readable_window
 from inerter.files.common.folder import FIGURES
@@ -36,9 +36,9 @@ def simulate(
         result = run_simulation(request, folder, force=force, progress=callback, finish=draw)
     shown = _figure_window(result, wanted)
     print(json.dumps(simulation_data(result), indent=2) if as_json else simulation_text(result, shown))
-    print(f"inerter: results: {folder}", file=sys.stderr)
+    say(f"results: {folder}")
     if not result.run.status.ok:
-        print(f"inerter: {file.name}: {result.run.status}", file=sys.stderr, flush=True)
+        say(f"{file.name}: {result.run.status}")
     return (result.run.status,)
 
 

@@ -54,3 +54,8 @@ def problem() -> OSError | None:
     """Reason why standard output could not be written, although a reader was connected."""
     found = _raw["stdout"].problem if "stdout" in _raw else None
     return None if isinstance(found, BrokenPipeError) else found
+
+
+def say(message: str) -> None:
+    """Message on standard error, at once."""
+    print(f"inerter: {message}", file=sys.stderr, flush=True)

@@ -9,7 +9,8 @@ from typing import Any
 
 import inerter
 from inerter.atomic_io import write_text
-from inerter.figures.search import FRONTIER, best_networks_figure, front_figure
+from inerter.figures.search import FRONTIER, best_networks_figure, draw_search, front_figure
+from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
@@ -174,8 +175,9 @@ def search_data(found: StudySearch) -> dict[str, Any]:
     return data
 
 
-def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
-    """Write the page of a search to `path`, with the drawings (SVG) in the folder `figures`."""
+def write_search_report(found: StudySearch, folder: Path) -> None:
+    """Draw the networks and fronts of a search, and write the page with these drawings."""
+    draw_search(found, folder / FIGURES)
     study = found.study
     page = (
         environment()
@@ -196,14 +198,13 @@ def write_search_report(found: StudySearch, figures: Path, path: Path) -> Path:
             sections=list(search_sections(found)),
             further_sections=[],
             conditions=condition_rows(study),
-            figures=list(_drawings(found, figures)),
+            figures=list(_drawings(found, folder / FIGURES)),
             notes=search_notes(found),
             computation=list(_computation(found)),
             study_file=write_resolved(study),
         )
     )
-    write_text(path, with_contents(page))
-    return path
+    write_text(folder / REPORT, with_contents(page))
 
 
 def _indices_asked(found: StudySearch) -> str:

@@ -44,14 +44,7 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     Columns that are listed become items "heading = text" of the last one. The reason for a doubt stands below its row.
     """
     yield from wrap(table.caption, width, subsequent_indent=_GAP * 2)
-    grid = _grid(table)
-    labels = [text for text, _ in grid.columns[0].cells]
-    if _total_width(grid.columns, cut_headings=True) > width:
-        grid = replace(grid, columns=[grid.columns[0].with_short_labels(), *grid.columns[1:]])
-    keys = _n_keys(grid, labels, width)
-    if keys == 0:
-        labels = [f"{label}{_GAP}{key}" for label, (key, _) in zip(labels, grid.columns[1].cells, strict=True)]
-        grid, keys = replace(grid, columns=[grid.columns[0].with_short_labels(0), *grid.columns[2:]]), 1
+    grid, labels, keys = _with_labels(_grid(table), width)
     if not grid.columns[keys:]:
         yield from _lines(grid, labels, width)
     while grid.columns[keys:]:
@@ -117,15 +110,22 @@ def _item(column: Column, cell: Cell) -> str:
     return f"{column.heading} = {cell.text}{f' ({cell.remark})' if cell.remark else ''}"
 
 
-def _n_keys(grid: _Grid, labels: Sequence[str], width: int) -> int:
-    """Number of columns that stand before every part of a table: two where labels repeat.
+def _with_labels(grid: _Grid, width: int) -> tuple[_Grid, list[str], int]:
+    """Grid whose labels leave room for its numbers, all labels, and the number of columns before every part of it.
 
-    Zero where there is no room for both: they stand on a line above each row.
+    These are two where labels repeat; labels without room in the first column stand on a line above each row.
     """
-    if len(set(labels)) == len(labels) or not grid.columns[2:] or grid.columns[1].wraps:
-        return 1
-    fits = all(_total_width([*grid.columns[:2], one], cut_headings=True) <= width for one in grid.columns[2:])
-    return 2 if fits else 0
+    first, *others = grid.columns
+    labels = [text for text, _ in first.cells]
+    if _total_width(grid.columns, cut_headings=True) > width:
+        first = first.with_short_labels()
+    keyed = replace(grid, columns=[first, *others])
+    if len(set(labels)) == len(labels) or not others[1:] or others[0].wraps:
+        return keyed, labels, 1
+    if all(_total_width([first, others[0], one], cut_headings=True) <= width for one in others[1:]):
+        return keyed, labels, 2
+    labels = [f"{label}{_GAP}{key}" for label, (key, _) in zip(labels, others[0].cells, strict=True)]
+    return replace(grid, columns=[first.with_short_labels(0), *others[1:]]), labels, 1
 
 
 def _count_fitting(grid: _Grid, width: int) -> int:

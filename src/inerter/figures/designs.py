@@ -16,7 +16,7 @@ from inerter.figures.labels import (
     axis_label,
     by_method,
     compared_layouts,
-    index_title,
+    index_words,
     indices,
     layouts,
     method_label,
@@ -25,7 +25,6 @@ from inerter.figures.labels import (
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
 from inerter.formatting import capital, choose_scale, format_percent, typeset
-from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 
@@ -51,9 +50,7 @@ def improvement_bars(results: xr.Dataset, ax: Axes) -> Axes:
         ax.axhline(0.0, **styles[results.attrs["baseline"]].curve() | {"linewidth": 1.0})
     _leave_room(ax, 0.18 if upright else 0.1)
     ax.set_xlim(-0.5, groups.size - 0.5)
-    ax.set_xticks(
-        groups, [title_with_name(index_title(results, index), index, "{1}\n{0}") for index in indices(results)]
-    )
+    ax.set_xticks(groups, [index_words(results, index, "{1}\n{0}") for index in indices(results)])
     ax.tick_params(axis="x", length=0)
     ax.grid(visible=False, axis="x")
     ax.set_ylabel(IMPROVEMENT)
@@ -79,7 +76,7 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
         ax.grid(visible=False, axis="x")
         ax.margins(y=0.12)
         ax.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-        ax.set_title(fill(title_with_name(index_title(results, index), index, "{1}: {0}"), _WIDEST_TITLE))
+        ax.set_title(fill(index_words(results, index, "{1}: {0}"), _WIDEST_TITLE))
     axes[0].set_ylabel(IMPROVEMENT)
     return axes
 

@@ -18,8 +18,8 @@ from inerter.figures.labels import (
     axis_label,
     compared_layouts,
     held_back,
-    index_title,
     index_unit,
+    index_words,
     layouts,
     swept_label,
     swept_places,
@@ -27,7 +27,6 @@ from inerter.figures.labels import (
 )
 from inerter.figures.style import log_axis, suits_log_axis
 from inerter.formatting import capital, choose_scale, format_number, typeset
-from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 
@@ -53,7 +52,7 @@ def index_maps(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Sequenc
     valued = [name for name in layouts(results) if name not in others]
     unit = choose_scale(data["value"].sel(layout=valued).values.ravel(), index_unit(results, index))
     values = data["value"].sel(layout=valued) * unit.factor
-    label = axis_label(capital(title_with_name(index_title(results, index), index, "{} {}")), unit.unit)
+    label = axis_label(capital(index_words(results, index, "{} {}")), unit.unit)
     for ax, name in zip(axes, valued, strict=False):
         _draw(data.sel(layout=name), values.sel(layout=name).values, ax, _sequential(values.values), label)
         ax.set_title(_in_lines(f"{name} (baseline)" if others else name))

@@ -21,7 +21,7 @@ from inerter.figures.labels import (
     compared_layouts,
     criteria,
     held_back,
-    index_title,
+    index_words,
     indices,
     infeasible,
     layouts,
@@ -36,7 +36,6 @@ from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 from inerter.formatting import format_list, format_number
-from inerter.indices.names import title_with_name
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side
@@ -94,7 +93,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
         if f"gain_{index}" in results:
             yield StudyFigure(
                 f"response-{index}",
-                f"{linear} of the designs that are best for {title_with_name(index_title(results, index), index)}."
+                f"{linear} of the designs that are best for {index_words(results, index)}."
                 + _still(results, index)
                 + _nearest(results.sel(index=index), "Of a layout without a feasible design, that"),
                 partial(_response, results, index),
@@ -105,7 +104,7 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
     for index in indices(results):
         here = results.sel(index=index)
-        title = title_with_name(index_title(results, index), index)
+        title = index_words(results, index)
         versus = (
             f", and improvement over the best {baseline} of the same {element}" if compared_layouts(results) else ""
         )
@@ -134,7 +133,7 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
     baseline, others = results.attrs["baseline"], " and ".join(method_label(every, name) for name in methods(every)[1:])
     for index in indices(results):
         here = results.sel(index=index)
-        title = title_with_name(index_title(results, index), index)
+        title = index_words(results, index)
         versus = f" of {baseline}, and improvement over it of every other layout" if compared_layouts(results) else ""
         yield StudyFigure(
             f"map-{index}",

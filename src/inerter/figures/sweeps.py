@@ -19,8 +19,8 @@ from inerter.figures.labels import (
     by_method,
     compared_layouts,
     held_back,
-    index_title,
     index_unit,
+    index_words,
     layouts,
     method_label,
     methods,
@@ -31,7 +31,6 @@ from inerter.figures.labels import (
 )
 from inerter.figures.style import LayoutStyle, layout_styles, log_axis, method_line, suits_log_axis
 from inerter.formatting import capital, choose_scale
-from inerter.indices.names import title_with_name
 
 Array = NDArray[np.float64]
 
@@ -102,7 +101,7 @@ def sweep_curves(results: xr.Dataset, index: str, axes: Sequence[Axes]) -> Seque
     for one, line in zip(sweeps, lines, strict=True):
         for name in layouts(results):
             _curve(one, left, name, "value", unit.factor, line)
-    left.set_ylabel(axis_label(capital(title_with_name(index_title(results, index), index, "{} {}")), unit.unit))
+    left.set_ylabel(axis_label(capital(index_words(results, index, "{} {}")), unit.unit))
     for ax in right:
         for one, line in zip(sweeps, lines, strict=True):
             for name in compared_layouts(results):

@@ -9,7 +9,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from inerter.figures.labels import (
-    index_title,
+    index_words,
     indices,
     infeasible,
     layouts,
@@ -19,7 +19,6 @@ from inerter.figures.labels import (
     swept_words,
 )
 from inerter.formatting import format_list, format_share
-from inerter.indices.names import title_with_name
 from inerter.table import Column, Content, Quantity, Row, Table, cells
 
 _MOST_RANGES = 3  # of swept values, in a remark
@@ -44,7 +43,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
         if swept:
             entry = _entry(results, name, index)
             rows.append(Row(cells(name, "all limits", *_describe_infeasible(entry))))
-    caption = f"Limits of the designs that are best for {title_with_name(index_title(results, index), index)}"
+    caption = f"Limits of the designs that are best for {index_words(results, index)}"
     if basis := results["limit_value"].attrs["basis"]:
         caption = f"{caption}; values {basis}"
     labels = [Column("Layout"), Column("Limit", words=True)]

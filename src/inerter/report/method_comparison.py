@@ -9,8 +9,8 @@ from inerter.figures.labels import (
     compared_layouts,
     design_quantity,
     improvement_text,
-    index_title,
     index_unit,
+    index_words,
     indices,
     layouts,
     method_label,
@@ -18,7 +18,6 @@ from inerter.figures.labels import (
     swept_places,
 )
 from inerter.formatting import Scale, capital, choose_scale
-from inerter.indices.names import title_with_name
 from inerter.report.index_summary import extremes, place_text
 from inerter.table import Cell, Row, Table, columns
 
@@ -34,7 +33,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
         Row([Cell(name), *(_cell(by_method(results, method), index, name, unit) for method in methods(results))])
         for name in _row_layouts(results)
     ]
-    caption = f"{capital(title_with_name(index_title(results, index), index))} {_caption_clause(results, unit)}"
+    caption = f"{capital(index_words(results, index))} {_caption_clause(results, unit)}"
     return Table(
         caption, columns("Layout", *(capital(method_label(results, method)) for method in methods(results))), rows
     )

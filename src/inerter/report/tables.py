@@ -13,8 +13,8 @@ from inerter.figures.labels import (
     design_quantity,
     flat_range,
     improvement_text,
-    index_title,
     index_unit,
+    index_words,
     indices,
     infeasible,
     layouts,
@@ -28,7 +28,6 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
-from inerter.indices.names import title_with_name
 from inerter.report.index_summary import best_layout, extremes, is_compared, place_text
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
@@ -73,10 +72,6 @@ def map_tables(results: xr.Dataset) -> list[Table]:
     return [_map_table(results, index, name) for index in indices(results) for name in names]
 
 
-def _title(results: xr.Dataset, index: str) -> str:
-    return title_with_name(index_title(results, index), index)
-
-
 def _improvement(design: xr.Dataset, baseline: str) -> str:
     return "baseline" if design["layout"].item() == baseline else improvement_text(design)
 
@@ -101,7 +96,7 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
         *(Column(parameter, listed="Parameters") for parameter in parameters),
         *([Column("Agreement", only_on_pages=True)] if searched else []),
     ]
-    what = f"Best for {_title(results, index)}" if searched else capital(_title(results, index))
+    what = f"Best for {index_words(results, index)}" if searched else capital(index_words(results, index))
     return Table(f"{what}{by_which(results)}", heads, rows)
 
 
@@ -130,7 +125,7 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
             for other in others
         ]
         rows.append(Row([Cell(name), *cells]))
-    caption = f"Designs that are best for {_title(results, index)}{by_which(results)}"
+    caption = f"Designs that are best for {index_words(results, index)}{by_which(results)}"
     return Table(caption, columns("Layout", *others), rows)
 
 
@@ -161,7 +156,7 @@ def _extreme_table(results: xr.Dataset, index: str) -> Table:
         rows.append(Row([Cell(name), *cells], status=_first_problem(results, name, index)))
     than = f", compared with {results.attrs['baseline']}" if versus else ""
     over = f"over {' and '.join(swept_words(results))}"
-    caption = f"{capital(_title(results, index))}{by_which(results)}{than}, {over}"
+    caption = f"{capital(index_words(results, index))}{by_which(results)}{than}, {over}"
     return Table(caption, columns("Layout", "Best", "Worst"), rows, swept=True)
 
 
@@ -193,7 +188,7 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
-    caption = f"Best {_title(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
+    caption = f"Best {index_words(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
     return Table(caption, columns(words, *names), rows, swept=True, failures=_failures(data))
 
 
@@ -215,7 +210,7 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
     words = [f"{w} in {u.unit}" for w, u in zip(swept_words(results), (down, across), strict=True)]
     what = f"improvement over {results.attrs['baseline']} and its value" if compared_layouts(results) else "value"
     caption = (
-        f"{layout}, best {_title(results, index)}: {what} in {values.unit}, over {words[0]} in rows and "
+        f"{layout}, best {index_words(results, index)}: {what} in {values.unit}, over {words[0]} in rows and "
         f"{words[1]} in columns{by_which(results)}"
     )
     corner = f"{capital(swept_words(results)[0])} ↓, {swept_words(results)[1]} →"

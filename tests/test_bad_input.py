@@ -155,7 +155,7 @@ WRONG = {
     "fixing to nothing": (lambda: open_car().with_values({"c": 0.0}), "must be positive"),
     "free values in evaluate": (lambda: evaluate(open_car(), J1, Norm()), "still has free values: c, b"),
     "nothing to optimise": (lambda: optimise(car(), J1, Norm()), "no free value"),
-    "no starts": (lambda: optimise(open_car(), J1, Norm(), starts=0), "starts >= 1"),
+    "no starts": (lambda: optimise(open_car(), J1, Norm(), starts=0), "`starts` must be a positive integer, got 0"),
     "seed as text": (lambda: optimise(open_car(), J1, Norm(), seed="0"), "`seed`"),
     "a free value without effect": (
         lambda: optimise(car(k | Friction(free(1.0, 5.0, "f")) | Damper(free(10.0, 1e6, "c"))), J1, Norm()),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from numbers import Real
+from numbers import Integral, Real
 from typing import TypeGuard
 
 from inerter.errors import InerterError
@@ -25,3 +25,20 @@ def check_positive(error: type[InerterError], what: str, value: object, unit: st
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:
         raise error(f"{what} must be a positive number of {unit}, got {value!r}.")
+
+
+def is_whole(value: object, least: int = 0, most: float = math.inf) -> TypeGuard[int]:
+    """Whether `value` is an integer (no bool) within these limits.
+
+    >>> is_whole(3, 1), is_whole(0, 1), is_whole(3.0), is_whole(True)
+    (True, False, False, False)
+    """
+    return isinstance(value, Integral) and not isinstance(value, bool) and least <= int(value) <= most
+
+
+def check_whole(error: type[InerterError], what: str, value: object, least: int = 0) -> int:
+    """The integer `value`; raises `error` unless it is one of at least `least`."""
+    if not is_whole(value, least):
+        expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
+        raise error(f"{what} must be {expected}, got {value!r}.")
+    return int(value)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -35,7 +34,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.validation import is_number
+from inerter.validation import check_whole, is_number
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
 
@@ -101,13 +100,13 @@ class ExpectedValue(FormerMethodNames):
 
     def __post_init__(self) -> None:
         check_conventions(self.conventions)
-        _check_whole("The seed", self.seed, 0)
+        check_whole(PerformanceIndexError, "The seed", self.seed, 0)
         if self.realisations is not None:
-            _check_whole("The number of realisations", self.realisations, 2)
+            check_whole(PerformanceIndexError, "The number of realisations", self.realisations, 2)
         if self.jobs is not None:
-            _check_whole("The number of threads", self.jobs, 1)
+            check_whole(PerformanceIndexError, "The number of threads", self.jobs, 1)
         if self.period is not None:
-            _check_whole("The length of a road in seconds", self.period, 1)
+            check_whole(PerformanceIndexError, "The length of a road in seconds", self.period, 1)
         if self.realisations is not None and self.relative_error is not None:
             raise PerformanceIndexError("Give either realisations or a relative_error to reach, not both.")
         if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
@@ -249,9 +248,3 @@ def _linear(vehicle: Vehicle, definition: IndexDefinition, conventions: Conventi
         return linear_problem(vehicle.mechanism(), definition, conventions)
     except (MechanismError, LinearSystemError):
         return None
-
-
-def _check_whole(what: str, value: object, least: int) -> None:
-    if not isinstance(value, Integral) or isinstance(value, bool) or value < least:
-        expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
-        raise PerformanceIndexError(f"{what} must be {expected}, got {value!r}.")

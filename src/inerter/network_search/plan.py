@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -26,6 +25,7 @@ from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
 from inerter.optimisation.optimise import AGREEMENT, optimise, quasi_random_points
+from inerter.validation import check_whole
 from inerter.vehicle.replace_values import mounted_elements, with_networks
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
@@ -111,9 +111,8 @@ def plan_search(
 ) -> SearchPlan:
     """The search as a plan; see `search.search`."""
     check_vehicle(vehicle)
-    for what, number, least in (("seed", seed, 0), ("starts", 1 if starts is None else starts, 1)):
-        if isinstance(number, bool) or not isinstance(number, Integral) or number < least:
-            raise DesignError(f"`{what}` must be an integer of at least {least}, got {number!r}.")
+    check_whole(DesignError, "`seed`", seed)
+    check_whole(DesignError, "`starts`", 1 if starts is None else starts, 1)
     places = places_of(vehicle)
     if len(set(places)) != 1:
         found = "no free network" if not places else f"{len(set(places))} different free networks"

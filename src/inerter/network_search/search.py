@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
-from numbers import Integral
 from typing import overload
 
 import numpy as np
@@ -25,6 +24,7 @@ from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan, plan_search, search_group
 from inerter.network_search.results import SearchResult, collect_results
 from inerter.optimisation.limits import Limit
+from inerter.validation import check_whole
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import report
@@ -94,8 +94,7 @@ def search(
     >>> it.search(car, (it.RideComfort(road), it.TyreLoad(road)), it.Norm(), points=5).networks
     ('c1 - b1',)
     """
-    if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs < 1:
-        raise DesignError(f"`jobs` must be a positive integer, got {jobs!r}.")
+    check_whole(DesignError, "`jobs`", jobs, 1)
     if isinstance(index, Sequence) and not isinstance(index, str):
         front = plan_front(vehicle, index, method, subject_to, seed, starts, points)
         with worker_pool(int(jobs), executor) as pool:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
-from numbers import Integral
 
 import numpy as np
 import scipy
@@ -33,6 +32,7 @@ from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, Constrain
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import SAME_PLACE, LocalOptimum, approach, descend, polish, trust_region
 from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
+from inerter.validation import check_whole
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
@@ -162,14 +162,8 @@ def optimise(
     check_request(vehicle, index, method)
     free = check_free(vehicle)
     starts = 8 * len(free) if starts is None else starts
-    if (
-        isinstance(starts, bool)
-        or not isinstance(starts, Integral)
-        or starts < 1
-        or not isinstance(seed, Integral)
-        or seed < 0
-    ):
-        raise DesignError(f"`starts` and `seed` must be integers, starts >= 1, seed >= 0; got {starts}, {seed}.")
+    check_whole(DesignError, "`starts`", starts, 1)
+    check_whole(DesignError, "`seed`", seed)
     limits = check_limits(subject_to)
     with one_blas_thread(), running_on(executor):
         return _best(vehicle, index, method, free, limits, int(seed), starts)

@@ -12,7 +12,6 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -41,6 +40,7 @@ from inerter.pareto_fronts.points import (
     thin_out,
     thin_out_triangle,
 )
+from inerter.validation import check_whole, is_whole
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import running_on
@@ -87,8 +87,7 @@ def pareto_front(
     criteria = _check_request(vehicle, indices, method, points)
     limits = check_limits(subject_to)
     free = check_free(vehicle)
-    if not isinstance(seed, Integral) or seed < 0:
-        raise DesignError(f"The seed must be a non-negative integer, got {seed!r}.")
+    check_whole(DesignError, "The seed", seed)
     with one_blas_thread(), running_on(executor):
         ends = []
         for one in criteria:
@@ -139,7 +138,7 @@ def _check_request(vehicle: Vehicle, indices: object, method: Method, points: ob
     if len(set(map(repr, indices))) < len(indices):
         raise PerformanceIndexError("A Pareto front requires different indices; one is repeated.")
     least = 3 if len(indices) == 2 else 6
-    if not isinstance(points, Integral) or isinstance(points, bool) or points < least:
+    if not is_whole(points, least):
         raise DesignError(f"A front of {len(indices)} indices requires at least {least} points, got points={points!r}.")
     return tuple(indices)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import SignalError
 from inerter.formatting import format_alike, format_number, format_quantity
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, check_whole, is_number, is_whole
 
 Array = NDArray[np.float64]
 
@@ -49,9 +48,7 @@ def speed_or_none(value: object) -> float | None:
 
 def random_generator(seed: object) -> np.random.Generator:
     """Random number generator of a seed; raises `SignalError` unless it is a non-negative integer."""
-    if not isinstance(seed, Integral) or isinstance(seed, bool) or seed < 0:
-        raise SignalError(f"A seed must be a non-negative integer, got {seed!r}.")
-    return np.random.default_rng(int(seed))
+    return np.random.default_rng(check_whole(SignalError, "A seed", seed))
 
 
 def real_array(what: str, values: object) -> Array:
@@ -115,9 +112,9 @@ def checked_grid(start: float, step: float, count: int) -> Array:
     """The times of a uniform grid."""
     finite_number("The start of a grid", start, "s")
     positive_number("The step of a grid", step, "s")
-    if not isinstance(count, Integral) or isinstance(count, bool) or not 0 <= count <= MOST:
+    if not is_whole(count, 0, MOST):
         raise SignalError(f"The count of a grid must be an integer from 0 to 1e8, got {count!r}.")
-    return start + step * np.arange(int(count))
+    return np.asarray(start + step * np.arange(count), dtype=float)
 
 
 def check_span(start: object, stop: object) -> None:

@@ -13,7 +13,7 @@ from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, NonlinearitySupport
 from inerter.methods.registry import METHODS, nonlinearities_of
 from inerter.networks.elements import Element, Free, Tied
-from inerter.validation import is_number
+from inerter.validation import check_whole, is_number, is_whole
 from inerter.vehicle.replace_values import (
     check_one_meaning,
     elements_by_label,
@@ -28,6 +28,7 @@ from inerter.vehicle.vehicle import Vehicle
 Array = NDArray[np.float64]
 DISTRIBUTIONS = ("uniform", "normal")
 _DEVIATIONS = 3.0  # standard deviations at which a normal distribution is truncated
+_FEWEST = 16  # points of a sample
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,13 @@ class Scatter:
         """All combinations of the extreme factors."""
         ends = [(1.0 - part, 1.0 + part) for _, part in self.spread]
         return np.array(np.meshgrid(*ends, indexing="ij")).reshape(len(ends), -1).T
+
+
+def check_sample(samples: object, seed: object) -> None:
+    """Raise `DesignError` unless a quasi-random sample has a power of two points, and a valid seed."""
+    if not is_whole(samples, _FEWEST) or samples & (samples - 1):
+        raise DesignError(f"The number of samples must be a power of two of at least {_FEWEST}, got {samples!r}.")
+    check_whole(DesignError, "The seed", seed)
 
 
 def scatter_of(spread: object, distribution: str) -> Scatter:

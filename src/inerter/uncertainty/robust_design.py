@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -23,6 +22,7 @@ from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.uncertainty.distributions import (
     Scatter,
+    check_sample,
     elements_scatter,
     nominal,
     scatter_left_out,
@@ -63,10 +63,7 @@ class Quantile(OfIndex):
     def __post_init__(self) -> None:
         if not is_number(self.share) or not 0.0 < self.share < 1.0:
             raise DesignError(f"The probability of a quantile must be between 0 and 1, got {self.share!r}.")
-        if not isinstance(self.samples, Integral) or self.samples < 16 or self.samples & (self.samples - 1):
-            raise DesignError(f"The number of samples must be a power of two of at least 16, got {self.samples!r}.")
-        if not isinstance(self.seed, Integral) or self.seed < 0:
-            raise DesignError(f"The seed must be a non-negative integer, got {self.seed!r}.")
+        check_sample(self.samples, self.seed)
 
     @property
     def title(self) -> str:

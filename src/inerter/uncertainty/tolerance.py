@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, field, replace
 from functools import partial
-from numbers import Integral
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from inerter.methods.method import Estimate, Method, MethodWithExactFallback, co
 from inerter.notebook import shown_by
 from inerter.uncertainty.distributions import (
     Scatter,
+    check_sample,
     elements_scatter,
     neglected_scatter,
     nominal,
@@ -36,7 +36,6 @@ from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]
 _MOST_CORNERS = 10  # values with tolerances up to which all extremes are combined
-_FEWEST = 16  # samples
 _TRIED, _FEW = 64, 256  # designs tested before the sample, and size of the sample where each takes long
 _TRIED_ALONE = 16  # designs tested where each is a separate mechanism
 
@@ -132,10 +131,7 @@ def tolerance_analysis(
     (2.431, 2.471, 'k')
     """
     scatter = scatter_of(spread, distribution)
-    if not isinstance(samples, Integral) or samples < _FEWEST or samples & (samples - 1):
-        raise DesignError(f"The number of samples must be a power of two of at least {_FEWEST}, got {samples!r}.")
-    if not isinstance(seed, Integral) or seed < 0:
-        raise DesignError(f"The seed must be a non-negative integer, got {seed!r}.")
+    check_sample(samples, seed)
     with one_blas_thread(), running_on(executor):
         here = evaluate(design, index, method)
         fewer = _affordable(design, index, method, scatter, int(samples), int(seed))

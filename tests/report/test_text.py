@@ -9,9 +9,9 @@ from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_t
 
 from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
-from inerter.report.index_summary import best_layout, crossings, sweep_headlines
+from inerter.report.index_summary import crossings, sweep_headlines
 from inerter.report.text import WIDTH, table_lines
-from inerter.report.verdicts import verdict_sentences
+from inerter.report.verdicts import best_layouts, verdict_sentences
 from inerter.table import Row, Table, cells, columns
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)
@@ -183,8 +183,8 @@ def test_headlines_of_sweeps(improvement, sentence):
 
 def test_the_best_layout_has_the_least_finite_value():
     results = designs()
-    assert best_layout(results, "J1") == results["layout"][results["value"].sel(index="J1").argmin("layout")]
-    assert best_layout(with_value(results, math.nan, layout="S3", index="J1"), "J1") == "S2"
+    assert best_layouts(results, "J1")[0] == results["layout"][results["value"].sel(index="J1").argmin("layout")]
+    assert best_layouts(with_value(results, math.nan, layout="S3", index="J1"), "J1")[0] == "S2"
 
 
 @settings(max_examples=20)
@@ -196,14 +196,14 @@ def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(c
     for i, name in enumerate(names):
         results = with_value(results, value * (1.0 + i * rounding), layout=name, index="J5")
     order = sorted(names, key=lambda name: counts[names.index(name)])
-    assert best_layout(results, "J5") == order[0]
+    assert best_layouts(results, "J5")[0] == order[0]
     sentence = next(line for line in verdict_sentences(results) if "load carrying (J5)" in line.split(". ")[0])
     others = [name for name in order if name != "D"]
     assert sentence.startswith(
         f"{others[0]}, {others[1]} and {others[2]} are as good as D in dynamic load carrying (J5)"
     )
     worse = with_value(results, value * (1.0 + 1e-8), layout=order[0], index="J5")
-    assert best_layout(worse, "J5") == order[1]
+    assert best_layouts(worse, "J5")[0] == order[1]
 
 
 def test_a_wide_table_continues_below_and_tells_a_doubt_once():

@@ -28,7 +28,8 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
-from inerter.report.index_summary import best_layout, extremes, is_compared, place_text
+from inerter.report.index_summary import extremes, is_compared, place_text
+from inerter.report.verdicts import best_layouts
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
@@ -79,7 +80,7 @@ def _improvement(design: xr.Dataset, baseline: str) -> str:
 def _design_table(results: xr.Dataset, index: str) -> Table:
     at_index, versus = results.sel(index=index), bool(compared_layouts(results))
     parameters = at_index["parameter_value"].dropna("parameter", how="all")["parameter"].values.tolist()
-    searched, best = is_searched(at_index), best_layout(results, index)
+    searched, best = is_searched(at_index), next(iter(best_layouts(results, index)), None)
     rows = []
     for name in layouts(results):
         design = at_index.sel(layout=name)

@@ -24,7 +24,7 @@ from inerter.files.common.entries import (
 )
 from inerter.files.common.free_networks import FREE_NETWORK, is_free_network
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem
+from inerter.files.common.problem import EntryError, Problem, collect_problem
 from inerter.files.common.schema import or_range_schema, quantity_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
@@ -194,12 +194,11 @@ def with_tied_values(
     """Elements in their order, and the problems of tied elements; without free networks."""
     every = {name: entry for name, entry in entries.items() if not isinstance(entry, FreeNetwork)}
     own = {name: entry for name, entry in every.items() if not isinstance(entry, TieEntry)}
-    found, problems = {}, []
+    found: dict[str, Element] = {}
+    problems: list[Problem] = []
     for name, entry in every.items():
-        try:
+        with collect_problem(problems, ("elements", name)):
             found[name] = tied_element(name, entry, own) if isinstance(entry, TieEntry) else entry
-        except EntryError as error:
-            problems.append(replace(error.problem, place=("elements", name)))
     return found, problems
 
 

@@ -6,9 +6,11 @@ Here, and nowhere else, it becomes a sentence.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 
+from inerter.errors import InerterError
 from inerter.statements import Severity, Statement
 from inerter.units import quote_value
 
@@ -60,6 +62,17 @@ def at(
 ) -> Problem:
     """The problem of the entry at this path of keys."""
     return Problem(tuple(place), said, got, fault, expected, hint)
+
+
+@contextmanager
+def collect_problem(problems: list[Problem], place: Iterable[str]) -> Iterator[None]:
+    """Add the error that this block raises to the problems, as one of the entry at this path of keys."""
+    try:
+        yield
+    except EntryError as error:
+        problems.append(replace(error.problem, place=tuple(place)))
+    except InerterError as error:
+        problems.append(at(place, str(error)))
 
 
 def _sentence(problem: Problem) -> str:

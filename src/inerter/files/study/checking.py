@@ -47,36 +47,34 @@ def check_lines(path: Path) -> Iterator[str]:
     """
     study = load_study(path)
     if searched_layouts(study):
-        yield from _search_lines(study)
-        return
-    check_study(study)
+        size, notes = _search_size(study), road_notes(study)
+    else:
+        check_study(study)
+        size, notes = _study_size(study), study_notes(study)
+    yield f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{size}."
+    if road := roads_sentence(study):
+        yield f"{road}."
+    yield from input_warnings(study)
+    yield from (f"Note: {note}." for note in notes)
+
+
+def _study_size(study: Study) -> str:
+    """Clause on the numbers of designs and of parts of tasks."""
     counts = {task.items or task.key: len(task.parts(study)) for task in tasks()}
     further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
     swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
-    yield (
-        f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{swept}"
-        f": {len(cases(study))} designs to {'find' if study.optimise else 'judge'}{further}."
-    )
-    if road := roads_sentence(study):
-        yield f"{road}."
-    yield from input_warnings(study)
-    yield from (f"Note: {note}." for note in study_notes(study))
+    return f"{swept}: {len(cases(study))} designs to {'find' if study.optimise else 'judge'}{further}"
 
 
-def _search_lines(study: Study) -> Iterator[str]:
-    """Sentences about a study with free networks: how many networks a search compares, roads, warnings and notes."""
+def _search_size(study: Study) -> str:
+    """Clause on the number of networks that a search of a study with free networks compares."""
     plans = search_plans(study)
     counts = {layout: len(plan.topologies) for (layout, _), plan in plans.items()}
     networks = ", ".join(f"{count} networks of {layout}" for layout, count in counts.items())
-    yield (
-        f"{study.path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}: "
-        f"{networks} to search for each index{', and for their Pareto front' if study.trade_off else ''}"
-        f"{', and the best with real inerters' if study.real_inerters is not None else ''}."
+    return (
+        f": {networks} to search for each index{', and for their Pareto front' if study.trade_off else ''}"
+        f"{', and the best with real inerters' if study.real_inerters is not None else ''}"
     )
-    if road := roads_sentence(study):
-        yield f"{road}."
-    yield from input_warnings(study)
-    yield from (f"Note: {note}." for note in road_notes(study))
 
 
 def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, total: None) -> None:

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from inerter.errors import InerterError, NetworkError
+from inerter.errors import InerterError
 from inerter.files.common.codec import INVALID, KeyPath, RawEntry
 from inerter.files.common.codecs import with_name
 from inerter.files.common.elements import ElementCodec, with_tied_values
@@ -18,8 +18,8 @@ from inerter.files.common.problem import EntryError
 from inerter.files.study.loading import study_of
 from inerter.files.study.place import Place
 from inerter.files.study.sections import study_codec
+from inerter.files.study.study import element_names
 from inerter.networks.elements import Element, Free, Tied
-from inerter.networks.parser import names
 from inerter.systems.outputs import main_outputs, rename_output
 from inerter.units import quote_value
 
@@ -76,13 +76,13 @@ class Draft:
         found: dict[str, list[str]] = {name: [] for name in given} if isinstance(given, Mapping) else {}
         for keys, text in self.networks.items():
             if keys[0] == _LAYOUTS:
-                found[keys[1]] += _names(text)
+                found[keys[1]] += element_names(text)
         return {layout: list(dict.fromkeys(several)) for layout, several in found.items()}
 
     @cached_property
     def elements_by_layout(self) -> dict[str, list[str]]:
         """Elements on which each layout depends: in its networks, in those of the vehicle, and those others follow."""
-        common = [name for keys, text in self.networks.items() if keys[0] != _LAYOUTS for name in _names(text)]
+        common = [name for keys, text in self.networks.items() if keys[0] != _LAYOUTS for name in element_names(text)]
         found = {}
         for layout, own in self.layouts.items():
             values = [self.elements[name].value for name in (*own, *common) if name in self.elements]
@@ -125,13 +125,6 @@ def _value(entry: RawEntry) -> Any:
     """Value of an entry; of an element that of its quantity."""
     value = entry.value()
     return value.value if isinstance(value, Element) else value
-
-
-def _names(text: str) -> tuple[str, ...]:
-    try:
-        return names(text)
-    except NetworkError:
-        return ()
 
 
 def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any]:

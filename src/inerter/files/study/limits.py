@@ -6,12 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from inerter.errors import InerterError
 from inerter.files.common.codec import Codec, KeyPath, RawEntry, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problem import EntryError, Problem, at, collect_problem
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.formatting import format_quantity
@@ -149,11 +148,12 @@ def limits_of(
     study: Study, entries: Mapping[str, Mapping[str, str | float]]
 ) -> tuple[tuple[StudyLimit, ...], list[Problem]]:
     """The limits that a file sets, and what is wrong with them."""
-    limits, problems = [], []
+    limits: list[StudyLimit] = []
+    problems: list[Problem] = []
     if entries and study.optimise is None:
         problems.append(at(_PLACE, fault="nothing is optimised", expected="optimise, or no limits"))
     for of, sides in entries.items():
-        try:
+        with collect_problem(problems, (*_PLACE, of)):
             if not sides or ("equal" in sides and len(sides) > 1):
                 raise EntryError(got=quote_value(sides) if sides else "no limit", expected="at_most, at_least or equal")
             unit = _unit(study, of)
@@ -161,10 +161,6 @@ def limits_of(
             if len(found) > 1 and found[0].value < found[1].value:
                 raise EntryError(got="at_most below at_least", expected="at_most above it, or equal")
             limits += found
-        except EntryError as error:
-            problems.append(replace(error.problem, place=(*_PLACE, of)))
-        except InerterError as error:
-            problems.append(at((*_PLACE, of), str(error)))
     return tuple(limits), problems
 
 
@@ -222,7 +218,7 @@ def limit_text(study: Study, limit: StudyLimit, value: str = "") -> str:
 
 def is_swept(study: Study, limit: StudyLimit) -> bool:
     """Whether the study sweeps the value of a limit."""
-    return limit.place in {sweep.label for sweep in study.sweeps}
+    return limit.place in study.swept_labels
 
 
 def quantity_limited(study: Study, of: str) -> IndexLike:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
-from inerter.errors import InerterError
-from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problem import EntryError, Problem, collect_problem
 from inerter.files.common.suggest import some
 from inerter.files.study.conditions import what_of
 from inerter.files.study.place import element_at, place_of
@@ -21,18 +19,15 @@ _PLACE = ("study", "tolerance")
 
 def tolerance_of(study: Study, entries: Mapping[str, float]) -> tuple[dict[str, float], list[Problem]]:
     """Relative tolerance of each number, by its label, and the problems of the entries."""
-    spread, problems = {}, []
+    spread: dict[str, float] = {}
+    problems: list[Problem] = []
     for label, part in entries.items():
-        try:
+        with collect_problem(problems, (*_PLACE, label)):
             place = place_of(label)
             if number_at(study, place) is None or what_of(study, place) is None or place.section == "road":
                 raise unknown_place(study, place)
             _check_is_part(study, element_at(place))
             spread[place.label] = part
-        except EntryError as error:
-            problems.append(replace(error.problem, place=(*_PLACE, label)))
-        except InerterError as error:
-            problems.append(at((*_PLACE, label), str(error)))
     return spread, problems
 
 

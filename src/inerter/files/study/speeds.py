@@ -27,8 +27,7 @@ BESIDE = (0.8, 1.0, 1.2)  # of the speed of the study
 
 def asks_at_one_speed(study: Study) -> bool:
     """Whether the study has a road at one speed, which no sweep or condition changes, and no quantile."""
-    varied = {sweep.label for sweep in study.sweeps}.union(*(condition.numbers for condition in study.conditions))
-    return study.road is not None and SPEED not in varied and study.quantile is None
+    return study.road is not None and SPEED not in study.varied_labels and study.quantile is None
 
 
 def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> tuple[dict[str, list[float]], str]:

@@ -69,6 +69,16 @@ class Study(Settings):
         """Paths of the files read: the study file, and a measured profile."""
         return (self.path,) if self.line is None else (self.path, self.line.path)
 
+    @property
+    def swept_labels(self) -> set[str]:
+        """Labels of the swept places."""
+        return {sweep.label for sweep in self.sweeps}
+
+    @property
+    def varied_labels(self) -> set[str]:
+        """Labels of the places at which a sweep or a condition changes the number."""
+        return self.swept_labels.union(*(condition.numbers for condition in self.conditions))
+
     def knows(self, name: str) -> bool:
         """Whether the study or the registry has an index of that name."""
         return name in self.own_indices or name in index_names()
@@ -211,7 +221,7 @@ def elements_used(study: Study) -> dict[str, list[str]]:
     """Elements in layouts, each with the layouts that contain it or an element tied to it."""
     used: dict[str, list[str]] = {}
     for layout, struts in study.layouts.items():
-        named = [name for text in struts.struts.values() for name in _names(text)]
+        named = [name for text in struts.struts.values() for name in element_names(text)]
         for element in dict.fromkeys([*named, *(other for name in named for other in _tied_names(study, name))]):
             used.setdefault(element, []).append(layout)
     return used
@@ -228,7 +238,7 @@ def searched_layouts(study: Study) -> dict[str, list[str]]:
 
 def scattering(study: Study, layout: str) -> set[str]:
     """Names of the elements in the networks of a layout, which can have tolerances."""
-    return {name for text in study.layouts[layout].struts.values() for name in _names(text)}
+    return {name for text in study.layouts[layout].struts.values() for name in element_names(text)}
 
 
 def _tied_names(study: Study, name: str) -> tuple[str, ...]:
@@ -237,7 +247,8 @@ def _tied_names(study: Study, name: str) -> tuple[str, ...]:
     return value.names if isinstance(value, Tied) else ()
 
 
-def _names(expression: str) -> tuple[str, ...]:
+def element_names(expression: str) -> tuple[str, ...]:
+    """Names of the elements in the expression of a network; none if it is invalid."""
     try:
         return names(expression)
     except NetworkError:  # reported with its layout

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from math import prod
 from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError
 from inerter.files.common.entries import MOST_POINTS, quantity_text
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problem import EntryError, Problem, at, collect_problem
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
 from inerter.files.study.limits import limit_words
@@ -34,17 +32,14 @@ def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, 
     if not 1 <= len(entries) <= _MOST:
         got = f"{len(entries)} swept elements ({', '.join(map(quote_value, entries)) or 'none'})"
         return (), [at(_PLACE, got=got, expected="exactly one, or two for a map")]
-    sweeps, problems = [], []
+    sweeps: list[Sweep] = []
+    problems: list[Problem] = []
     for name, entry in entries.items():
-        try:
+        with collect_problem(problems, (*_PLACE, name)):
             sweep = _sweep(study, place_of(name), entry)
             for value in (min(sweep.values), max(sweep.values)):
                 with_numbers(study, [(sweep.place, value)])
             sweeps.append(sweep)
-        except EntryError as error:
-            problems.append(replace(error.problem, place=(*_PLACE, name)))
-        except InerterError as error:
-            problems.append(at((*_PLACE, name), str(error)))
     if len({sweep.place for sweep in sweeps}) < len(sweeps):
         problems.append(at(_PLACE, got=f"{sweeps[0].label} twice", expected="two places"))
     if (points := prod(len(sweep.values) for sweep in sweeps)) > MOST_POINTS:
@@ -139,21 +134,16 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
         numbers = {}
         for label, given in entry.numbers.items():
             where = (f"{_CONDITIONS}[{i}]", label)
-            try:
+            with collect_problem(problems, where):
                 place = place_of(label)
                 numbers[place.label] = _number(study, place, given)
                 problems += _not_followed(study, where, {place.label: numbers[place.label]})
-            except EntryError as error:
-                problems.append(replace(error.problem, place=where))
-            except InerterError as error:
-                problems.append(at(where, str(error)))
         if entry.name and entry.name in [known.name for known in conditions]:
             got = f"{entry.name!r}, the name of another condition"
             problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a name that tells it apart"))
         conditions.append(StudyCondition(numbers, entry.share, entry.name or ""))
-    swept = {sweep.label for sweep in study.sweeps}
     for i, condition in enumerate(conditions, start=1):
-        for label in condition.numbers.keys() & swept:
+        for label in condition.numbers.keys() & study.swept_labels:
             both = f"{label} is swept, and in a condition"
             problems.append(at((f"{_CONDITIONS}[{i}]", label), fault=both, expected="one of the two"))
     return tuple(conditions), problems

@@ -231,6 +231,11 @@ def format_percent(value: float, error: float = math.nan, bound: float = math.na
     return text[1:] if text in ("+0.0 %", "-0.0 %", "+0 %", "-0 %") else text
 
 
+def format_percent_size(value: float, error: float = math.nan, bound: float = math.nan) -> str:
+    """Percentage as `format_percent` gives it, without the sign of a positive one."""
+    return format_percent(value, error, bound).removeprefix("+")
+
+
 def format_entry(value: float, bound: float = math.nan) -> str:
     """A number of a table without its unit: four digits, or as many as its relative error `bound` justifies.
 

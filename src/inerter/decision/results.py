@@ -7,7 +7,7 @@ from math import inf, isfinite, isnan, nan
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.figures.labels import NOTICEABLE
-from inerter.formatting import capital, format_percent, format_quantity
+from inerter.formatting import capital, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 
 
@@ -29,7 +29,7 @@ class Improvement:
     @property
     def size(self) -> str:
         """Size of the difference as text, without a sign."""
-        return format_percent(abs(self.percent), self.error, self.bound).removeprefix("+")
+        return format_percent_size(abs(self.percent), self.error, self.bound)
 
     @property
     def words(self) -> str:

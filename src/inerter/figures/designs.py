@@ -24,7 +24,7 @@ from inerter.figures.labels import (
     one_method,
 )
 from inerter.figures.style import LayoutStyle, colour, layout_styles, log_axis, marker
-from inerter.formatting import capital, choose_scale, format_percent, typeset
+from inerter.formatting import capital, choose_scale, format_percent_size, typeset
 
 Array = NDArray[np.float64]
 
@@ -151,7 +151,7 @@ def _numbers(improvements: Array, values: Array) -> Iterator[str]:
         elif not np.isfinite(improvement):
             yield "n/a"
         else:
-            yield typeset(format_percent(improvement).removesuffix(" %").removeprefix("+"))
+            yield typeset(format_percent_size(improvement).removesuffix(" %"))
 
 
 def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import Status, worst_of
-from inerter.formatting import format_alike, format_percent, typeset
+from inerter.formatting import format_alike, format_percent_size, typeset
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
@@ -87,7 +87,7 @@ class Comparison:
         if not np.isfinite(self.percent):
             values = " and ".join(format_alike([self.first.value, self.second.value], self.first.unit))
             return f"{doubt}{values}: the difference is not defined"
-        apart = typeset(format_percent(abs(self.percent), self.percent_error).removeprefix("+"))
+        apart = typeset(format_percent_size(abs(self.percent), self.percent_error))
         if self.is_tie:
             return f"{doubt}difference not significant at 95 %: {apart}"
         word = "better" if self.difference.value < 0.0 else "worse"

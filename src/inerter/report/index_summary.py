@@ -27,7 +27,7 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
 )
-from inerter.formatting import format_list, format_percent, format_quantity
+from inerter.formatting import format_list, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import decisive_method_clause
@@ -214,7 +214,7 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
     if largest < NOTICEABLE:
         return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
     where = place_text(results, at, named=True)
-    best = f"{_format_equal_layouts(names)}, {format_percent(largest).removeprefix('+')} better at {where}"
+    best = f"{_format_equal_layouts(names)}, {format_percent_size(largest)} better at {where}"
     return (
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
         f"improvement over the sweep lies {_format_range(least, largest)}."
@@ -234,4 +234,4 @@ def _no_best_clause(results: xr.Dataset, index: str) -> str:
 
 
 def _format_range(least: float, largest: float) -> str:
-    return "between " + " and ".join(format_percent(value).removeprefix("+") for value in (least, largest))
+    return "between " + " and ".join(format_percent_size(value) for value in (least, largest))

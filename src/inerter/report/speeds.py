@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from inerter.decision.results import Improvement
 from inerter.figures.labels import (
     NOTICEABLE,
     index_title,
@@ -17,7 +18,7 @@ from inerter.figures.labels import (
     one_method,
     swept_places,
 )
-from inerter.formatting import format_percent, format_quantity
+from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import extremes, place_text
 from inerter.report.json_data import json_data
@@ -139,9 +140,8 @@ def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[A
 def _versus(better: float, baseline: str, layout: str) -> str:
     if not np.isfinite(better) or not baseline or layout == baseline:
         return ""
-    if abs(better) < NOTICEABLE:
-        return f" (as good as {baseline})"
-    return f" ({format_percent(abs(better)).removeprefix('+')} {'better' if better > 0.0 else 'worse'} than {baseline})"
+    by = Improvement(better)
+    return f" (as good as {baseline})" if by.is_equal else f" ({by.words} than {baseline})"
 
 
 def _at(results: xr.Dataset, place: int) -> str:

@@ -190,6 +190,11 @@ class Status(Statement):
         """The explanation; empty if there is none."""
         return self.message
 
+    @property
+    def doubt(self) -> str:
+        """The status as text; empty if it is ok."""
+        return "" if self.ok else str(self)
+
     def __str__(self) -> str:
         return self.kind.value if not self.message else f"{self.kind.value}: {self.message}"
 

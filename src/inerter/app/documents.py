@@ -109,8 +109,7 @@ def study_without(document: Document, error: FileError) -> tuple[Study, dict[str
 
     Raises `error` if it has other problems, and `StudyError` if the other layouts are no study.
     """
-    settings, faults = document["study"], dict[str, str]()
-    baseline = settings.get("baseline", next(iter(document[_LAYOUTS])))
+    faults: dict[str, str] = {}
     while True:  # free networks are found once all else is valid
         for problem in error.problems:
             if len(problem.place) < 2 or problem.place[0] != _LAYOUTS:
@@ -119,6 +118,8 @@ def study_without(document: Document, error: FileError) -> tuple[Study, dict[str
         layouts = {name: entry for name, entry in document[_LAYOUTS].items() if name not in faults}
         if not layouts:
             raise error
+        settings = document["study"]
+        baseline = settings.get("baseline", next(iter(document[_LAYOUTS])))
         if baseline in faults:
             settings = {key: value for key, value in settings.items() if key != "baseline"}
         try:

@@ -237,7 +237,6 @@ def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork
         return SearchedNetwork(topology, found.n_starts, reason=found.status.message or "the index is infinite")
     names = topology.names(plan.taken_names)
     others = {name: value for name, value in found.parameters.items() if name not in names}
-    reason = "" if found.status.ok else str(found.status)
     return SearchedNetwork(
         topology,
         found.n_starts,
@@ -245,5 +244,5 @@ def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork
         found.value,
         tuple(found.parameters[name] for name in names),
         others,
-        reason,
+        found.status.doubt,
     )

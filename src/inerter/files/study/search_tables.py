@@ -70,7 +70,7 @@ def ranking_table(study: Study, one: LayoutSearch) -> Table:
         values = [_value_text(study, found, name) if name in found.parameters else None for name in names]
         agreement = f"{found.n_converged} of {found.n_starts}" if found.n_converged else None
         content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, agreement, *values)
-        rows.append(Row(content, status=_doubt(found)))
+        rows.append(Row(content, status=found.status.doubt))
     count = len(one.result.ranking)
     what = f"{capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
     return Table(f"{what} (* at a bound)" if _any_at_bound(one.result.ranking[:RANKED]) else what, heads, rows)
@@ -164,7 +164,7 @@ def front_points_table(study: Study, one: LayoutFront) -> Table:
     rows = []
     for number, point in enumerate(one.result.front, 1):
         values = [Quantity(value, unit) for value, unit in zip(point.values, one.result.units, strict=True)]
-        status = "" if point.status.ok else str(point.status)
+        status = point.status.doubt
         rows.append(Row(cells(f"{number}", *values, f"{point.n_elements}", point.layout), status=status))
     return Table(f"{capital(one.heading)}: the Pareto front over all networks", heads, rows)
 
@@ -294,10 +294,6 @@ def _parameters(found: Iterable[FoundNetwork | FrontNetwork | RealResult]) -> li
 def _value_text(study: Study, found: FoundNetwork, name: str) -> str:
     text = format_quantity(found.parameters[name], parameter_unit(study, name))
     return f"{text}*" if name in found.active_bounds else text
-
-
-def _doubt(found: FoundNetwork) -> str:
-    return "" if found.status.ok else str(found.status)
 
 
 def _any_at_bound(found: tuple[FoundNetwork, ...]) -> bool:

@@ -68,7 +68,7 @@ def value_at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], 
     if not np.isfinite(found.value):
         reason = str(found.status) if not found.status.ok else "it is without bounds"
         return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no finite value ({reason.rstrip('.')})"
-    return found.value, "" if found.status.ok else str(found.status)
+    return found.value, found.status.doubt
 
 
 def quick_method(study: Study, vehicle: Vehicle) -> str:

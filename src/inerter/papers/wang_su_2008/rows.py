@@ -110,7 +110,7 @@ def compute(table: int, name: str) -> dict[str, object]:
         "exact": exact.value,
         "exact_error": total_error(exact),
         "exact_realisations": exact.realisations,
-        "exact_doubt": "" if exact.status.ok else str(exact.status),
+        "exact_doubt": exact.status.doubt,
         "peaks": [[peak.omega, peak.gain] for peak in exact.peaks],
         "begun": [_gain_from_rest(row, peak) for peak in exact.peaks] if by_sine else [],
         "improvement": None if table != 2 else 100.0 * (1.0 - paper.value / _norm_of_s1(row)),

@@ -136,7 +136,7 @@ class _DesignComparison:
             modelled=modelled,
             neglected=neglected,
             is_baseline=design == self.baseline,
-            n_elements=sum(len(list(strut.network.elements())) for strut in design.mechanism.struts),
+            n_elements=len(design.mechanism.strut_elements()),
         )
         self._known[id(made)] = design, found, limits
         return made

@@ -49,8 +49,7 @@ def nonlinear_elements(mechanism: Mechanism, method: str) -> tuple[tuple[str, ..
     blind = is_blind(method)
     found = dict.fromkeys(
         f"{part.key} {element.label}" if element.label != part.key else part.key
-        for mount in mechanism.mounts()
-        for element in mount.network.elements()
+        for element in mechanism.elements()
         for part in switching_parts(element)
         if part.acts
     )

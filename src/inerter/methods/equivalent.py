@@ -114,7 +114,7 @@ def check_outputs(mechanism: Mechanism, names: Collection[str]) -> None:
 
 def has_friction(mechanism: Mechanism) -> bool:
     """Whether any friction has a force."""
-    return any(element.is_damped for mount in switching(mechanism).mounts() for element in mount.network.elements())
+    return any(element.is_damped for element in switching(mechanism).elements())
 
 
 def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Collection[str] = ()) -> Equivalent:
@@ -127,7 +127,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     """
     mechanism = switching(mechanism)
     scale = _typical_damping(mechanism)
-    taken = {element.label for mount in mechanism.mounts() for element in mount.network.elements()}
+    taken = {element.label for element in mechanism.elements()}
     found: dict[str, tuple[str, Element]] = {}
 
     def replace_frictions(mount: str, network: Network) -> Network:
@@ -200,7 +200,7 @@ def _reached_directly(descriptor: Descriptor) -> list[int]:
 
 def _typical_damping(mechanism: Mechanism) -> float:
     """Root of the largest stiffness times the largest inertia: the impedance at a natural frequency."""
-    elements = [element for mount in mechanism.mounts() for element in mount.network.elements()]
+    elements = list(mechanism.elements())
     springs = [e.gain * _size(e.value) for e in elements if e.linear is LinearRole.STIFFNESS]
     inertias = [_size(coordinate.inertia) for coordinate in mechanism.coordinates]
     dampers = [e.gain * _size(e.value) for e in elements if e.linear is LinearRole.DAMPING]

@@ -85,7 +85,7 @@ def front_html(found: ParetoFront) -> str:
                 *(Quantity(parameters[name], units.get(name, "")) for name in names),
             ),
             strong=number == found.knee,
-            status="" if status.ok else str(status),
+            status=status.doubt,
         )
         for number, (values, parameters, status) in enumerate(
             zip(found.values, found.parameters, found.statuses, strict=True)
@@ -99,7 +99,7 @@ def search_html(found: SearchResult) -> str:
     rows = [
         Row(
             cells(str(rank + 1), one.layout, str(one.n_elements), Quantity(one.value, one.unit)),
-            status="" if one.status.ok else str(one.status),
+            status=one.status.doubt,
         )
         for rank, one in enumerate(found.ranking[:_MOST])
     ]
@@ -161,10 +161,9 @@ def _parameters(values: Mapping[str, float], design: Vehicle) -> list[Fact]:
 
 def _units(design: Vehicle) -> dict[str, str]:
     """Units of the elements of a design, by their names."""
-    mounts = design.mechanism().mounts()
-    return {element.label: element.unit for mount in mounts for element in mount.network.elements()}
+    return {element.label: element.unit for element in design.mechanism().elements()}
 
 
 def _html(table: Table, status: Status, said: Sequence[str] = ()) -> str:
     template = environment().get_template("notebook.html")
-    return template.render(table=table, status="" if status.ok else str(status), said=said)
+    return template.render(table=table, status=status.doubt, said=said)

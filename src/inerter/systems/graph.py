@@ -93,7 +93,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
         notes += [f"{element.key} {element.label!r} in {mount.name!r} closed" for element in linear.closed]
         notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
     graph = _expand(mechanism, networks, labels, tuple(notes))
-    if all(element.plain for mount in mechanism.mounts() for element in mount.network.elements()):
+    if all(element.plain for element in mechanism.elements()):
         return graph
     return replace(graph, silent=_other_meanings(graph, full_graph(mechanism)))
 
@@ -114,8 +114,7 @@ def switching(mechanism: Mechanism) -> Mechanism:
 
     Raises `DesignError` where that depends on a free value.
     """
-    elements = (element for mount in mechanism.mounts() for element in mount.network.elements())
-    if all(element.as_piecewise() is element for element in elements):
+    if all(element.as_piecewise() is element for element in mechanism.elements()):
         return mechanism
     return replace(
         mechanism,

@@ -73,8 +73,7 @@ def kinematics(mechanism: Mechanism) -> Kinematics:
     known = _cached_analysis(layout)
     if known.weighs:
         return _analyse_layout(layout)
-    elements = (element for mount in mechanism.mounts() for element in mount.network.elements())
-    return replace(known, graph=with_elements(known.graph, list(elements)))
+    return replace(known, graph=with_elements(known.graph, list(mechanism.elements())))
 
 
 def with_elements(graph: Graph, elements: Sequence[Element]) -> Graph:

@@ -16,7 +16,7 @@ from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed, quick_method, value_at_speed
 from inerter.files.study.study import Study, elements_used
-from inerter.formatting import capital, format_list, format_percent, format_quantity, format_share
+from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
 from inerter.indices.names import title_with_name
 from inerter.methods.method import evaluate
 from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps
@@ -136,7 +136,7 @@ class _Trial:
     @property
     def element(self) -> Element:
         """The element, or the first of several with its label."""
-        return next(one for one in _elements(self.design) if one.label == self.parameter)
+        return next(one for one in self.design.mechanism().strut_elements() if one.label == self.parameter)
 
 
 def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: None) -> Margins:
@@ -157,7 +157,7 @@ def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: Non
 
 def method_that_models(asked: MarginRequest, design: Vehicle, *, gaps: bool) -> str:
     """Method of the decision if it models friction (and `gaps`); else a quick one that does, or one that simulates."""
-    has_gaps = gaps or any(part.acts and _needs_simulation(part) for part in _elements(design))
+    has_gaps = gaps or any(part.acts and _needs_simulation(part) for part in design.mechanism().strut_elements())
     known = [asked.method, *asked.study.evaluate, *methods_that(lambda name: not is_blind(name) and refuses_gaps(name))]
     suited = [name for name in known if not is_blind(name) and not (has_gaps and refuses_gaps(name))]
     return suited[0] if suited else simulating_method()
@@ -168,13 +168,9 @@ def _needs_simulation(element: Element) -> bool:
     return element.switch is not None and not (element if element.acts else element.with_value(1.0)).is_damped
 
 
-def _elements(design: Vehicle) -> list[Element]:
-    return [element for strut in design.mechanism().struts for element in strut.network.elements()]
-
-
 def _trials(asked: MarginRequest) -> Iterator[_Trial]:
     """Elements whose break-even value is computed: those of the design first."""
-    own = {element.label: element for element in _elements(asked.design)}
+    own = {element.label: element for element in asked.design.mechanism().strut_elements()}
     budgets = [n for n in asked.study.budgets if asked.layout in elements_used(asked.study).get(n, ())]
     compliant = {label for strut in asked.design.mechanism().struts for label in compliant_springs(strut.network)}
     labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
@@ -294,7 +290,7 @@ def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:
     study = asked.study
     if not asks_at_one_speed(study) or not study.needs_road(asked.index) or study.road is None:
         return
-    method = _quick_method(asked, has_friction=any(part.acts for part in _elements(asked.design)))
+    method = _quick_method(asked, has_friction=any(part.acts for part in asked.design.mechanism().strut_elements()))
     for factor in BESIDE:
         if factor == 1.0:
             continue
@@ -321,10 +317,8 @@ def _speed_caveats(asked: MarginRequest, speeds: Sequence[SpeedMargin]) -> Itera
         if one.message:
             yield MarginCaveat(f"The improvement at {at} is unreliable: {one.message.rstrip('.')}.")
         elif one.improvement_percent is not None and one.improvement_percent < 0.0:
-            worse = format_percent(-one.improvement_percent).removeprefix("+")
-            yield MarginCaveat(
-                f"At {at} {asked.layout} is {worse} worse than {asked.baseline_layout} in {asked.words}."
-            )
+            worse = Improvement(one.improvement_percent).words
+            yield MarginCaveat(f"At {at} {asked.layout} is {worse} than {asked.baseline_layout} in {asked.words}.")
     _, neglected = nonlinear_elements(asked.design.mechanism(), speeds[0].method if speeds else asked.method)
     if speeds and neglected:
         yield MarginCaveat(f"Other speeds: {format_list(neglected)} neglected by {brief_words_of(speeds[0].method)}.")
@@ -334,7 +328,7 @@ def _scatter(asked: MarginRequest) -> tuple[ScatterMargin | None, list[MarginCav
     """Distribution under the tolerances of the study, or assumed ones, and caveats."""
     given = asked.study.spread(asked.layout)
     spread = dict(given) or usual_tolerances(asked.design)
-    own = {element.label: element for element in _elements(asked.design)}
+    own = {element.label: element for element in asked.design.mechanism().strut_elements()}
     gaps = [name for name in spread if name in own and own[name].acts and _needs_simulation(own[name])]
     caveats = []
     if gaps:  # a sample of simulations takes too long for a panel
@@ -360,7 +354,11 @@ def _quick_method(asked: MarginRequest, *, has_friction: bool) -> str:
 
 def usual_tolerances(design: Vehicle) -> dict[str, float]:
     """Tolerances that are assumed where a study gives none: 20 % of dampings, 10 % of all other values."""
-    return {element.label: USUAL.get(type(element), _USUAL) for element in _elements(design) if element.value}
+    return {
+        element.label: USUAL.get(type(element), _USUAL)
+        for element in design.mechanism().strut_elements()
+        if element.value
+    }
 
 
 def _analyse(asked: MarginRequest, spread: Mapping[str, float], method: str, *, is_assumed: bool) -> ScatterMargin:
@@ -402,7 +400,7 @@ def _scatter_sentence(asked: MarginRequest, found: ScatterMargin) -> str:
     if not isfinite(found.worst):
         return f"{given}: the distribution of {asked.words} is not computed ({found.message.rstrip('.')})."
     quantile = format_quantity(found.quantiles[str(SHARES[-1])], found.unit)
-    above = format_percent(found.worst_percent).removeprefix("+")
+    above = format_percent_size(found.worst_percent)
     compared = Improvement(found.worst_improvement_percent)
     versus = "as good as" if compared.is_equal else f"{compared.words} than"
     doubt = f" Not certain: {found.message.rstrip('.')}." if found.status != StatusKind.OK else ""

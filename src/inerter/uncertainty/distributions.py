@@ -141,8 +141,7 @@ def neglected_scatter(vehicle: Vehicle, method: Method, scatter: Scatter, idle: 
     """
     if method.nonlinearity_support is not NonlinearitySupport.NEITHER:
         return []
-    elements = [element for strut in vehicle.mechanism().struts for element in strut.network.elements()]
-    switching = {element.label for element in elements if element.acts}
+    switching = {element.label for element in vehicle.mechanism().strut_elements() if element.acts}
     return [name for name in scatter.names if name in switching or (switching and name in idle)]
 
 

@@ -262,16 +262,22 @@ class Mechanism:
         yield from self.struts
         yield from self.tyres
 
+    def elements(self) -> Iterator[Element]:
+        """The elements of the struts, then of the tyres."""
+        return (element for mount in self.mounts() for element in mount.network.elements())
+
+    def strut_elements(self) -> list[Element]:
+        """The elements of the struts."""
+        return [element for strut in self.struts for element in strut.network.elements()]
+
     def free_values(self) -> dict[str, Free]:
         """Free values by name: those of networks in order of appearance, then masses."""
-        elements = (element for mount in self.mounts() for element in mount.network.elements())
-        values = [*(element.value for element in elements), *(c.inertia for c in self.coordinates)]
+        values = [*(element.value for element in self.elements()), *(c.inertia for c in self.coordinates)]
         return {str(value.name): value for value in values if isinstance(value, Free)}
 
     def units(self) -> dict[str, str]:
         """The unit of each free value."""
-        elements = (element for mount in self.mounts() for element in mount.network.elements())
-        values = [*((e.value, e.unit) for e in elements), *((c.inertia, c.unit) for c in self.coordinates)]
+        values = [*((e.value, e.unit) for e in self.elements()), *((c.inertia, c.unit) for c in self.coordinates)]
         return {str(value.name): unit for value, unit in values if isinstance(value, Free)}
 
     def with_values(self, values: Mapping[str, float]) -> Mechanism:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import zipfile
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib.resources import files
@@ -23,7 +23,7 @@ from inerter.exports.kind import ExportKind
 from inerter.exports.modelica import package_name
 from inerter.exports.named_system import NamedQuantity
 from inerter.exports.request import ExportSpec
-from inerter.networks.elements import Element, Network
+from inerter.networks.elements import Network
 from inerter.systems.graph import switching
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_names, main_outputs
@@ -79,13 +79,7 @@ def _vehicle_system(request: ExportSpec) -> SwitchingSystem:
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
     """Whether a linear model leaves something out."""
-    return any(element.switch is not None for element in _elements(mechanism))
-
-
-def _elements(mechanism: Mechanism) -> Iterator[Element]:
-    """Elements of the mechanism as simulation has them."""
-    for mount in switching(mechanism).mounts():
-        yield from mount.network.elements()
+    return any(element.switch is not None for element in switching(mechanism).elements())
 
 
 def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion, platforms: Sequence[str] = ()) -> bytes:

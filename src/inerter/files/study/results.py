@@ -267,7 +267,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
 
 def _count(study: Study, layout: str) -> int:
     """Number of elements in the struts of a layout."""
-    return sum(len(list(strut.network.elements())) for strut in study.design(layout).mechanism().struts)
+    return len(study.design(layout).mechanism().strut_elements())
 
 
 def is_uncertain(study: Study) -> bool:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from inerter.errors import StatusKind
+from inerter.files.study.summary import bounds_text
 from inerter.formatting import capital, format_percent, format_quantity, label_with_unit
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
-from inerter.table import Column, Quantity, Row, Table, cells, columns
+from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
 
 if TYPE_CHECKING:
     from inerter.files.study.search_parts import RealResult
@@ -34,6 +35,10 @@ def frontier_table(study: Study, one: LayoutSearch) -> Table:
     return _frontier(study, one, "elements", found)
 
 
+def _gain_text(gain: float) -> str | None:
+    return None if isnan(gain) else format_percent(gain)
+
+
 def inerters_table(study: Study, one: LayoutSearch) -> Table:
     """The best network for each number of inerters, as `frontier_table`."""
     symbol = Inerter.symbol
@@ -50,7 +55,7 @@ def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tup
     rows, before = [], nan
     for count, network in found:
         gains = [improvement(network.value, before), *([improvement(network.value, one.baseline)] * is_compared)]
-        texts = [None if isnan(gain) else format_percent(gain) for gain in gains]
+        texts = [_gain_text(gain) for gain in gains]
         rows.append(Row(cells(f"{count}", Quantity(network.value, network.unit), *texts, network.layout)))
         before = network.value
     return Table(f"{capital(one.heading)}: best network for each number of {counted}", heads, rows)
@@ -104,41 +109,34 @@ def networks_table(found: StudySearch) -> Table:
     """All networks of all searches, those that failed last, with a column for every parameter."""
     searches = found.searches
     names = _parameters([network for one in searches for network in one.result.ranking])
+    units = {name: label_with_unit(name, parameter_unit(found.study, name)) for name in names}
     keys = ("layout", "index", "rank", "network", "elements", "value", "unit", "improvement_percent", "status")
-    units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
-    heads = [Column(key=key) for key in (*keys, *units, "at_bound", "starts", "agreed", "as_good", "equal_networks")]
-    return Table("Networks", heads, [Row(cells(*row)) for one in searches for row in _rows(one, names)])
+    every = [*keys, *units.values(), "at_bound", "starts", "agreed", "as_good", "equal_networks"]
+    rows = [row for one in searches for row in _network_rows(one, units)]
+    return Table("Networks", [Column(key=key) for key in every], [Row(cells(*map(row.get, every))) for row in rows])
 
 
-def _rows(one: LayoutSearch, names: list[str]) -> Iterator[list[str | int | float | None]]:
+def _network_rows(one: LayoutSearch, units: Mapping[str, str]) -> Iterator[dict[str, Content]]:
+    """Contents of `networks_table` by key; `units` are the keys of the parameters."""
+    of_search: dict[str, Content] = {"layout": one.layout, "index": one.index, "unit": one.result.unit}
     for rank, found in enumerate(one.result.ranking, 1):
-        yield [
-            *(one.layout, one.index, rank, found.layout, found.n_elements, found.value, found.unit),
-            *(improvement(found.value, one.baseline), str(found.status)),
-            *(found.parameters.get(name) for name in names),
-            ";".join(f"{name}:{end}" for name, end in found.active_bounds.items()),
-            *(found.n_starts, found.n_converged, found.simpler, "; ".join(found.like)),
-        ]
-    nothing = [None] * len(names)
+        yield of_search | {
+            "rank": rank,
+            "network": found.layout,
+            "elements": found.n_elements,
+            "value": found.value,
+            "improvement_percent": improvement(found.value, one.baseline),
+            "status": str(found.status),
+            **{units[name]: value for name, value in found.parameters.items()},
+            "at_bound": bounds_text(found.active_bounds),
+            "starts": found.n_starts,
+            "agreed": found.n_converged,
+            "as_good": found.simpler,
+            "equal_networks": "; ".join(found.like),
+        }
     for layout, reason in one.result.failed:
         status = f"{StatusKind.FAILED.value}: {reason}"
-        yield [
-            one.layout,
-            one.index,
-            None,
-            layout,
-            None,
-            None,
-            one.result.unit,
-            None,
-            status,
-            *nothing,
-            "",
-            None,
-            None,
-            "",
-            "",
-        ]
+        yield of_search | {"network": layout, "status": status, "at_bound": "", "as_good": "", "equal_networks": ""}
 
 
 def front_networks_table(study: Study, one: LayoutFront) -> Table:
@@ -193,7 +191,7 @@ def front_table(found: StudySearch) -> Table:
     for one in found.fronts:
         for count, front in one.result.by_elements.items():
             for number, point in enumerate(front, 1):
-                at_bound = ";".join(f"{name}:{end}" for name, end in point.active_bounds.items())
+                at_bound = bounds_text(point.active_bounds)
                 own = [*point.values, *(point.parameters.get(name) for name in names), at_bound, str(point.status)]
                 rows.append(Row(cells(one.layout, count, number, point.layout, point.n_elements, *own)))
     return Table("Pareto fronts over networks", [Column(key=key) for key in keys], rows)
@@ -218,10 +216,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
             continue
         unit = one.result.unit
         before, after = real_gains(one, each)
-        gains = [
-            None if isnan(gain) else format_percent(gain)
-            for gain in (before, after, 100.0 * after / before if before > 0.0 else nan)
-        ]
+        gains = [_gain_text(gain) for gain in (before, after, 100.0 * after / before if before > 0.0 else nan)]
         content = [
             each.network,
             *([each.method] if several else []),
@@ -257,7 +252,7 @@ def real_table(found: StudySearch) -> Table:
                     *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.value),
                     *(each.standard_error, one.result.unit, *real_gains(one, each)),
                     *(each.parameters.get(name) for name in names),
-                    ";".join(f"{name}:{end}" for name, end in each.active_bounds.items()),
+                    bounds_text(each.active_bounds),
                     *(each.starts, each.agreed, each.status_text),
                 )
             )

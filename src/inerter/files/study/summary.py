@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,11 @@ def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(_header(study, data))
         writer.writerows(map(csv_cells, _rows(study, data)))
+
+
+def bounds_text(active: Mapping[str, str]) -> str:
+    """Active bounds by parameter, such as "b:upper"; empty where there are none."""
+    return ";".join(f"{name}:{end}" for name, end in active.items() if end)
 
 
 def _header(study: Study, data: xr.Dataset) -> list[str]:
@@ -68,8 +73,7 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
         part = {name: array[start : start + _AT_ONCE].tolist() for name, array in arrays.items()}
         for i in range(len(part["status"])):
             case, design = everything[start + i], {name: column[i] for name, column in part.items()}
-            ends = zip(parameters, design["at_bound"], strict=True)
-            at_bound = ";".join(f"{name}:{end}" for name, end in ends if end)
+            at_bound = bounds_text(dict(zip(parameters, design["at_bound"], strict=True)))
             for m, method in enumerate(study.evaluate):
                 row = {name: value[m] if name in by_method else value for name, value in design.items()}
                 yield [

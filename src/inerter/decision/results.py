@@ -37,6 +37,11 @@ class Improvement:
         return f"{self.size} {'better' if self.percent > 0.0 else 'worse'}"
 
 
+def percent_below(value: float, base: float) -> float:
+    """How far a value lies below that of the baseline [%]; nan where they cannot be compared."""
+    return 100.0 * (1.0 - value / base) if isfinite(value) and isfinite(base) and base else nan
+
+
 def improvement_bound(value: float, base: float, bound: float, base_bound: float) -> float:
     """Largest error of an improvement [%], of values with these relative errors; nan where none is known."""
     if not isfinite(value) or not base or not base_bound < 1.0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from math import hypot, isfinite, nan
+from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ import scipy
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import bound_clause, decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound
+from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound, percent_below
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
@@ -149,12 +149,13 @@ def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improve
     own, other = first.goal.value, second.goal.value
     if second.is_baseline:
         return first.goal.improvement
-    if not isfinite(own) or not isfinite(other) or other == 0.0:
+    percent = percent_below(own, other)
+    if isnan(percent):
         return None
     errors = [_relative_error(row, one.name) * one.goal.value for one in (first, second)]
     margin = _margin(row, first.name, second.name)
     return Improvement(
-        100.0 * (1.0 - own / other),
+        percent,
         100.0 * hypot(*errors) / abs(other) if all(map(isfinite, errors)) and any(errors) else nan,
         is_tie=abs(own - other) <= margin + 2.0 * ACCURACY * min(abs(own), abs(other)),
     )
@@ -203,9 +204,8 @@ def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> It
     spread = 100.0 * hypot(_relative_error(row, layout), _relative_error(row, baseline))
     for other in results["other"].values.tolist():
         own, base = (float(row["other_value"].sel(layout=name, other=other)) for name in (layout, baseline))
-        by = None
-        if other != index and layout != baseline and isfinite(own) and isfinite(base) and base != 0.0:
-            percent = 100.0 * (1.0 - own / base)
+        by, percent = None, percent_below(own, base)
+        if other != index and layout != baseline and isfinite(percent):
             by = Improvement(
                 percent, bound=_other_bound(row, layout, other), is_tie=abs(percent) <= _TWO_SIDED * spread
             )

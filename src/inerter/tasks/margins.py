@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, nan
+from math import isfinite, isnan, nan
 
 from inerter.decision.of_study import nonlinear_elements
-from inerter.decision.results import Improvement
+from inerter.decision.results import Improvement, percent_below
 from inerter.errors import StatusKind
 from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.parts import FAILURES
@@ -299,7 +299,8 @@ def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:
             for layout, vehicle in ((asked.layout, asked.design), (asked.baseline_layout, asked.baseline))
         ]
         (own, first), (base, second) = ends
-        percent = 100.0 * (1.0 - own / base) if isfinite(own) and isfinite(base) and base else None
+        below = percent_below(own, base)
+        percent = None if isnan(below) else below
         message = "; ".join(dict.fromkeys(filter(None, (first, second))))
         kind = StatusKind.FAILED if percent is None else StatusKind.INACCURATE if message else StatusKind.OK
         yield SpeedMargin(factor, factor * study.road.speed, method, percent, kind.value, message)

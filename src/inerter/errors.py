@@ -190,6 +190,10 @@ class Status(Statement):
         """The explanation; empty if there is none."""
         return self.message
 
+    def to_json(self) -> dict[str, str]:
+        """Kind and message, for answers and files."""
+        return {"status": self.kind.value, "message": self.message}
+
     @property
     def doubt(self) -> str:
         """The status as text; empty if it is ok."""

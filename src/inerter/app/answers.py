@@ -235,8 +235,7 @@ def break_even(study: Study, body: Body) -> Answer:
             {"value": c.value, "standard_error": c.standard_error, "better": c.better} for c in found.crossings
         ],
         "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
-        "status": found.status.kind.value,
-        "message": found.status.message,
+        **found.status.to_json(),
     }
 
 
@@ -268,8 +267,7 @@ def scatter(study: Study, body: Body) -> Answer:
         "main": found.first_order,
         "total": found.total_order,
         "histogram": {"edges": edges, "counts": counts},
-        "status": found.status.kind.value,
-        "message": found.status.message,
+        **found.status.to_json(),
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design, baseline_of, design_of, designs_of
+from inerter.app.designs import Design, baseline_of, designs_of, given_design
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
@@ -123,10 +123,7 @@ def _of_studies(study: Study, body: Body) -> list[Design]:
     given = body.get("designs") or []
     if not any(one.get("study") for one in given):
         return designs_of(study, body)
-    return [
-        design_of(_put(study, one.get("study")), one["layout"], one.get("values") or {}, one.get("name") or "")
-        for one in given
-    ]
+    return [given_design(_put(study, one.get("study")), one) for one in given]
 
 
 def _put(study: Study, document: object) -> Study:
@@ -189,8 +186,7 @@ def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Ans
         "standard_error": estimate.standard_error,
         "error_bound": estimate.error_bound,
         "decimals": shown_decimals(estimate.value, estimate.standard_error or np.nan, estimate.error_bound, _DIGITS),
-        "status": estimate.status.kind.value,
-        "message": estimate.status.message,
+        **estimate.status.to_json(),
         "notes": list(estimate.notes),
         "realisations": estimate.realisations,
         "improvement_percent": better,

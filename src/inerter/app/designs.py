@@ -81,6 +81,11 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen, all_free)
 
 
+def given_design(study: Study, given: Mapping[str, Any]) -> Design:
+    """Design that a request gives by its layout, values and name; raises what `design_of` raises."""
+    return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+
+
 def problem_digest(study: Study, layout: str, index: str) -> str:
     """Digest of the problem that an optimum of a layout solves; empty without a design variable.
 
@@ -108,18 +113,16 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
             raise DesignError(
                 f"Got {quote_value(other[0])}, a design of another study; such are only compared (panel compare)."
             )
-        return [design_of(study, d["layout"], d.get("values") or {}, d.get("name") or "") for d in body["designs"]]
-    values = body.get("values") or {}
-    return [design_of(study, layout, values.get(layout) or {}) for layout in body.get("layouts") or study.layouts]
+        return [given_design(study, given) for given in body["designs"]]
+    return [_layout_design(study, body, layout) for layout in body.get("layouts") or study.layouts]
 
 
 def one_design(study: Study, body: Mapping[str, Any]) -> Design:
     """Single design of a request: its `design`, or its `layout` at the `values` of that layout."""
     given = body.get("design")
     if given:
-        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
-    layout = body.get("layout") or next(iter(study.layouts))
-    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})
+        return given_design(study, given)
+    return _layout_design(study, body, body.get("layout") or next(iter(study.layouts)))
 
 
 def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]) -> Design | None:
@@ -129,11 +132,16 @@ def baseline_of(study: Study, body: Mapping[str, Any], designs: Sequence[Design]
     """
     given = body.get("baseline")
     if given:
-        return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+        return given_design(study, given)
     if study.baseline is None:
         return None
     here = next((design for design in designs if design.layout == study.baseline), None)
-    return here or design_of(study, study.baseline, (body.get("values") or {}).get(study.baseline) or {})
+    return here or _layout_design(study, body, study.baseline)
+
+
+def _layout_design(study: Study, body: Mapping[str, Any], layout: str) -> Design:
+    """Design of a layout at the `values` that a request gives for it."""
+    return design_of(study, layout, (body.get("values") or {}).get(layout) or {})
 
 
 def _number(name: str, given: str | float, unit: str) -> float:

@@ -68,8 +68,7 @@ def _one_history(study: Study, design: Design, body: Mapping[str, Any]) -> dict[
         "peaks": {name: float(np.abs(run[name]).max()) for name in names},
         "duration": asked.duration,
         "step": asked.step,
-        "status": run.status.kind.value,
-        "message": run.status.message,
+        **run.status.to_json(),
     }
 
 

@@ -76,8 +76,7 @@ class DesignLimit:
             "value": self.estimate.value,
             "text": self.text,
             "kept": self.kept,
-            "status": self.estimate.status.kind.value,
-            "message": self.estimate.status.message,
+            **self.estimate.status.to_json(),
         }
 
     def result(self) -> LimitResult:

@@ -217,8 +217,7 @@ class _Ranking:
         return self._row(plan, point.topology, point.parameters) | {
             "indices": values,
             "improvements_percent": {index: improvement(value, baselines[index]) for index, value in values.items()},
-            "status": point.status.kind.value,
-            "message": point.status.message,
+            **point.status.to_json(),
         }
 
     def _row(

@@ -222,7 +222,7 @@ def test_numbers_of_any_size(value, text):
     assert format_share(value / 100.0) == f"{text} %" or abs(value) < 1e-300
     quantity = text if not math.isfinite(value) else f"{text} kg"
     assert format_quantity(value, "kg", 3) == quantity
-    assert typeset_quantity(value, "kg", 3) == typeset(quantity).replace(" ", "\N{NO-BREAK SPACE}")
+    assert typeset_quantity(value, "kg") == typeset(format_quantity(value, "kg")).replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def test_a_sign_is_shown_where_it_is_asked_for():

@@ -81,16 +81,16 @@ def format_number(value: float, digits: int = 6, sign: str = "") -> str:
     return f"{float(text):{sign}.0f}" if whole else text
 
 
-def format_complex(value: complex, digits: int = _DIGITS) -> str:
+def format_complex(value: complex) -> str:
     """Complex number as text, as its real part where the imaginary one is rounding.
 
     >>> format_complex(-0.5 - 12.3456j), format_complex(-3.0 + 1e-15j)
     ('-0.5 - 12.35j', '-3')
     """
     if abs(value.imag) <= 1e-12 * abs(value):
-        return format_number(value.real, digits)
+        return format_number(value.real, _DIGITS)
     sign = "+" if value.imag > 0.0 else "-"
-    return f"{format_number(value.real, digits)} {sign} {format_number(abs(value.imag), digits)}j"
+    return f"{format_number(value.real, _DIGITS)} {sign} {format_number(abs(value.imag), _DIGITS)}j"
 
 
 def format_decimals(value: float, decimals: int, sign: str = "") -> str:
@@ -328,11 +328,9 @@ def typeset_unit(unit: str) -> str:
     return re.sub(r"^u(?=[ms]\b)", "µ", typeset(unit))
 
 
-def typeset_quantity(
-    value: float, unit: str, digits: int = _DIGITS, *, error: float = math.nan, bound: float = math.nan
-) -> str:
+def typeset_quantity(value: float, unit: str) -> str:
     """Value with its unit as `format_quantity` gives it, in printed form and without line breaks."""
-    return typeset(format_quantity(value, unit, digits, error=error, bound=bound)).replace(" ", _NO_BREAK_SPACE)
+    return typeset(format_quantity(value, unit)).replace(" ", _NO_BREAK_SPACE)
 
 
 def join_units(text: str) -> str:

@@ -89,15 +89,15 @@ def draw_networks(
         return save(network_figure(networks, values=values), folder, name, pdf=not alone, png=not alone)
 
 
-def network_figure(networks: Mapping[str, Network], *, values: bool = False, width: float = WIDE) -> Figure:
-    """Networks below their titles, in rows of up to `width` [inch]; wider only where one network alone is.
+def network_figure(networks: Mapping[str, Network], *, values: bool = False) -> Figure:
+    """Networks below their titles, in rows of up to the width of a page; wider only where one network alone is.
 
     Raises `NetworkError` if there are none.
     """
     if not networks:
         raise NetworkError("A figure of networks needs at least one, got none.")
     cells = [_Cell(_plain(title), schematic(network, values=values)) for title, network in networks.items()]
-    rows = list(_rows(cells, 72.0 * width - 2.0 * _MARGIN))
+    rows = list(_rows(cells, 72.0 * WIDE - 2.0 * _MARGIN))
     widths, heights = [_row_width(row) for row in rows], [max(cell.height for cell in row) for row in rows]
     y = _MARGIN + sum(heights) + _ROW * (len(rows) - 1)
     figure, axes = blank_figure(max(widths) + 2.0 * _MARGIN, y + _MARGIN)

@@ -30,10 +30,8 @@ class RatioLines:
         return float(self.omega[-1] / self.omega[0]) if self.omega.size else 1.0
 
 
-def ratio_lines(
-    first: Vector, second: Vector, interval: float, lowest: float = 0.0, highest: float = np.inf
-) -> RatioLines:
-    """The ratio second/first between these frequencies [Hz], from averaged spectra.
+def ratio_lines(first: Vector, second: Vector, interval: float, highest: float) -> RatioLines:
+    """The ratio second/first up to the `highest` frequency [Hz], from averaged spectra.
 
     A line counts if the first channel has at least 1e-4 of its largest density there, and the squared coherence is at
     least 0.8. The error of the phase is that of the averages: sqrt((1 - C) / (2 C k)) for k segments.
@@ -45,7 +43,7 @@ def ratio_lines(
     _, cross = csd(first, second, 1.0 / interval, nperseg=size)
     with np.errstate(divide="ignore", invalid="ignore"):
         coherence = np.nan_to_num(np.abs(cross) ** 2 / (power * other))
-    found = (power >= 1e-4 * np.max(power)) & (coherence >= COHERENT) & (frequency >= lowest) & (frequency <= highest)
+    found = (power >= 1e-4 * np.max(power)) & (coherence >= COHERENT) & (frequency <= highest)
     found[:2] = False
     segments = max((2 * first.size // size - 1) * 0.75, 1.0)  # neighbours share half of their samples
     kept = np.clip(coherence[found], 0.0, 1.0 - 1e-12)

@@ -20,7 +20,7 @@ from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
-from inerter.files.study.plausibility import roads_sentence
+from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
@@ -75,9 +75,8 @@ def run(
         for text in as_text(result):
             print(text, end="")
     else:
-        road = roads_sentence(loaded)
         sums = [f"{title}: {what}." for title, what in index_rows(loaded, combined=True)]
-        head = [line for text in (loaded.title, *([f"{road}."] if road else []), *sums) for line in _hanging(text)]
+        head = [line for text in (loaded.title, *roads_sentences(loaded), *sums) for line in _hanging(text)]
         sections = [*design_sections(result.data), *task_sections(loaded, result.data, result.answers)]
         print("\n".join([*head, "", section_text(sections)]))
         for note in result.data.attrs["notes"].splitlines():

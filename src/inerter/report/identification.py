@@ -34,7 +34,7 @@ from inerter.report.identification_text import (
 )
 from inerter.report.identified_values import ResultKind, elements_block, result_kind, value_and_interval
 from inerter.report.options import as_options
-from inerter.report.page import PageFigure, environment, inline
+from inerter.report.page import PageFigure, environment, page_figures
 from inerter.statements import Severity, by_severity
 from inerter.work.origin import versions
 
@@ -69,9 +69,8 @@ def write_identification(
     write_text(folder / RESPONSE, json.dumps(response_data(answered), indent=2) + "\n")
     drawn: dict[str, list[PageFigure]] = {}
     for count, figure in enumerate(figures(found, answered), 1):
-        (path,) = draw(figure.figure, folder / FIGURES, figure.name, print_too=False)
-        svg = inline(path.read_text(encoding="utf-8"), figure.name, figure.caption)
-        drawn.setdefault(figure.section, []).append(PageFigure(svg, figure.caption))
+        draw(figure.figure, folder / FIGURES, figure.name, print_too=False)
+        drawn.setdefault(figure.section, []).extend(page_figures(folder / FIGURES, figure.name, figure.caption))
         progress(count / (_MOST_FIGURES * len(found.readings) + len(found.fit.localisations) + 2))
     write_text(folder / REPORT, identification_page(found, drawn, answered.notes))
     progress(1.0)

@@ -3,37 +3,29 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from inerter.atomic_io import write_text
-from inerter.figures.labels import swept_places
+from inerter.figures.labels import index_words, indices, swept_places
 from inerter.figures.layouts import layout_figure
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
-from inerter.files.study.plausibility import roads_sentence
+from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer
 from inerter.formatting import capital, join_units, typeset
 from inerter.report.conclusions import conclusion_sentences
-from inerter.report.problem_statement import (
-    computation,
-    condition_rows,
-    element_rows,
-    further_rows,
-    index_rows,
-    indices_asked,
-    layout_rows,
-    vehicle_rows,
-)
+from inerter.report.problem_statement import computation, problem_statement
 from inerter.report.sections import design_sections, task_sections, trade_off_section
 
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -73,44 +65,40 @@ def report(
     found: Sequence[Answer] = (),
 ) -> str:
     """The page as text."""
-    swept = swept_places(results)
-    return with_contents(
-        environment()
-        .get_template("report.html")
-        .render(
-            title=results.attrs["title"],
-            swept=bool(swept),
-            searched=study.optimise is not None,
-            headlines=[
-                *conclusion_sentences(results, study, found),
-                *([f"{road}."] if (road := roads_sentence(study)) else []),
-            ],
-            vehicle=vehicle_rows(study),
-            on_road=study.road is not None,
-            definitions=index_rows(study),
-            elements=element_rows(study),
-            further=further_rows(study),
-            layouts=layout_rows(study),
-            drawings=dict(_layout_drawings(study, figures)),
-            indices=indices_asked(results),
-            sections=list(design_sections(results)),
-            further_sections=[*task_sections(study, results, found), *trade_off_section(results)],
-            conditions=condition_rows(study),
-            figures=list(_drawings(results, figures)),
-            notes=results.attrs.get("notes", "").splitlines(),
-            computation=list(computation(study, results)),
-            study_file=_study_file(study),
-        )
+    return study_page(
+        study,
+        conclusion_sentences(results, study, found),
+        [index_words(results, index) for index in indices(results)],
+        swept=bool(swept_places(results)),
+        searched=study.optimise is not None,
+        drawings={
+            layout: figure.drawing
+            for layout in study.layouts
+            for figure in page_figures(figures, layout_figure(layout), f"Networks of {layout}", natural=True)
+        },
+        sections=list(design_sections(results)),
+        further_sections=[*task_sections(study, results, found), *trade_off_section(results)],
+        figures=[shown for one in study_figures(results) for shown in page_figures(figures, one.name, one.caption)],
+        notes=results.attrs.get("notes", "").splitlines(),
+        computation=list(computation(study, results)),
+        study_file=_study_file(study),
     )
 
 
-def _layout_drawings(study: Study, folder: Path) -> Iterator[tuple[str, Markup]]:
-    """The networks of each layout, in the size in which they are drawn."""
-    for layout in study.layouts:
-        path = folder / f"{layout_figure(layout)}.svg"
-        if path.exists():
-            name = layout_figure(layout)
-            yield layout, inline(path.read_text(encoding="utf-8"), name, f"Networks of {layout}", natural=True)
+def study_page(study: Study, answers: Iterable[str], words: Sequence[str], **results: Any) -> str:
+    """Page of results on a study: `answers` in sentences, its problem with the titles of the indices, and the rest."""
+    page = environment().get_template("report.html")
+    headlines = [*answers, *roads_sentences(study)]
+    return with_contents(
+        page.render(title=study.title, headlines=headlines, **problem_statement(study, words), **results)
+    )
+
+
+def page_figures(folder: Path, name: str, caption: str, *, natural: bool = False) -> Iterator[PageFigure]:
+    """The drawing of that name in the folder, if there is one; in the size in which it was drawn if `natural`."""
+    path = folder / f"{name}.svg"
+    if path.exists():
+        yield PageFigure(inline(path.read_text(encoding="utf-8"), name, caption, natural=natural), caption)
 
 
 def _study_file(study: Study) -> str:
@@ -159,13 +147,6 @@ def _typeset_plain(text: str) -> str:
     text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
     text = re.sub(r" -(?=[\d.]|inf\b)", " −", text)
     return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))
-
-
-def _drawings(results: xr.Dataset, folder: Path) -> Iterator[PageFigure]:
-    for figure in study_figures(results):
-        path = folder / f"{figure.name}.svg"
-        if path.exists():
-            yield PageFigure(inline(path.read_text(encoding="utf-8"), figure.name, figure.caption), figure.caption)
 
 
 def breakable(name: str) -> Markup:

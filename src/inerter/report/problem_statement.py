@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isclose, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from inerter.field_metadata import Field, fields_of
-from inerter.figures.labels import index_words, indices, infeasible
+from inerter.figures.labels import infeasible
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import limit_text
 from inerter.files.study.method_labels import method_labels
@@ -169,10 +169,18 @@ def index_rows(study: Study, *, combined: bool = False) -> list[tuple[str, str]]
     return rows
 
 
-def indices_asked(results: xr.Dataset) -> str:
-    """The indices in a sentence."""
-    names = [index_words(results, index) for index in indices(results)]
-    return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
+def problem_statement(study: Study, words: Sequence[str]) -> dict[str, Any]:
+    """The problem that a page states, by the names of its template; `words` are the titles of the indices."""
+    return {
+        "vehicle": vehicle_rows(study),
+        "on_road": study.road is not None,
+        "definitions": index_rows(study),
+        "elements": element_rows(study),
+        "further": further_rows(study),
+        "layouts": layout_rows(study),
+        "indices": f"The {'index is' if len(words) == 1 else 'indices are'} {format_list(words)}.",
+        "conditions": condition_rows(study),
+    }
 
 
 def computation(study: Study, results: xr.Dataset) -> Iterator[str]:

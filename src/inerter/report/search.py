@@ -11,7 +11,6 @@ import inerter
 from inerter.atomic_io import write_text
 from inerter.figures.search import FRONTIER, best_networks_figure, draw_search, front_figure
 from inerter.files.common.folder import FIGURES, REPORT
-from inerter.files.study.plausibility import roads_sentence
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
     agreement_remark,
@@ -32,15 +31,7 @@ from inerter.formatting import capital, format_list, format_percent, format_quan
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
 from inerter.report.json_data import json_data
-from inerter.report.page import PageFigure, environment, inline, with_contents
-from inerter.report.problem_statement import (
-    condition_rows,
-    element_rows,
-    further_rows,
-    index_rows,
-    layout_rows,
-    vehicle_rows,
-)
+from inerter.report.page import PageFigure, page_figures, study_page
 from inerter.report.sections import Section
 from inerter.table import records
 
@@ -179,37 +170,21 @@ def write_search_report(found: StudySearch, folder: Path) -> None:
     """Draw the networks and fronts of a search, and write the page with these drawings."""
     draw_search(found, folder / FIGURES)
     study = found.study
-    page = (
-        environment()
-        .get_template("report.html")
-        .render(
-            title=study.title,
-            swept=False,
-            searched=True,
-            headlines=[*search_sentences(found), *([f"{road}."] if (road := roads_sentence(study)) else [])],
-            vehicle=vehicle_rows(study),
-            on_road=study.road is not None,
-            definitions=index_rows(study),
-            elements=element_rows(study),
-            further=further_rows(study),
-            layouts=layout_rows(study),
-            drawings={},
-            indices=_indices_asked(found),
-            sections=list(search_sections(found)),
-            further_sections=[],
-            conditions=condition_rows(study),
-            figures=list(_drawings(found, folder / FIGURES)),
-            notes=search_notes(found),
-            computation=list(_computation(found)),
-            study_file=write_resolved(study),
-        )
+    page = study_page(
+        study,
+        search_sentences(found),
+        [f"{study.index(name).title} ({name})" for name in study.indices],
+        swept=False,
+        searched=True,
+        drawings={},
+        sections=list(search_sections(found)),
+        further_sections=[],
+        figures=list(_drawings(found, folder / FIGURES)),
+        notes=search_notes(found),
+        computation=list(_computation(found)),
+        study_file=write_resolved(study),
     )
-    write_text(folder / REPORT, with_contents(page))
-
-
-def _indices_asked(found: StudySearch) -> str:
-    names = [f"{found.study.index(name).title} ({name})" for name in found.study.indices]
-    return f"The {'index is' if len(names) == 1 else 'indices are'} {format_list(names)}."
+    write_text(folder / REPORT, page)
 
 
 def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
@@ -227,10 +202,7 @@ def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
             "front over all networks are not in the picture."
         )
     for name, caption in captions.items():
-        file = folder / f"{name}.svg"
-        if file.exists():
-            svg = file.read_text(encoding="utf-8")
-            yield PageFigure(inline(svg, name, caption, natural=name.startswith("networks-")), caption)
+        yield from page_figures(folder, name, caption, natural=name.startswith("networks-"))
 
 
 def _computation(found: StudySearch) -> Iterator[str]:

@@ -31,7 +31,7 @@ def is_on_road(model: str) -> bool:
 
 def road_sentence(road: Road, speed: str = "") -> str:
     """Class of a road and, if given, the vehicle `speed`, as a sentence."""
-    return f"Road: {class_words(road)}{f', at {speed}' if speed else ''}"
+    return f"Road: {class_words(road)}{f', at {speed}' if speed else ''}."
 
 
 def class_words(road: Road) -> str:

@@ -35,7 +35,7 @@ def check_lines(path: Path) -> Iterator[str]:
     )
     if request.speed is not None and request.roughness is not None:
         road = Road(request.roughness, request.speed)
-        yield f"{road_sentence(road, format_quantity(road.speed, 'm/s', 4))}."
+        yield road_sentence(road, format_quantity(road.speed, "m/s", 4))
         yield from road_warnings(road)
     used = {name for text in request.layouts[request.layout].struts.values() for name in names(text)}
     yield from vehicle_warnings(

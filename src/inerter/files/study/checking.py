@@ -18,7 +18,7 @@ from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import limited_definitions, limits_in
 from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.notes import road_notes
-from inerter.files.study.plausibility import input_warnings, roads_sentence
+from inerter.files.study.plausibility import input_warnings, roads_sentences
 from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.tasks import tasks
 from inerter.methods.composite_index import objective_of, without_tied_values
@@ -52,8 +52,7 @@ def check_lines(path: Path) -> Iterator[str]:
         check_study(study)
         size, notes = _study_size(study), study_notes(study)
     yield f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{size}."
-    if road := roads_sentence(study):
-        yield f"{road}."
+    yield from roads_sentences(study)
     yield from input_warnings(study)
     yield from (f"Note: {note}." for note in notes)
 

@@ -17,15 +17,15 @@ from inerter.signals.road import Road
 _ROUGHNESS, _SPEED = "road.roughness", "road.speed"
 
 
-def roads_sentence(study: Study) -> str:
-    """The class of the road and the speed, as far as both are fixed; empty where no index is about a road."""
+def roads_sentences(study: Study) -> list[str]:
+    """Sentence on the class of the road and the speed, as far as both are fixed; none without a road."""
     if study.road is None:
-        return ""
+        return []
     roads = sorted(_roads(study), key=lambda road: road.roughness)
     if _ROUGHNESS in study.varied_labels and len({road.roughness for road in roads}) > 1:
-        return f"Roads: from {class_words(roads[0])} to {class_words(roads[-1])}"
+        return [f"Roads: from {class_words(roads[0])} to {class_words(roads[-1])}."]
     speed = as_written(study, study.road.speed, "m/s") or format_quantity(study.road.speed, "m/s")
-    return road_sentence(study.road, "" if _SPEED in study.varied_labels else speed)
+    return [road_sentence(study.road, "" if _SPEED in study.varied_labels else speed)]
 
 
 def input_warnings(study: Study) -> list[str]:

@@ -32,7 +32,7 @@ from inerter.papers.wang_su_2008.reproduce import Reproduction
 from inerter.papers.wang_su_2008.rig import SIMULATED
 from inerter.papers.wang_su_2008.rows import VERDICTS
 from inerter.papers.wang_su_2008.source import study
-from inerter.report.page import PageFigure, environment, inline
+from inerter.report.page import environment, page_figures
 from inerter.work.pool import Pool, worker_pool
 
 Drawing = Callable[[], list[Path]]
@@ -95,11 +95,8 @@ def _networks() -> dict[str, Network]:
 
 
 def _page(found: Reproduction, folder: Path) -> str:
-    figures = {}
-    for name, caption in PAPER.figures.items():
-        path = folder / FIGURES / f"{name}.svg"
-        if path.exists():
-            figures[name] = PageFigure(inline(path.read_text(encoding="utf-8"), name, caption), caption)
+    captions = PAPER.figures.items()
+    figures = {name: one for name, caption in captions for one in page_figures(folder / FIGURES, name, caption)}
     return (
         environment(__package__)
         .get_template("reproduction.html")

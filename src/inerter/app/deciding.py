@@ -14,11 +14,10 @@ from inerter.app.index_values import DesignLimit, limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound
-from inerter.errors import Status
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, typeset
 from inerter.methods.compare import Comparison
-from inerter.methods.registry import brief_words_of, decisive_method_clause
+from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
 from inerter.tasks.margins import margins as find_margins
 
@@ -173,7 +172,7 @@ class _DesignComparison:
             title=study.index(one.index).title,
             unit=study.unit(one.index),
             value=estimate.value,
-            status=_with_remedy(self.method, estimate.status),
+            status=with_decisive_method(estimate.status, self.method),
             standard_error=nan if estimate.standard_error is None else estimate.standard_error,
             error_bound=estimate.error_bound,
             improvement=improvement_of(two),
@@ -187,9 +186,3 @@ def improvement_of(two: Comparison | None) -> Improvement | None:
     percent, error = improvement_percent(two)
     bound = improvement_bound(two.first.value, two.second.value, two.first.error_bound, two.second.error_bound)
     return Improvement(percent, nan if error is None else error, bound, two.is_tie, two.status)
-
-
-def _with_remedy(method: str, status: Status) -> Status:
-    """Status whose message names the method that can decide."""
-    clause = decisive_method_clause(method, status)
-    return replace(status, message=f"{status.message.rstrip('.')}{clause}") if clause else status

@@ -93,6 +93,12 @@ def decisive_method_clause(name: str, status: Status) -> str:
     return f"; {others[0]} simulates it, and can decide"
 
 
+def with_decisive_method(status: Status, name: str) -> Status:
+    """The status of a result of a method; where another one can decide an uncertain result, its message says so."""
+    clause = decisive_method_clause(name, status)
+    return dataclasses.replace(status, message=f"{status.message.rstrip('.')}{clause}") if clause else status
+
+
 def methods_that(can: Callable[[str], object]) -> tuple[str, ...]:
     """The names of those methods."""
     return tuple(name for name in METHODS if can(name))

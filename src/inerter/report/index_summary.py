@@ -30,7 +30,7 @@ from inerter.figures.labels import (
 from inerter.formatting import format_list, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES
-from inerter.methods.registry import decisive_method_clause
+from inerter.methods.registry import with_decisive_method
 from inerter.methods.ties import equally_least
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ def _doubt(results: xr.Dataset, index: str) -> str:
     _, message = Status.parts(next(iter(unsure.values()))[0])
     many = len(next(iter(texts.values())))
     of = [f"{name} at {len(own)} of {many} points" if many > 1 else name for name, own in unsure.items()]
-    unsure_status = Status(StatusKind.INACCURATE, message)
-    decided = decisive_method_clause(methods(results)[0], unsure_status) if len(methods(results)) == 1 else ""
-    return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}{decided}). "
+    if len(methods(results)) == 1:
+        message = with_decisive_method(Status(StatusKind.INACCURATE, message), methods(results)[0]).message
+    return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}). "
 
 
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:

@@ -28,7 +28,7 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity
-from inerter.methods.registry import brief_words_of, decisive_method_clause
+from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
 
 if TYPE_CHECKING:
@@ -125,8 +125,7 @@ def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
     """Status of a design; its message names the method that can decide, where the study has no other."""
     kind, message = Status.parts(str(design["status"].item()))
     status = Status(StatusKind(kind) if kind in list(StatusKind) else StatusKind.FAILED, message)
-    clause = decisive_method_clause(method, status) if method and len(methods(results)) == 1 else ""
-    return Status(status.kind, f"{message.rstrip('.')}{clause}")
+    return with_decisive_method(status, method) if method and len(methods(results)) == 1 else status
 
 
 def _improvement(row: xr.Dataset, layout: str) -> Improvement | None:

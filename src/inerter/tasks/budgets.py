@@ -18,7 +18,7 @@ from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import capital, format_list, format_quantity
 from inerter.methods.method import Method
-from inerter.methods.registry import brief_words_of, decisive_method_clause, is_blind
+from inerter.methods.registry import brief_words_of, is_blind, with_decisive_method
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.verdicts import best_layouts
@@ -55,8 +55,8 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         )
         method = study.method(budget_method(study), threads)
         found = element_break_even(study, design, baseline, self.index, self.parameter, method)
-        message = found.status.message + decisive_method_clause(budget_method(study), found.status)
-        return self._answer(study, found, found.status.kind.value, message)
+        status = with_decisive_method(found.status, budget_method(study))
+        return self._answer(study, found, status.kind.value, status.message)
 
     def failed_result(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""

@@ -16,7 +16,7 @@ from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.formatting import format_list, format_quantity, label_with_unit
-from inerter.methods.registry import decisive_method_clause
+from inerter.methods.registry import with_decisive_method
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
 from inerter.table import Column, Quantity, Row, Table, cells
@@ -188,8 +188,7 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         statuses=list(map(str, found.statuses)),
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
-        status=found.status.kind.value,
-        message=found.status.message + decisive_method_clause(method, found.status),
+        **with_decisive_method(found.status, method).to_json(),
     )
 
 

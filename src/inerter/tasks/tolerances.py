@@ -14,7 +14,7 @@ from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import format_decimals, format_number, format_share
-from inerter.methods.registry import decisive_method_clause
+from inerter.methods.registry import with_decisive_method
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis
 
@@ -59,8 +59,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             unit=study.unit(self.index),
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
-            status=found.status.kind.value,
-            message=found.status.message + decisive_method_clause(method, found.status),
+            **with_decisive_method(found.status, method).to_json(),
         )
 
     def failed_result(self, study: Study, message: str) -> ToleranceAnswer:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import nan
 from typing import Any
 
@@ -12,7 +12,7 @@ from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.study import Study
 from inerter.methods.composite_index import estimate_of
-from inerter.methods.registry import decisive_method_clause
+from inerter.methods.registry import with_decisive_method
 from inerter.network_search.fronts import FrontPlan, FrontScale, FrontTask, NetworkPoints, front_group
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan, search_group
@@ -181,7 +181,7 @@ class RealPart(StudyPart["RealResult"]):
         return self._result(
             value=best.value,
             error=best.estimate.standard_error,
-            status=replace(best.status, message=best.status.message + decisive_method_clause(self.method, best.status)),
+            status=with_decisive_method(best.status, self.method),
             kept=kept.value,
             parameters=best.parameters,
             active_bounds=best.active_bounds,

@@ -12,6 +12,7 @@ import xarray as xr
 
 from inerter.figures.labels import swept_places
 from inerter.files.study.running import StudyResult
+from inerter.files.study.summary import design_rows
 from inerter.files.study.tasks import by_task
 from inerter.formatting import shown_decimals
 from inerter.report.json_data import json_data
@@ -50,28 +51,24 @@ def _verdicts(result: StudyResult) -> Iterator[dict[str, Any]]:
 
 def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
     """Data of each design and method, for JSON."""
-    data = result.data
+    data, study = result.data, result.study
     errors = [name for name in ("standard_error", "improvement_error", "realisations") if _is_known(data, name)]
-    errors = ["error_bound", *errors] if "error_bound" in data else errors
-    arrays = {name: data[name].values for name in ("value", "improvement", "status", "parameter_value", *errors)}
-    labels = {str(dim): data[dim].values.tolist() for dim in data.value.dims}
-    units = dict(zip(labels["index"], data.index_unit.values.tolist(), strict=True))
+    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
     parameters = data.parameter.values.tolist()
-    where = data.value.dims.index("method")
-    for place in np.ndindex(data.value.shape):
-        design = place[:where] + place[where + 1 :]
-        names = {dim: column[i] for (dim, column), i in zip(labels.items(), place, strict=True)}
-        values = zip(parameters, arrays["parameter_value"][design].tolist(), strict=True)
+    for case, method, row in design_rows(data, study):
+        swept = {sweep.label: value for sweep, value in zip(study.sweeps, case.swept, strict=True)}
+        names = {"layout": case.layout, "index": case.index, **swept, "method": method}
+        values = zip(parameters, row["parameter_value"], strict=True)
         yield {
             **names,
-            "value": json_data(arrays["value"][place].item()),
-            "decimals": _decimals(arrays, place),
-            "unit": units[names["index"]],
-            "improvement_percent": json_data(arrays["improvement"][place].item()),
-            **{_JSON.get(name, name): json_data(arrays[name][place].item()) for name in errors},
+            "value": json_data(row["value"]),
+            "decimals": shown_decimals(row["value"], row["standard_error"], row["error_bound"], _DIGITS),
+            "unit": units[case.index],
+            "improvement_percent": json_data(row["improvement"]),
+            **{_JSON.get(name, name): json_data(row[name]) for name in ("error_bound", *errors)},
             **({"at_speeds": at_speeds(data, names)} if "at_speeds.value" in data else {}),
-            **({"limits": _limits(data, names)} if "limit" in data.dims else {}),
-            "status": arrays["status"][design],
+            **({"limits": _limits(data, row)} if "limit" in data.dims else {}),
+            "status": row["status"],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }
 
@@ -81,28 +78,21 @@ def _is_known(data: xr.Dataset, name: str) -> bool:
     return name in data and ("realisations" in data or bool(np.isfinite(data[name]).any()))
 
 
-def _limits(data: xr.Dataset, names: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _limits(data: xr.Dataset, row: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Value, activity and sensitivity of each limit of one design, with the tyre or strut concerned."""
-    entry = data[["limit_value", "limit_active", "limit_cost", "limit.part"]].sel(
-        {name: value for name, value in names.items() if name in data["limit_value"].dims}
-    )
+    names = ("limit", "limit.words", "limit.each")
+    found = [row[name] for name in ("limit.part", "limit_value", "limit_active", "limit_cost")]
     return [
         {
             "limit": limit,
-            "words": str(data["limit.words"].values[i]),
-            "each": str(data["limit.each"].values[i]),
-            "part": str(entry["limit.part"].values[i]),
-            "value": json_data(float(entry["limit_value"].values[i])),
-            "active": bool(entry["limit_active"].values[i]),
-            "cost_percent": json_data(float(entry["limit_cost"].values[i])),
+            "words": words,
+            "each": each,
+            "part": part,
+            "value": json_data(value),
+            "active": active,
+            "cost_percent": json_data(cost),
         }
-        for i, limit in enumerate(data["limit"].values.tolist())
+        for limit, words, each, part, value, active, cost in zip(
+            *(data[name].values.tolist() for name in names), *found, strict=True
+        )
     ]
-
-
-def _decimals(arrays: Mapping[str, Any], place: tuple[int, ...]) -> int | None:
-    """Decimal places that the uncertainty of the value of one design and method justifies; None if it is not finite."""
-    error, bound = (
-        arrays[name][place].item() if name in arrays else np.nan for name in ("standard_error", "error_bound")
-    )
-    return shown_decimals(arrays["value"][place].item(), error, bound, _DIGITS)

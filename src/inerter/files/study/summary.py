@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from inerter.atomic_io import open_text
-from inerter.files.study.cases import cases
+from inerter.files.study.cases import Case, cases
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
@@ -61,10 +61,9 @@ def _more(study: Study) -> list[str]:
     return list(UNCERTAIN) if is_uncertain(study) else []
 
 
-def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
-    everything, more, parts = cases(study), _more(study), _on_parts(data)
-    parameters = data.parameter.values.tolist()
-    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
+def design_rows(data: xr.Dataset, study: Study) -> Iterator[tuple[Case, str, dict[str, Any]]]:
+    """Each design and method, with all that the dataset has of it, by variable: numbers, texts, and lists of them."""
+    everything = cases(study)
     by_method = {name for name in data.data_vars if "method" in data[name].dims}
     arrays = {
         str(name): by_case(data, str(name)) for name in data.data_vars if {"layout", "index"} <= {*data[name].dims}
@@ -72,21 +71,28 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
     for start in range(0, len(everything), _AT_ONCE):
         part = {name: array[start : start + _AT_ONCE].tolist() for name, array in arrays.items()}
         for i in range(len(part["status"])):
-            case, design = everything[start + i], {name: column[i] for name, column in part.items()}
-            at_bound = bounds_text(dict(zip(parameters, design["at_bound"], strict=True)))
+            design = {name: column[i] for name, column in part.items()}
             for m, method in enumerate(study.evaluate):
                 row = {name: value[m] if name in by_method else value for name, value in design.items()}
-                yield [
-                    case.layout,
-                    case.index,
-                    method,
-                    *case.swept,
-                    *(row["value"], units[case.index], row["improvement"]),
-                    *(row["standard_error"], row["error_bound"], row["status"]),
-                    *(row[name] for name in more),
-                    *row["parameter_value"],
-                    *(at_bound, row["starts"], row["agreed"]),
-                    *row["other_value"],
-                    *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
-                    *(row["limit.part"][i] for i in parts),
-                ]
+                yield everything[start + i], method, row
+
+
+def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
+    more, parts = _more(study), _on_parts(data)
+    parameters = data.parameter.values.tolist()
+    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
+    for case, method, row in design_rows(data, study):
+        yield [
+            case.layout,
+            case.index,
+            method,
+            *case.swept,
+            *(row["value"], units[case.index], row["improvement"]),
+            *(row["standard_error"], row["error_bound"], row["status"]),
+            *(row[name] for name in more),
+            *row["parameter_value"],
+            *(bounds_text(dict(zip(parameters, row["at_bound"], strict=True))), row["starts"], row["agreed"]),
+            *row["other_value"],
+            *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
+            *(row["limit.part"][i] for i in parts),
+        ]
